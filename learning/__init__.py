@@ -1,0 +1,1 @@
+"""Data in, weights or models out."""

@@ -1,0 +1,196 @@
+"""The World contract: everything a skill may touch, in simulation and on hardware alike.
+
+Frames: `map` is the room (origin on the floor under the middle of the bed, x across the bed towards
+the person's right, y from head to feet, z up).  `base` is the robot's base on the floor (x forward,
+y left, z up).  `hand` is the point midway between the fingertips (z out of the palm, y along the
+closing direction).  Units are SI.  A world may be late, a sensor may be missing, and time does not wait.
+"""
+
+from __future__ import annotations
+
+import abc
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+Side = Literal["left", "right"]
+SIDES: tuple[Side, Side] = ("left", "right")
+CAMERAS = ("head", "left_hand", "right_hand")
+ARM_JOINTS: tuple[str, ...] = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")  # Baxter's names, shoulder to wrist
+
+
+class WorldError(Exception):
+    """A world could not do what was asked; the message is one sentence for the operator."""
+
+
+class SensorLost(WorldError):
+    """A sensor gave nothing: no frame, no joint state, no wrench."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observation:
+    """What the robot measures of itself at one instant.
+
+    Attributes:
+        time: world clock when the sample was taken [s].
+        arm_positions: (2, 7) joint angles, left then right, order `ARM_JOINTS` [rad].
+        arm_velocities: (2, 7) [rad/s].
+        arm_efforts: (2, 7) [N m].
+        head_pan: angle of the head [rad].
+        pose_base_in_map: (3,) x [m], y [m], yaw [rad].
+        twist_base: (3,) velocity in the base frame [m/s, m/s, rad/s].
+        gripper_opening: (2,) distance between the fingertips [m].
+        gripper_force: (2,) squeezing force between the fingertips [N].
+        wrench_hand_in_map: (2, 6) load on each hand, force [N] then torque [N m], own weight removed.
+        pose_hand_in_map: (2, 4, 4) from the joint angles (forward kinematics, not truth).
+    """
+
+    time: float
+    arm_positions: np.ndarray
+    arm_velocities: np.ndarray
+    arm_efforts: np.ndarray
+    head_pan: float
+    pose_base_in_map: np.ndarray
+    twist_base: np.ndarray
+    gripper_opening: np.ndarray
+    gripper_force: np.ndarray
+    wrench_hand_in_map: np.ndarray
+    pose_hand_in_map: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """One RGB-D image.
+
+    Attributes:
+        camera: one of `CAMERAS`.
+        stamp: world clock at exposure [s].
+        rgb: (H, W, 3) uint8.
+        depth: (H, W) float32, distance along the optical axis [m]; 0 where there is none.
+        intrinsics: (fx, fy, cx, cy) [px].
+        pose_camera_in_map: (4, 4), optical frame: x right, y down, z forward.
+    """
+
+    camera: str
+    stamp: float
+    rgb: np.ndarray
+    depth: np.ndarray
+    intrinsics: tuple[float, float, float, float]
+    pose_camera_in_map: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointTrajectory:
+    """Timed joint motion.  `joints` are arm joints (`"left_s0"` ...) or `"head_pan"`.
+
+    Attributes:
+        joints: (n,) names.
+        times: (k,) from the start of the motion, increasing, first is 0 [s].
+        positions: (k, n) [rad].
+    """
+
+    joints: tuple[str, ...]
+    times: np.ndarray
+    positions: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandTwist:
+    """Cartesian velocity of one hand in the map frame, held for `duration` [s] and then zero.
+
+    twist_in_map: (6,) linear [m/s], angular [rad/s] of the `hand` point.
+    """
+
+    side: Side
+    twist_in_map: np.ndarray
+    duration: float = 0.2
+
+
+@dataclass(frozen=True, kw_only=True)
+class BaseVelocity:
+    """Velocity of the holonomic base in the base frame (3,) [m/s, m/s, rad/s], held for `duration` [s]."""
+
+    velocity: np.ndarray
+    duration: float = 0.2
+
+
+@dataclass(frozen=True, kw_only=True)
+class GripperOpening:
+    """Drive the fingertips of one hand to `opening` [m], squeezing with at most `force_limit` [N]."""
+
+    side: Side
+    opening: float
+    force_limit: float = 30.0
+
+
+Command = JointTrajectory | HandTwist | BaseVelocity | GripperOpening
+
+
+class Clock(Protocol):
+    """The world's time, the only time anything in the project uses."""
+
+    def now(self) -> float:
+        """Seconds since the world started."""
+        ...
+
+    def wait_until(self, time: float) -> None:
+        """Return when `now() >= time` [s]; a simulation advances itself, hardware waits."""
+        ...
+
+
+@dataclass(frozen=True)
+class RoomMap:
+    """What was mapped and annotated beforehand, as for any mobile robot.
+
+    Attributes:
+        free: (rows, cols) bool, True where the centre of the base may be.
+        origin: (2,) map coordinates of cell [0, 0] [m]; rows run along y, columns along x.
+        resolution: edge of a cell [m].
+        waypoints: name -> (x, y, yaw) [m, m, rad]: `rail`, `bed_right`, `bed_left`, `start`.
+        bed: (2, 3) lower and upper corner of the bed [m], nominal.
+    """
+
+    free: np.ndarray
+    origin: np.ndarray
+    resolution: float
+    waypoints: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    bed: np.ndarray = field(default_factory=lambda: np.zeros((2, 3)))
+
+
+class World(abc.ABC):
+    """A body and its senses.  Simulation and hardware subclass this and nothing else."""
+
+    clock: Clock
+    room: RoomMap
+
+    @abc.abstractmethod
+    def observe(self) -> Observation:
+        """Latest proprioception.
+
+        Raises:
+            SensorLost: nothing has arrived.
+        """
+
+    @abc.abstractmethod
+    def look(self, camera: str) -> Frame:
+        """Latest RGB-D frame of one of `CAMERAS`.
+
+        Raises:
+            SensorLost: the camera is dead.
+        """
+
+    @abc.abstractmethod
+    def send(self, command: Command) -> Command:
+        """Start `command`, replacing what the same joints, hand or base were doing.
+
+        Returns:
+            The command as really sent after clipping to the limits.
+        """
+
+    @abc.abstractmethod
+    def stop(self) -> None:
+        """End every motion now.  Grippers keep their opening.  Safe to call at any time, twice too."""
+
+    def close(self) -> None:
+        """Release what the world holds (processes, files, connections)."""

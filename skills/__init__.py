@@ -1,0 +1,1 @@
+"""Leaves of the tree, one file each, and what they share."""

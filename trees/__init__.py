@@ -1,0 +1,1 @@
+"""What to do, and what if it fails: trees, the runner and the command line."""
