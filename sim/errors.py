@@ -1,0 +1,7 @@
+"""The one root of every error the project raises on purpose."""
+
+from __future__ import annotations
+
+
+class CaretreeError(Exception):
+    """A user's or a world's mistake, told in one sentence; the command line prints it and exits with 2."""

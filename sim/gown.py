@@ -1,0 +1,160 @@
+"""The hospital gown as a mesh: a wide open-backed sheet with two short tube sleeves.
+
+Local frame of the rest shape: x across the gown towards the wearer's right, z up (the collar is the upper
+edge at z = 0), y out of the gown's outside.  Unwrapped, a back-opening gown is a sheet: left back panel,
+front panel, right back panel; its upper edge is the neckline, and the armholes lie just below it, so that
+the strap above each armhole is the shoulder seam.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import CaretreeError
+
+FABRIC, COLLAR, CUFF, ARMHOLE = range(4)  # face labels: plain fabric and the three contrasting bindings
+
+
+@dataclass(frozen=True, kw_only=True)
+class GownSpec:
+    """Cut and cloth of one gown.  Lengths are rounded to whole cells of the grid.
+
+    Attributes:
+        name: how the command line calls it.
+        spacing: edge of the grid [m].
+        front: cells between the two armholes.
+        back: cells of each back panel, from the armhole to the free edge.
+        hole: (across, down) cells of an armhole.
+        strap: cells between the upper edge and an armhole.
+        length: cells from collar to hem.
+        sleeve: cells of a sleeve.
+        mass: of the whole gown [kg].
+        elastic: spring stiffness [N/m].
+        bending: bending spring stiffness [N/m].
+        damping: spring damping [N s/m].
+        friction: Coulomb coefficient against skin and bed.
+    """
+
+    name: str
+    spacing: float = 0.055
+    front: int = 12
+    back: int = 4
+    hole: tuple[int, int] = (3, 4)
+    strap: int = 1
+    length: int = 17
+    sleeve: int = 4
+    mass: float = 0.32
+    elastic: float = 60.0
+    bending: float = 0.1
+    damping: float = 0.006
+    friction: float = 0.4
+
+    def __post_init__(self) -> None:
+        """Reject cuts that cannot be sewn.
+
+        Raises:
+            CaretreeError: a size is not positive or the armhole does not fit the length.
+        """
+        if min(self.spacing, self.mass, self.elastic) <= 0 or min(self.front, self.back, self.sleeve, *self.hole) < 1:
+            raise CaretreeError(f"gown '{self.name}': sizes, mass and stiffness must be positive")
+        if self.strap + self.hole[1] >= self.length:
+            raise CaretreeError(f"gown '{self.name}': an armhole of {self.hole[1]} cells does not fit "
+                                f"a length of {self.length} cells")
+
+
+GOWNS: dict[str, GownSpec] = {
+    spec.name: spec
+    for spec in (
+        GownSpec(name="medium"),
+        GownSpec(name="large", spacing=0.058, mass=0.38, elastic=65.0, bending=0.12, friction=0.35),
+        GownSpec(name="light", spacing=0.053, mass=0.27, elastic=50.0, bending=0.06, damping=0.005, friction=0.45),
+    )
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class GownMesh:
+    """Rest shape with its named landmarks.
+
+    Attributes:
+        spec: what it was cut from.
+        vertices: (V, 3) local frame [m].
+        faces: (F, 3) int, outward winding (normals towards +y).
+        labels: (F,) int, `FABRIC` or one of the bindings.
+        loops: `armhole_left`, `cuff_left`, `armhole_right`, `cuff_right` -> (n,) ordered vertex ids whose
+            right-hand normal points from body to hand.
+        collar: (n,) vertex ids of the upper edge from the wearer's left end to the right end.
+        corners: vertex ids of the collar corners, (left, right).
+        front: (n,) vertex ids of the front panel.
+    """
+
+    spec: GownSpec
+    vertices: np.ndarray
+    faces: np.ndarray
+    labels: np.ndarray
+    loops: dict[str, np.ndarray]
+    collar: np.ndarray
+    corners: tuple[int, int]
+    front: np.ndarray
+
+
+def build_gown(spec: GownSpec) -> GownMesh:
+    """Cut and sew a gown: pure geometry, no simulation."""
+    h = spec.spacing
+    across = spec.front + 2 * (spec.hole[0] + spec.back)
+    xs = (np.arange(across + 1) - across / 2) * h
+    zs = -np.arange(spec.length + 1) * h
+    holes = {"left": range(spec.back, spec.back + spec.hole[0]),
+             "right": range(across - spec.back - spec.hole[0], across - spec.back)}
+    rows = range(spec.strap, spec.strap + spec.hole[1])
+    cells = [(i, j) for j in range(spec.length) for i in range(across)
+             if not (j in rows and any(i in columns for columns in holes.values()))]
+    used = sorted({(i + a, j + b) for i, j in cells for a in (0, 1) for b in (0, 1)})
+    index = {key: n for n, key in enumerate(used)}
+    vertices = [np.array((xs[i], 0.0, zs[j])) for i, j in used]
+    faces: list[tuple[int, int, int]] = []
+    labels: list[int] = []
+    for i, j in cells:
+        a, b, c, d = index[i, j], index[i + 1, j], index[i, j + 1], index[i + 1, j + 1]
+        # alternate the diagonal: a sheet with all diagonals one way shears more easily the other way
+        faces += [(a, b, c), (b, d, c)] if (i + j) % 2 else [(a, b, d), (a, d, c)]
+        labels += [COLLAR if j == 0 else FABRIC] * 2
+    loops: dict[str, np.ndarray] = {}
+    for side, columns in holes.items():
+        loop = _hole_loop(index, columns, rows)
+        loops[f"armhole_{side}"] = np.array(loop)
+        ring = loop
+        for step in range(1, spec.sleeve + 1):
+            fresh = []
+            for k in loop:
+                fresh.append(len(vertices))
+                vertices.append(vertices[k] + (0.0, step * h, 0.0))
+            label = CUFF if step == spec.sleeve else ARMHOLE if step == 1 else FABRIC
+            for q in range(len(loop)):
+                a, b, c, d = ring[q], ring[(q + 1) % len(loop)], fresh[q], fresh[(q + 1) % len(loop)]
+                faces += [(a, b, d), (a, d, c)] if q % 2 else [(a, b, c), (b, d, c)]
+                labels += [label] * 2
+            ring = fresh
+        loops[f"cuff_{side}"] = np.array(ring)
+    front = [index[i, j] for i, j in used
+             if spec.back + spec.hole[0] <= i <= across - spec.back - spec.hole[0]]
+    return GownMesh(spec=spec, vertices=np.array(vertices), faces=np.array(faces), labels=np.array(labels), loops=loops,
+                    collar=np.array([index[i, 0] for i in range(across + 1)]),
+                    corners=(index[0, 0], index[across, 0]), front=np.array(front))
+
+
+def _hole_loop(index: dict[tuple[int, int], int], columns: range, rows: range) -> list[int]:
+    """Vertex ids around a hole; the right-hand normal is +y (z turns into x)."""
+    i0, i1, j0, j1 = columns.start, columns.stop, rows.start, rows.stop
+    path = ([(i, j0) for i in range(i0, i1)] + [(i1, j) for j in range(j0, j1)]
+            + [(i, j1) for i in range(i1, i0, -1)] + [(i0, j) for j in range(j1, j0, -1)])
+    return [index[key] for key in path]
+
+
+def edge_counts(faces: np.ndarray) -> Counter[tuple[int, int]]:
+    """How many faces share each undirected edge (1: a border)."""
+    pairs = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    return Counter((int(a), int(b)) for a, b in pairs)
