@@ -1,0 +1,1 @@
+"""Decides from a run's truth alone whether the person is dressed."""
