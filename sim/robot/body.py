@@ -1,0 +1,190 @@
+"""The robot as a body in a PyBullet world: loads the URDF, drives its motors, reads its joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pybullet
+
+from ..world import SIDES, Command, Side
+from . import model
+from .kinematics import Kinematics, default_kinematics
+from .servo import PERIOD, Servo
+from .urdf import urdf_path
+
+COLLISION_GROUP = 1 << 6  # the robot's own broad-phase group; what it may touch is the mask of `set_collisions`
+
+# Motor strength.  Baxter carries most of its arms' weight by springs on s1 and gravity compensation, so the motors
+# here get the rated torque (50 and 15 N m) on top of the most that gravity ever asks (about 75 and 15 N m).
+_ARM_FORCE = np.array((125.0, 125.0, 125.0, 125.0, 30.0, 30.0, 30.0))
+_BASE_FORCE = np.array((5000.0, 5000.0, 5000.0))
+_POSITION_GAIN = 0.3  # share of a position error taken out per physics step, beside the velocity feed-forward
+_CLOSED = 2e-3  # below this opening the fingertips touch [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointReading:
+    """What the joint sensors say.
+
+    Attributes:
+        arm_positions: (2, 7) [rad].
+        arm_velocities: (2, 7) [rad/s].
+        arm_efforts: (2, 7) motor torque, gravity included [N m].
+        head_pan: [rad].
+        pose_base_in_map: (3,) [m, m, rad], yaw within -pi and pi.
+        twist_base: (3,) in the base frame [m/s, m/s, rad/s].
+        gripper_opening: (2,) [m].
+        gripper_force: (2,) squeezing force [N].
+    """
+
+    arm_positions: np.ndarray
+    arm_velocities: np.ndarray
+    arm_efforts: np.ndarray
+    head_pan: float
+    pose_base_in_map: np.ndarray
+    twist_base: np.ndarray
+    gripper_opening: np.ndarray
+    gripper_force: np.ndarray
+
+
+class RobotBody:
+    """The robot in an existing PyBullet client.
+
+    Load it after the soft body.  Call `update(time)` before every physics step.  Its links are in their own
+    collision group and touch nothing until `set_collisions` says what; they never touch each other (the planner
+    checks that beforehand, and resting contacts would push the arms).
+
+    Args:
+        client: a `pybullet_utils.bullet_client.BulletClient`, or the `pybullet` module itself.
+        pose_base_in_map: (3,) where the base stands [m, m, rad].
+        arm_positions: (2, 7) posture to start in [rad]; the ready posture when omitted.
+        head_pan: [rad].
+        collision_mask: PyBullet group bits that hands and arms collide with.
+        time: the world's clock now [s].
+        kinematics: the model to use; one per process when omitted.
+
+    Attributes:
+        body: PyBullet's id of the robot.
+        links: link index by name, for anchors, contacts and rendering.
+        servo: the controller and its targets.
+    """
+
+    def __init__(self, client: Any, pose_base_in_map: np.ndarray, arm_positions: np.ndarray | None = None,
+                 head_pan: float = 0.0, *, collision_mask: int = 0, time: float = 0.0,
+                 kinematics: Kinematics | None = None) -> None:
+        self._client = client
+        self.kinematics = kinematics or default_kinematics()
+        arms = model.READY if arm_positions is None else np.asarray(arm_positions, float)
+        self.servo = Servo(self.kinematics, pose_base_in_map, arms, head_pan, time)
+        self.body: int = client.loadURDF(str(urdf_path()), useFixedBase=True)
+        joint_of: dict[str, int] = {}
+        self.links: dict[str, int] = {"map": -1}
+        for index in range(client.getNumJoints(self.body)):
+            info = client.getJointInfo(self.body, index)
+            joint_of[info[1].decode()] = index
+            self.links[info[12].decode()] = index
+        names = (*model.BASE_JOINTS, *model.COMMANDED_JOINTS, *model.ALL_FINGER_JOINTS)
+        self._joints = [joint_of[name] for name in names]
+        self._count = len(names)
+        self._gains = [_POSITION_GAIN] * self._count
+        self._velocity_gains = [1.0] * self._count
+        self._forces = np.concatenate((_BASE_FORCE, _ARM_FORCE, _ARM_FORCE, (50.0,), np.zeros(4)))
+        self._fingers = np.full(4, model.GRIPPER_STROKE / 2)
+        self._next_update = -np.inf
+        start = self._targets()[0]
+        for joint, value in zip(self._joints, start, strict=True):
+            client.resetJointState(self.body, joint, float(value))
+        client.changeDynamics(self.body, -1, linearDamping=0.0, angularDamping=0.0)
+        self.set_collisions(collision_mask)
+        self._drive()
+
+    def set_collisions(self, mask: int, links: tuple[str, ...] | None = None) -> None:
+        """Choose what the robot collides with: bodies whose PyBullet group is in `mask` (0: nothing).
+
+        Args:
+            mask: group bits; the other body's mask must hold `COLLISION_GROUP` too (PyBullet's default does).
+            links: only these links; all when omitted.
+
+        Raises:
+            KeyError: no such link.
+        """
+        for name in self.links if links is None else links:
+            self._client.setCollisionFilterGroupMask(self.body, self.links[name], COLLISION_GROUP, mask)
+
+    def command(self, command: Command) -> Command:
+        """Start a command; returns it as clipped (see `Servo.command`)."""
+        return self.servo.command(command)
+
+    def stop(self) -> None:
+        """End every motion now, braking at the acceleration limits; the grippers keep their opening."""
+        self.servo.stop()
+
+    def update(self, time: float) -> None:
+        """Set the motors for the physics step that starts at `time` [s]; cheap between control periods."""
+        if time + 1e-9 >= self._next_update:
+            self.servo.advance(time + PERIOD)
+            self._next_update = time + PERIOD
+            self._drive()
+
+    def read(self) -> JointReading:
+        """Joint positions, velocities and efforts as the sensors see them."""
+        states = self._client.getJointStates(self.body, self._joints)
+        q = np.array([state[0] for state in states])
+        dq = np.array([state[1] for state in states])
+        torque = np.array([state[3] for state in states])
+        yaw = float(q[2])
+        c, s = np.cos(yaw), np.sin(yaw)
+        fingers = q[18:22].reshape(2, 2)
+        # Each finger's motor pushes towards closed with minus its force; gravity acts on both alike and cancels.
+        squeeze = np.maximum(-torque[18:22].reshape(2, 2).mean(axis=1), 0.0)
+        # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
+        closed = (fingers.sum(axis=1) < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
+        squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
+        return JointReading(
+            arm_positions=q[3:17].reshape(2, 7), arm_velocities=dq[3:17].reshape(2, 7),
+            arm_efforts=torque[3:17].reshape(2, 7), head_pan=float(q[17]),
+            pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
+            twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
+            gripper_opening=fingers.sum(axis=1), gripper_force=squeeze)
+
+    def pose_hand_in_map(self, side: Side, reading: JointReading | None = None) -> np.ndarray:
+        """Pose (4, 4) of a hand by forward kinematics of the measured joints."""
+        reading = reading or self.read()
+        q = reading.arm_positions[SIDES.index(side)]
+        return self.kinematics.pose_hand_in_map(side, q, reading.pose_base_in_map)
+
+    def configuration(self, reading: JointReading | None = None) -> np.ndarray:
+        """Joint vector (nq,) of the measured joints, for `Kinematics.link_poses`."""
+        reading = reading or self.read()
+        return self.kinematics.configuration(reading.pose_base_in_map, reading.arm_positions, reading.head_pan,
+                                             reading.gripper_opening)
+
+    def apply_hand_force(self, side: Side, force_in_map: np.ndarray) -> None:
+        """Load a hand between the fingertips with a force (3,) [N] for the next physics step."""
+        link = self.links[f"{side}_hand"]
+        position = self._client.getLinkState(self.body, link)[4]
+        self._client.applyExternalForce(self.body, link, list(map(float, force_in_map)), position,
+                                       pybullet.WORLD_FRAME)
+
+    def _targets(self) -> tuple[np.ndarray, np.ndarray]:
+        """Motor targets (22,) and their rates, at the middle of the coming control period."""
+        servo = self.servo
+        c, s = np.cos(servo.pose_base_in_map[2]), np.sin(servo.pose_base_in_map[2])
+        vx, vy, rate = servo.twist_base
+        base_rate = np.array((c * vx - s * vy, s * vx + c * vy, rate))
+        position = np.concatenate((servo.pose_base_in_map, servo.positions, self._fingers))
+        velocity = np.concatenate((base_rate, servo.velocities, np.zeros(4)))
+        return position - 0.5 * PERIOD * velocity, velocity
+
+    def _drive(self) -> None:
+        aim = np.repeat(self.servo.gripper_opening / 2, 2)
+        step = model.GRIPPER_SPEED / 2 * PERIOD
+        self._fingers = self._fingers + np.clip(aim - self._fingers, -step, step)
+        self._forces[18:22] = np.repeat(self.servo.gripper_force_limit, 2)
+        positions, velocities = self._targets()
+        self._client.setJointMotorControlArray(
+            self.body, self._joints, pybullet.POSITION_CONTROL, targetPositions=positions.tolist(),
+            targetVelocities=velocities.tolist(), forces=self._forces.tolist(), positionGains=self._gains,
+            velocityGains=self._velocity_gains)

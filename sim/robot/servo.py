@@ -1,0 +1,206 @@
+"""The low-level controller without physics: commands in, smooth joint and base targets out.
+
+It knows the robot's limits and its own targets, nothing of the simulator, so the same motion comes out in
+PyBullet, in a scripted world and in a test.  Call `advance` every `PERIOD` of the world's time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..world import (
+    SIDES,
+    BaseVelocity,
+    Command,
+    GripperOpening,
+    HandTwist,
+    JointTrajectory,
+    WorldError,
+)
+from . import model
+from .kinematics import Kinematics
+from .twist import TwistTracker
+
+PERIOD = 0.01  # [s]
+
+
+@dataclass
+class _Motion:
+    """A timed motion of some commanded joints: samples every `PERIOD` from `start`."""
+
+    start: float
+    samples: np.ndarray  # (k, n)
+
+
+class Servo:
+    """Targets of the 14 arm joints, the head, the base and the grippers.
+
+    Attributes:
+        positions: (15,) joint targets, order `model.COMMANDED_JOINTS` [rad].
+        velocities: (15,) their rates [rad/s].
+        pose_base_in_map: (3,) base target [m, m, rad].
+        twist_base: (3,) its rate in the base frame [m/s, m/s, rad/s].
+        gripper_opening: (2,) wanted distance between the fingertips [m].
+        gripper_force_limit: (2,) [N].
+    """
+
+    def __init__(self, kinematics: Kinematics, pose_base_in_map: np.ndarray, arm_positions: np.ndarray,
+                 head_pan: float = 0.0, time: float = 0.0) -> None:
+        limits = [kinematics.limits[side] for side in SIDES]
+        low, high = kinematics.head_range
+        self._lower = np.concatenate([*(limit.lower for limit in limits), (low,)])
+        self._upper = np.concatenate([*(limit.upper for limit in limits), (high,)])
+        self._speed = np.concatenate([*(limit.velocity for limit in limits), (model.HEAD_VELOCITY,)])
+        self._acceleration = np.concatenate([*(limit.acceleration for limit in limits), (model.HEAD_ACCELERATION,)])
+        self.positions = np.clip(np.append(np.ravel(arm_positions), head_pan), self._lower, self._upper)
+        self.velocities = np.zeros(15)
+        self.pose_base_in_map = np.array(pose_base_in_map, float)
+        self.twist_base = np.zeros(3)
+        self.gripper_opening = np.full(2, model.GRIPPER_STROKE)
+        self.gripper_force_limit = np.full(2, 30.0)
+        self._time = time
+        self._owner: list[_Motion | None] = [None] * 15
+        self._column = np.zeros(15, int)  # where a joint stands in its motion's samples
+        self._twists = {side: TwistTracker(kinematics, side) for side in SIDES}
+        self._base_wanted = np.zeros(3)
+        self._base_until = -np.inf
+
+    @property
+    def moving(self) -> bool:
+        """Whether anything but the grippers is still in motion."""
+        return bool(np.abs(self.velocities).max() > 1e-4 or np.abs(self.twist_base).max() > 1e-4
+                    or any(owner is not None for owner in self._owner))
+
+    def command(self, command: Command) -> Command:
+        """Start a command, replacing what the same joints, hand or base were doing.
+
+        Returns:
+            The command as clipped to the limits.
+
+        Raises:
+            WorldError: a name, a shape or a number that no robot could follow.
+        """
+        if isinstance(command, JointTrajectory):
+            return self._start_trajectory(command)
+        if isinstance(command, HandTwist):
+            side = SIDES.index(_known_side(command.side))
+            sent = self._twists[command.side].start(command, self._time)
+            for joint in range(7 * side, 7 * side + 7):
+                self._owner[joint] = None
+            return sent
+        if isinstance(command, BaseVelocity):
+            wanted = _finite(command.velocity, (3,), "a base velocity")
+            speed = float(np.hypot(*wanted[:2]))
+            wanted[:2] *= min(1.0, model.BASE_VELOCITY[0] / max(speed, 1e-9))
+            wanted[2] = np.clip(wanted[2], -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
+            self._base_wanted, self._base_until = wanted, self._time + command.duration
+            return BaseVelocity(velocity=wanted.copy(), duration=command.duration)
+        if isinstance(command, GripperOpening):
+            n = SIDES.index(_known_side(command.side))
+            opening, force = _finite((command.opening, command.force_limit), (2,), "a gripper command")
+            self.gripper_opening[n] = np.clip(opening, 0.0, model.GRIPPER_STROKE)
+            self.gripper_force_limit[n] = np.clip(force, *model.GRIPPER_FORCE)
+            return GripperOpening(side=command.side, opening=float(self.gripper_opening[n]),
+                                  force_limit=float(self.gripper_force_limit[n]))
+        raise WorldError(f"the robot has no command {type(command).__name__}; it takes JointTrajectory, HandTwist, "
+                         "BaseVelocity and GripperOpening")
+
+    def stop(self) -> None:
+        """End every motion: all targets brake at their acceleration limits.  The grippers keep their opening."""
+        self._owner = [None] * 15
+        for twist in self._twists.values():
+            twist.cancel()
+        self._base_until = -np.inf
+
+    def advance(self, time: float) -> None:
+        """Move the targets on to `time` [s]; nothing happens when less than `PERIOD` has passed."""
+        while time - self._time >= PERIOD - 1e-9:
+            self._time += PERIOD
+            self._advance_base()
+            self._advance_arms()
+
+    def _advance_base(self) -> None:
+        wanted = self._base_wanted if self._time <= self._base_until + 1e-9 else np.zeros(3)
+        change = wanted - self.twist_base
+        length = float(np.hypot(*change[:2]))
+        change[:2] *= min(1.0, model.BASE_ACCELERATION[0] * PERIOD / max(length, 1e-12))
+        turn = model.BASE_ACCELERATION[1] * PERIOD
+        change[2] = min(max(change[2], -turn), turn)
+        self.twist_base = self.twist_base + change
+        yaw = self.pose_base_in_map[2] + 0.5 * self.twist_base[2] * PERIOD
+        c, s = np.cos(yaw), np.sin(yaw)
+        vx, vy, rate = self.twist_base
+        self.pose_base_in_map = self.pose_base_in_map + PERIOD * np.array((c * vx - s * vy, s * vx + c * vy, rate))
+
+    def _advance_arms(self) -> None:
+        limit = self._acceleration * PERIOD
+        wanted = self.velocities - np.clip(self.velocities, -limit, limit)  # brake, unless something drives the joint
+        for joint, motion in enumerate(self._owner):
+            if motion is None:
+                continue
+            n = round((self._time - motion.start) / PERIOD)
+            last = len(motion.samples) - 1
+            wanted[joint] = (motion.samples[min(n, last), self._column[joint]] - self.positions[joint]) / PERIOD
+            if n >= last and abs(wanted[joint]) < 1e-6:
+                self._owner[joint], wanted[joint] = None, 0.0
+        for n, side in enumerate(SIDES):
+            part = slice(7 * n, 7 * n + 7)
+            rates = self._twists[side].rates(self._time, self.positions[part], self.velocities[part],
+                                             self.pose_base_in_map, self.twist_base)
+            if rates is not None:
+                wanted[part] = rates
+        wanted = np.clip(wanted, -self._speed, self._speed)
+        target = np.clip(self.positions + wanted * PERIOD, self._lower, self._upper)
+        self.velocities = (target - self.positions) / PERIOD
+        self.positions = target
+
+    def _start_trajectory(self, command: JointTrajectory) -> JointTrajectory:
+        unknown = [name for name in command.joints if name not in model.COMMANDED_JOINTS]
+        if unknown or len(set(command.joints)) != len(command.joints) or not command.joints:
+            raise WorldError(f"a trajectory names each of its joints once, got {', '.join(command.joints) or 'none'}; "
+                             f"the robot has {', '.join(model.COMMANDED_JOINTS)}")
+        times = np.asarray(command.times, float)
+        if times.ndim != 1 or len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0).all():
+            raise WorldError(f"trajectory times start at 0 and increase over at least 2 points, "
+                             f"got {np.round(times[:4], 3).tolist()}")
+        positions = _finite(command.positions, (len(times), len(command.joints)), "trajectory positions")
+        index = np.array([model.COMMANDED_JOINTS.index(name) for name in command.joints])
+        positions = np.clip(positions, self._lower[index], self._upper[index])
+        motion = _interpolate(times, positions)
+        peak = float((np.abs(np.diff(motion, axis=0)) / PERIOD / self._speed[index]).max(initial=0.0))
+        if peak > 1.001:  # too fast for a motor: the same path, slower
+            times = times * peak
+            motion = _interpolate(times, positions)
+        entry = _Motion(start=self._time, samples=motion)
+        for column, joint in enumerate(index):
+            self._owner[joint] = entry
+            self._column[joint] = column
+            if joint < 14:
+                self._twists[SIDES[joint // 7]].cancel()
+        return JointTrajectory(joints=command.joints, times=times, positions=positions)
+
+
+def _interpolate(times: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Samples every `PERIOD` (k, n), smooth and without overshoot, at rest at both ends."""
+    from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+    slopes = PchipInterpolator(times, positions).derivative()(times)
+    slopes[0] = slopes[-1] = 0.0
+    grid = np.append(np.arange(0.0, times[-1], PERIOD), times[-1])
+    return CubicHermiteSpline(times, positions, slopes)(grid)
+
+
+def _finite(values, shape: tuple[int, ...], what: str) -> np.ndarray:
+    array = np.array(values, float)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise WorldError(f"{what} is {shape} finite numbers, got {array.shape}"
+                         + ("" if array.shape != shape else " with a number that is not finite"))
+    return array
+
+
+def _known_side(side: str) -> str:
+    if side not in SIDES:
+        raise WorldError(f"a hand is one of {', '.join(SIDES)}, got {side!r}")
+    return side

@@ -1,0 +1,1 @@
+"""Motions: inverse kinematics, timed trajectories, paths of the base."""
