@@ -1,8 +1,8 @@
 """Colours and light of the simulated room, varied with the seed.
 
 Assumption, written down because perception rests on it: as on many hospital gowns, the binding tapes
-contrast with the fabric (navy around the neck, red around the armholes, green at the cuffs) and the fabric is
-printed outside and plain inside.  Hue, brightness and light vary from run to run.
+contrast with the fabric (navy around the neck, magenta around the armholes, green at the cuffs; none shares its hue
+with skin, bed or robot) and the fabric is printed outside and plain inside.  Hue, brightness and light vary from run to run.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ Colour = tuple[float, float, float]  # red, green, blue, 0-255
 
 _NOMINAL: dict[str, tuple[float, float, float]] = {  # hue [degrees], saturation, value
     "gown_outside": (208, 0.46, 0.86),
-    "gown_inside": (208, 0.14, 0.94),
+    "gown_inside": (208, 0.19, 0.94),
     "collar": (228, 0.78, 0.36),
-    "armhole": (4, 0.80, 0.80),
+    "armhole": (325, 0.74, 0.82),
     "cuff": (140, 0.72, 0.58),
     "skin": (22, 0.42, 0.84),
-    "shorts": (250, 0.10, 0.25),
+    "shorts": (60, 0.08, 0.25),
     "sheet": (60, 0.03, 0.82),
     "bed_frame": (40, 0.03, 0.55),
     "floor": (40, 0.22, 0.72),
@@ -49,11 +49,12 @@ class Appearance:
 
 
 def draw_appearance(rng: np.random.Generator) -> Appearance:
-    """Draw hue within 8 degrees, brightness within 8 %, light intensity in 0.7-1.2 and a lamp on the ceiling."""
+    """Draw hue within 8 degrees, brightness within 8 % (skin 40 %), light intensity in 0.7-1.2 and a lamp on the ceiling."""
     colours: dict[str, Colour] = {}
     for name, (hue, saturation, value) in _NOMINAL.items():
         h = (hue + rng.uniform(-8, 8)) % 360 / 360
-        red, green, blue = colorsys.hsv_to_rgb(h, saturation * rng.uniform(0.92, 1.08), value * rng.uniform(0.92, 1.06))
+        darkest = 0.60 if name == "skin" else 0.92  # people differ more than laundry does
+        red, green, blue = colorsys.hsv_to_rgb(h, saturation * rng.uniform(0.92, 1.08), value * rng.uniform(darkest, 1.06))
         colours[name] = (255 * red, 255 * green, 255 * blue)
     lamp = np.array((rng.uniform(-0.8, 0.8), rng.uniform(-0.8, 0.8), 1.0))
     return Appearance(colours=colours, light=Light(direction_in_map=lamp / np.linalg.norm(lamp),
