@@ -40,11 +40,11 @@ class GownSpec:
 
     name: str
     spacing: float = 0.055
-    front: int = 12
-    back: int = 4
+    front: int = 14
+    back: int = 3
     hole: tuple[int, int] = (3, 4)
     strap: int = 1
-    length: int = 17
+    length: int = 18
     sleeve: int = 4
     mass: float = 0.32
     elastic: float = 60.0
@@ -86,8 +86,8 @@ class GownMesh:
         labels: (F,) int, `FABRIC` or one of the bindings.
         loops: `armhole_left`, `cuff_left`, `armhole_right`, `cuff_right` -> (n,) ordered vertex ids whose
             right-hand normal points from body to hand.
-        collar: (n,) vertex ids of the upper edge from the wearer's left end to the right end.
-        corners: vertex ids of the collar corners, (left, right).
+        collar: (n,) vertex ids of the neckline, the bound part of the upper edge, from the wearer's left to the right.
+        corners: vertex ids of the two ends of the neckline, where it meets the shoulder seams, (left, right).
         front: (n,) vertex ids of the front panel.
     """
 
@@ -110,6 +110,7 @@ def build_gown(spec: GownSpec) -> GownMesh:
     holes = {"left": range(spec.back, spec.back + spec.hole[0]),
              "right": range(across - spec.back - spec.hole[0], across - spec.back)}
     rows = range(spec.strap, spec.strap + spec.hole[1])
+    panel = range(spec.back + spec.hole[0], across - spec.back - spec.hole[0])
     cells = [(i, j) for j in range(spec.length) for i in range(across)
              if not (j in rows and any(i in columns for columns in holes.values()))]
     used = sorted({(i + a, j + b) for i, j in cells for a in (0, 1) for b in (0, 1)})
@@ -121,7 +122,7 @@ def build_gown(spec: GownSpec) -> GownMesh:
         a, b, c, d = index[i, j], index[i + 1, j], index[i, j + 1], index[i + 1, j + 1]
         # alternate the diagonal: a sheet with all diagonals one way shears more easily the other way
         faces += [(a, b, c), (b, d, c)] if (i + j) % 2 else [(a, b, d), (a, d, c)]
-        labels += [COLLAR if j == 0 else FABRIC] * 2
+        labels += [COLLAR if j == 0 and i in panel else FABRIC] * 2
     loops: dict[str, np.ndarray] = {}
     for side, columns in holes.items():
         loop = _hole_loop(index, columns, rows)
@@ -139,11 +140,10 @@ def build_gown(spec: GownSpec) -> GownMesh:
                 labels += [label] * 2
             ring = fresh
         loops[f"cuff_{side}"] = np.array(ring)
-    front = [index[i, j] for i, j in used
-             if spec.back + spec.hole[0] <= i <= across - spec.back - spec.hole[0]]
+    front = [index[i, j] for i, j in used if panel.start <= i <= panel.stop]
+    collar = np.array([index[i, 0] for i in range(panel.start, panel.stop + 1)])
     return GownMesh(spec=spec, vertices=np.array(vertices), faces=np.array(faces), labels=np.array(labels), loops=loops,
-                    collar=np.array([index[i, 0] for i in range(across + 1)]),
-                    corners=(index[0, 0], index[across, 0]), front=np.array(front))
+                    collar=collar, corners=(int(collar[0]), int(collar[-1])), front=np.array(front))
 
 
 def _hole_loop(index: dict[tuple[int, int], int], columns: range, rows: range) -> list[int]:

@@ -1,0 +1,245 @@
+"""The person: a life-sized manikin, supine, with arms that nothing but contact and the robot's grip moves.
+
+174 cm and 18 kg as the patient-care manikin of the paper.  The trunk rests on the bed and stays there (the
+robot could not move it); each arm is a passive chain of a three-axis shoulder and an elbow, with dry and
+viscous friction and joint limits, and a stiff hand.
+
+Joint zero: the arm points along the body towards the feet, palm to the thigh.  Angles of both sides have
+the same meaning: `abduction` swings the arm away from the body in the plane of the bed, `elevation` lifts
+it off the bed, `rotation` turns it about the upper arm, `flexion` bends the elbow (towards the front of
+the body at rotation 0, towards the midline at rotation -90 degrees).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from .errors import CaretreeError
+from .world import SIDES, Side
+
+ARM_AXES = ("abduction", "elevation", "rotation", "flexion")
+PERSON_PARTS = ("trunk", "left_upper_arm", "left_forearm", "left_hand",
+                "right_upper_arm", "right_forearm", "right_hand")
+ARM_SHARE = 0.05  # of body mass, upper arm + forearm + hand (Winter, Biomechanics of Human Movement, table 4.1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PersonSpec:
+    """Body size, arm pose and joint stiffness.  All lengths [m], angles [rad].
+
+    Attributes:
+        name: how the command line calls it.
+        scale: body size relative to 174 cm.
+        mass: [kg].
+        radii: upper arm, forearm, hand.
+        lengths: upper arm, forearm, hand.
+        pose: side -> (abduction, elevation, rotation, flexion) at the start.
+        dry_friction: (shoulder, elbow) torque that a joint resists with before it moves [N m].
+        viscous: torque per joint speed [N m s/rad].
+    """
+
+    name: str = "average"
+    scale: float = 1.0
+    mass: float = 18.0
+    radii: tuple[float, float, float] = (0.041, 0.036, 0.030)
+    lengths: tuple[float, float, float] = (0.28, 0.25, 0.17)
+    pose: dict[str, tuple[float, float, float, float]] = field(default_factory=lambda: {
+        "left": (0.75, -0.12, -1.3, 0.5), "right": (0.75, -0.12, -1.3, 0.5)})
+    dry_friction: tuple[float, float] = (2.6, 1.2)
+    viscous: float = 1.5
+
+    def __post_init__(self) -> None:
+        """Reject bodies outside the range the scene was built for.
+
+        Raises:
+            CaretreeError: a size, mass or friction out of range.
+        """
+        if not 0.85 <= self.scale <= 1.15:
+            raise CaretreeError(f"person '{self.name}': scale {self.scale} is outside 0.85 to 1.15")
+        if min(*self.radii, *self.lengths, self.mass, *self.dry_friction, self.viscous) <= 0:
+            raise CaretreeError(f"person '{self.name}': sizes, mass and friction must be positive")
+
+
+PERSONS: dict[str, PersonSpec] = {
+    spec.name: spec
+    for spec in (
+        PersonSpec(),
+        PersonSpec(name="small", scale=0.93, mass=15.5, dry_friction=(2.2, 1.0)),
+        PersonSpec(name="stiff", scale=1.03, mass=19.5, dry_friction=(3.6, 1.8), viscous=2.5),
+    )
+}
+
+_LIMITS = {"abduction": (-0.2, 1.9), "elevation": (-0.35, 1.6), "rotation": (-1.8, 1.8), "flexion": (0.0, 2.4)}
+
+
+def shoulder_in_map(spec: PersonSpec, side: Side, bed_top: float, bed_xy: tuple[float, float]) -> np.ndarray:
+    """Centre of a shoulder joint (3,) [m]; the person's left is at smaller x."""
+    sign = -1.0 if side == "left" else 1.0
+    return np.array([bed_xy[0] + sign * 0.20 * spec.scale, bed_xy[1] - 0.55, bed_top + 0.10])
+
+
+def trunk_capsules(spec: PersonSpec, bed_top: float,
+                   bed_xy: tuple[float, float]) -> list[tuple[np.ndarray, np.ndarray, float]]:
+    """Chest and belly, legs, neck and head as (end, end, radius) in the map frame [m]."""
+    s, (x, y), z = spec.scale, bed_xy, bed_top
+    out = []
+    for sign in (-1, 1):
+        out.append(((x + sign * 0.09 * s, y - 0.50, z + 0.11 * s), (x + sign * 0.09 * s, y, z + 0.11 * s), 0.11 * s))
+        out.append(((x + sign * 0.10 * s, y + 0.02, z + 0.08 * s),
+                    (x + sign * 0.12 * s, y + 0.80 * s, z + 0.06 * s), 0.075 * s))
+    out.append(((x, y - 0.55 - 0.08 * s, z + 0.11 * s), (x, y - 0.55 - 0.22 * s, z + 0.12 * s), 0.09 * s))
+    return [(np.array(a), np.array(b), radius) for a, b, radius in out]
+
+
+class Person:
+    """The manikin in a PyBullet client.  Truth: skills, trees and perception never see this object."""
+
+    def __init__(self, client: Any, spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float] = (0.0, 0.0)):
+        """Load the body and set its arm pose.
+
+        Args:
+            client: PyBullet module or BulletClient with a deformable world.
+            spec: who.
+            bed_top: height of the mattress [m].
+            bed_xy: middle of the bed in the map frame [m].
+        """
+        self.client, self.spec = client, spec
+        self.bed_top, self.bed_xy = bed_top, bed_xy
+        self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
+        self.trunk = [self._trunk_capsule(*ends, radius) for *ends, radius in trunk_capsules(spec, bed_top, bed_xy)]
+        self.body = self._load()
+        names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
+        self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
+        self.links = {side: [names[f"{side}_rotation"], names[f"{side}_flexion"], names[f"{side}_wrist"]]
+                      for side in SIDES}
+        for side in SIDES:
+            for j, angle in zip(self.joints[side], spec.pose[side], strict=True):
+                client.resetJointState(self.body, j, angle)
+        for link in range(-1, client.getNumJoints(self.body)):
+            client.changeDynamics(self.body, link, lateralFriction=0.5, linearDamping=0.0, angularDamping=0.0)
+            client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
+        self._friction()
+
+    def _friction(self) -> None:
+        shoulder, elbow = self.spec.dry_friction
+        for side in SIDES:
+            for k, j in enumerate(self.joints[side]):
+                # a velocity motor with target zero and a bounded force is dry friction
+                self.client.setJointMotorControl2(self.body, j, self.client.VELOCITY_CONTROL, targetVelocity=0.0,
+                                                  force=elbow if k == 3 else shoulder)
+                self.client.changeDynamics(self.body, j, jointDamping=self.spec.viscous)
+
+    def arms(self) -> np.ndarray:
+        """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""
+        out = np.empty((2, 4, 3))
+        for i, side in enumerate(SIDES):
+            upper, fore, hand = self.client.getLinkStates(self.body, self.links[side], computeForwardKinematics=1)
+            out[i, 0], out[i, 1], out[i, 2] = upper[4], fore[4], hand[4]
+            turn = np.array(self.client.getMatrixFromQuaternion(hand[5])).reshape(3, 3)
+            out[i, 3] = out[i, 2] + turn @ (0.0, self.spec.lengths[2] * self.spec.scale, 0.0)
+        return out
+
+    def torso_front(self) -> np.ndarray:
+        """(m, 6) points on the front of the trunk with outward normals, chest to waist, map frame [m]."""
+        s = self.spec.scale
+        out = []
+        for y in np.linspace(-0.50, -0.06, 12):
+            for x in np.linspace(-0.15, 0.15, 11) * s:
+                centre = np.copysign(0.09 * s, x) if abs(x) > 0.09 * s else x
+                lift = np.sqrt((0.11 * s) ** 2 - (x - centre) ** 2)
+                normal = np.array([x - centre, 0.0, lift]) / (0.11 * s)
+                out.append((self.bed_xy[0] + x, self.bed_xy[1] + y, self.bed_top + 0.11 * s + lift, *normal))
+        return np.array(out)
+
+    def radii(self) -> np.ndarray:
+        """(2, 3) capsule radii of upper arm, forearm, hand, left then right [m]."""
+        return np.tile(np.array(self.spec.radii) * self.spec.scale, (2, 1))
+
+    def joint_angles(self) -> dict[str, np.ndarray]:
+        """side -> (4,) angles in the order of `ARM_AXES` [rad]."""
+        return {side: np.array([s[0] for s in self.client.getJointStates(self.body, self.joints[side])])
+                for side in SIDES}
+
+    def _trunk_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> int:
+        c = self.client
+        middle, length, turn = _along(a, b)
+        shape = c.createCollisionShape(c.GEOM_CAPSULE, radius=radius, height=length)
+        # maximal coordinates: a plain rigid body, whose cloth contacts cost half of a multibody's
+        body = c.createMultiBody(0, shape, basePosition=middle.tolist(), useMaximalCoordinates=1,
+                                 baseOrientation=c.getQuaternionFromEuler(turn))
+        c.changeDynamics(body, -1, lateralFriction=0.5)
+        return body
+
+    def _load(self) -> int:
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "person.urdf"
+            path.write_text(ET.tostring(self._urdf(), encoding="unicode"))
+            return self.client.loadURDF(str(path), useFixedBase=True)
+
+    def _urdf(self) -> ET.Element:
+        spec, s = self.spec, self.spec.scale
+        robot = ET.Element("robot", name="person")
+        _link(robot, "trunk", spec.mass * (1 - 2 * ARM_SHARE))
+        share = np.array([0.54, 0.32, 0.14]) * spec.mass * ARM_SHARE  # upper arm, forearm, hand (Winter)
+        for side in SIDES:
+            sign = -1.0 if side == "left" else 1.0
+            # the arm's own frame: y along the arm, x away from the body (mirrored on the left by the joint axes)
+            axes = {"abduction": (0, 0, -sign), "elevation": (1, 0, 0), "rotation": (0, sign, 0), "flexion": (1, 0, 0)}
+            parent, offset = "trunk", self.shoulders[side]
+            lengths = np.array(spec.lengths) * s
+            for name, mass, length, radius in (("abduction", 0.02, 0, 0), ("elevation", 0.02, 0, 0),
+                                               ("rotation", share[0], lengths[0], spec.radii[0] * s),
+                                               ("flexion", share[1], lengths[1], spec.radii[1] * s)):
+                link = _link(robot, f"{side}_{name}", mass, length)
+                if length:
+                    _capsule(link, (0, 0, 0), (0, length, 0), radius)
+                _joint(robot, f"{side}_{name}", parent, f"{side}_{name}", offset, axes[name], _LIMITS[name])
+                parent, offset = f"{side}_{name}", np.array([0.0, length, 0.0])
+            hand = _link(robot, f"{side}_hand", share[2], lengths[2])
+            _capsule(hand, (0, 0, 0), (0, lengths[2], 0), spec.radii[2] * s)
+            _joint(robot, f"{side}_wrist", parent, f"{side}_hand", offset)
+        return robot
+
+
+def _link(robot: ET.Element, name: str, mass: float, length: float = 0.0) -> ET.Element:
+    link = ET.SubElement(robot, "link", name=name)
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=f"0 {length / 2} 0")
+    ET.SubElement(inertial, "mass", value=f"{mass}")
+    # at least a small ball's inertia: near-massless links of a chain make the solver stiff
+    across, along = max(mass * length**2 / 12, 5e-4), max(mass * 0.04**2 / 2, 3e-4)
+    ET.SubElement(inertial, "inertia", ixx=f"{across}", iyy=f"{along}", izz=f"{across}", ixy="0", ixz="0", iyz="0")
+    return link
+
+
+def _along(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, float, list[float]]:
+    """Middle, length and roll-pitch-yaw that turn a capsule along z into the one from a to b."""
+    d = b - a
+    length = float(np.linalg.norm(d))
+    return (a + b) / 2, length, [0.0, float(np.arccos(d[2] / length)), float(np.arctan2(d[1], d[0]))]
+
+
+def _capsule(link: ET.Element, a: Any, b: Any, radius: float) -> None:
+    middle, length, turn = _along(np.asarray(a, float), np.asarray(b, float))
+    for kind in ("collision", "visual"):
+        element = ET.SubElement(link, kind)
+        ET.SubElement(element, "origin", xyz=" ".join(map(str, middle)), rpy=" ".join(map(str, turn)))
+        ET.SubElement(ET.SubElement(element, "geometry"), "capsule", radius=f"{radius}", length=f"{length}")
+
+
+def _joint(robot: ET.Element, name: str, parent: str, child: str, offset: Any,
+           axis: tuple[float, ...] | None = None, limits: tuple[float, float] | None = None) -> None:
+    joint = ET.SubElement(robot, "joint", name=name, type="revolute" if axis else "fixed")
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=child)
+    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)))
+    if axis and limits:
+        ET.SubElement(joint, "axis", xyz=" ".join(map(str, axis)))
+        ET.SubElement(joint, "limit", lower=f"{limits[0]}", upper=f"{limits[1]}", effort="100", velocity="10")
