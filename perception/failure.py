@@ -9,7 +9,7 @@ from ..sim.errors import CaretreeError
 FailureKind = Literal["nothing_seen", "arm_lost", "sensor_stale", "sensor_lost", "person_moved", "cloth_slipped"]
 
 
-class PerceptionFailure(CaretreeError):
+class PerceptionFailure(CaretreeError):  # noqa: N818 it is an outcome, not a defect
     """An estimate could not be made.
 
     Args:

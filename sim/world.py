@@ -14,13 +14,15 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from .errors import CaretreeError
+
 Side = Literal["left", "right"]
 SIDES: tuple[Side, Side] = ("left", "right")
 CAMERAS = ("head", "left_hand", "right_hand")
 ARM_JOINTS: tuple[str, ...] = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")  # Baxter's names, shoulder to wrist
 
 
-class WorldError(Exception):
+class WorldError(CaretreeError):
     """A world could not do what was asked; the message is one sentence for the operator."""
 
 

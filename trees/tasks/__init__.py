@@ -1,1 +1,129 @@
-"""Tasks by name, one file each."""
+"""Tasks by name, one file each: a module with `build(context, **params)` that returns the tree's root.
+
+A user's own file works the same: `caretree run path/to/task.py`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import pkgutil
+import sys
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from ...sim.errors import CaretreeError
+from ...skills.context import Context
+
+
+class TaskError(CaretreeError):
+    """A task that does not exist or cannot be built; says `file:line` where it can."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a run does.
+
+    Attributes:
+        name: as given on the command line.
+        function: `build(context, **params)` of its module.
+        file: where it is written.
+    """
+
+    name: str
+    function: Callable[..., Behaviour]
+    file: Path
+
+    def build(self, context: Context, **params: Any) -> Behaviour:
+        """The tree, fresh.
+
+        Raises:
+            TaskError: the file's own code fails, or returns no tree.
+        """
+        try:
+            inspect.signature(self.function).bind(context, **params)
+        except TypeError as error:
+            raise TaskError(f"{self._line()}: task {self.name!r}: build(context, ...) {error}") from error
+        try:
+            root = self.function(context, **params)
+        except Exception as error:
+            raise TaskError(_located(self.file, error)) from error
+        if not isinstance(root, Behaviour):
+            raise TaskError(f"{self._line()}: build() returned {type(root).__name__}, but a tree's root is asked for")
+        return root
+
+    def _line(self) -> str:
+        code = getattr(self.function, "__code__", None)
+        return f"{self.file}:{code.co_firstlineno if code else 1}"
+
+
+def task_names() -> list[str]:
+    """Names of the tasks that come with the package."""
+    return sorted(info.name for info in pkgutil.iter_modules(__path__) if not info.name.startswith("_"))
+
+
+def load_task(name: str) -> Task:
+    """The task called `name`, or written in the file of that path.
+
+    Raises:
+        TaskError: there is none, or its file is broken.
+    """
+    path = Path(name)
+    if path.suffix == ".py" or path.parent != Path("."):
+        return _load_file(path)
+    if name not in task_names():
+        raise TaskError(f"unknown task {name!r}; there are {', '.join(task_names())}, or give the path of a .py file")
+    module_name = f"{__name__}.{name}"
+    spec = importlib.util.find_spec(module_name)
+    file = _shown(Path(spec.origin)) if spec is not None and spec.origin else Path(f"{name}.py")
+    try:
+        module = importlib.import_module(module_name)
+    except Exception as error:
+        raise TaskError(_located(file, error)) from error
+    return _task(name, module, file)
+
+
+def _load_file(path: Path) -> Task:
+    if not path.is_file():
+        raise TaskError(f"task file {path} does not exist; named tasks are {', '.join(task_names())}")
+    try:
+        code = compile(path.read_text(encoding="utf-8"), str(path), "exec")
+        module = ModuleType(f"caretree_task_{path.stem}")
+        module.__file__ = str(path)
+        sys.modules[module.__name__] = module  # dataclasses look their module up there
+        exec(code, module.__dict__)  # running the user's own file is the point
+    except Exception as error:
+        raise TaskError(_located(path, error)) from error
+    return _task(path.stem, module, path)
+
+
+def _task(name: str, module: ModuleType, file: Path) -> Task:
+    build: Any = getattr(module, "build", None)
+    if not callable(build):
+        raise TaskError(f"{file}:1: a task needs a function build(context) that returns the tree")
+    return Task(name, build, file)
+
+
+def _located(file: Path, error: Exception) -> str:
+    """One sentence for an error of a task file, with the last line of that file it passed through."""
+    if isinstance(error, SyntaxError) and error.filename and Path(error.filename).name == file.name:
+        return f"{file}:{error.lineno or 1}: {error.msg}"
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
+             if Path(frame.filename).name == file.name and frame.lineno]
+    text = str(error) if isinstance(error, CaretreeError) else f"{type(error).__name__}: {error}"
+    return f"{file}:{lines[-1] if lines else 1}: {text}"
+
+
+def _shown(path: Path) -> Path:
+    """The path from here if it lies below, else as it is."""
+    try:
+        return path.relative_to(Path.cwd())
+    except ValueError:
+        return path

@@ -1,0 +1,66 @@
+"""Why a skill failed: the value is the sentence the operator reads, the name is what recoveries are chosen by."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+
+class Reason(enum.Enum):
+    """Every cause of failure that a tree can react to."""
+
+    UNREACHABLE = "The hand cannot reach the place it was asked to go to."
+    PATH_BLOCKED = "There is no free way for the base to the waypoint."
+    NOTHING_SEEN = "The camera does not show what was looked for."
+    GRASP_MISSED = "The fingers closed on nothing."
+    MULTI_LAYER = "The fingers hold more than one layer of cloth."
+    WRONG_SIDE = "The gown shows the wrong side."
+    CLOTH_SLIPPED = "The cloth slipped out of the fingers."
+    SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."
+    ARM_LOST = "The person's arm is no longer tracked."
+    ARM_SLIPPED = "The person's arm slipped out of the grip."
+    FORCE_LIMIT = "The load on a hand passed its limit."
+    SPEED_LIMIT = "A hand moved faster than is allowed near the person."
+    TIMEOUT = "It took longer than allowed."
+    SENSOR_LOST = "A sensor gave nothing."
+    SENSOR_STALE = "A sensor repeats old values."
+    COMMAND_LOST = "A command was sent and nothing moved."
+    PERSON_MOVED = "The person is no longer where they were seen."
+    MOTION_BLOCKED = "A motion did not come to its end or would not stop."
+    PRECONDITION = "The stage could not begin because what it needs does not hold."
+    INTERRUPTED = "The operator interrupted the run."
+    INTERNAL_ERROR = "The program made an error."
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One failure on its way up the tree.
+
+    Attributes:
+        reason: what recoveries are chosen by.
+        detail: numbers and names for the log, one clause; may be empty.
+        node: name of the node it came from.
+    """
+
+    reason: Reason
+    detail: str = ""
+    node: str = ""
+
+    def sentence(self) -> str:
+        """What the operator reads."""
+        where = f" [{self.node}]" if self.node else ""
+        return f"{self.reason.value}{where}" + (f" {self.detail}" if self.detail else "")
+
+
+class SkillFailure(Exception):  # noqa: N818 it is the outcome of a skill, not a defect
+    """Raised inside a skill to end it as failed.
+
+    Args:
+        reason: why.
+        detail: one clause for the log.
+    """
+
+    def __init__(self, reason: Reason, detail: str = "") -> None:
+        super().__init__(f"{reason.value} {detail}".strip())
+        self.reason = reason
+        self.detail = detail
