@@ -30,7 +30,7 @@ from typing import Any, ClassVar, Literal
 import py_trees
 from py_trees.common import Status
 
-from ..perception.failure import PerceptionFailure
+from ..perception.errors import PerceptionFailure
 from ..sim.world import SensorLost
 from .context import Context
 from .handle import WorldHandle
@@ -144,7 +144,8 @@ class Skill(py_trees.behaviour.Behaviour):
         except SkillFailure as stop:
             self.failure = Failure(stop.reason, stop.detail, self.name)
         except PerceptionFailure as stop:
-            self.failure = Failure(Reason[stop.kind.upper()], stop.detail, self.name)
+            reason = Reason.__members__.get(stop.problem.name, Reason.NOTHING_SEEN)
+            self.failure = Failure(reason, str(stop), self.name)
         except SensorLost as stop:
             self.failure = Failure(Reason.SENSOR_LOST, str(stop), self.name)
         except Exception as error:

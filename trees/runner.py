@@ -94,7 +94,8 @@ class Run:
 
     def __init__(self, task: Task, world: World, *, seed: int = 0, rate_hz: float = 15.0,
                  recorder: EventSink | None = None, on_progress: Callable[[Progress], None] | None = None,
-                 perception: Perception | None = None, params: Mapping[str, Any] | None = None, limits: Limits = DEFAULT) -> None:
+                 perception: Perception | None = None, params: Mapping[str, Any] | None = None,
+                 limits: Limits = DEFAULT) -> None:
         if not rate_hz > 0:
             raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
         self.world = world

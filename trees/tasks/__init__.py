@@ -108,7 +108,7 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
     build: Any = getattr(module, "build", None)
     if not callable(build):
         raise TaskError(f"{file}:1: a task needs a function build(context) that returns the tree")
-    return Task(name, build, file)
+    return Task(name, build, file)  # pyright: ignore[reportArgumentType] what it returns is checked when it is called
 
 
 def _located(file: Path, error: Exception) -> str:
