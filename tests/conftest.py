@@ -80,8 +80,11 @@ def make_record() -> Callable[..., Path]:
             recorder.frame(frame(static, index))
             if index % 10 == 0:
                 stage = "ABCD"[min(3, index // 25)]
-                recorder.event({"t": round(index * FRAME_PERIOD, 6), "path": f"dressing/{stage}/pull_along_arm",
-                                "status": "RUNNING"})
+                pulled = "FAILURE" if index == 40 else "SUCCESS"
+                for leaf, status, offset in (("look", "RUNNING", 0.0), ("look", "SUCCESS", 0.2),
+                                             ("pull", "RUNNING", 0.2), ("pull", pulled, 0.7)):
+                    recorder.event({"t": round(index * FRAME_PERIOD + offset, 6), "kind": "node",
+                                    "node": f"dressing/{stage}/{leaf}", "status": status})
             if pictures and index % 2 == 0:
                 image = np.full((48, 64, 3), 2 * index, dtype=np.uint8)
                 recorder.picture(index * FRAME_PERIOD, image)

@@ -1,0 +1,100 @@
+"""The report holds what an operator needs and survives a record that lacks it."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import pytest
+from caretree.sim.errors import CaretreeError
+from caretree.sim.record import RunResult
+from caretree.sim.recorder import Recorder
+from caretree.trees.report import write_report
+
+
+class Tags(HTMLParser):
+    """Fails on tags that are not closed in order."""
+
+    VOID = ("meta", "img", "br")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.sources: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.sources += [value or "" for name, value in attrs if name == "src"]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def parsed(page: str) -> Tags:
+    tags = Tags()
+    tags.feed(page)
+    assert not tags.open
+    return tags
+
+
+def test_whole_page(make_record, tmp_path):
+    page = write_report(make_record(tmp_path / "run", seed=7, pictures=True)).read_text()
+    sources = parsed(page).sources
+    assert "The person is dressed." in page
+    assert "dressing · seed 7 · world bullet" in page
+    assert "sleeve caught on the hand" in page
+    assert re.search(r"left armhole up the upper arm</td><td class=n>0\.833", page)
+    assert "physics" in page
+    assert "real-time factor" in page
+    assert [source[:14] for source in sources].count("data:image/png") == 2
+    assert [source[:15] for source in sources].count("data:image/jpeg") == 6  # start, four stages, end
+    assert "video.mp4" in sources
+    assert "Not available" not in page
+    assert not re.search(r'(src|href)="(https?:)?//', page)  # nothing is fetched from elsewhere
+
+
+def test_claim_against_the_geometry_is_shown(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    run = json.loads((directory / "run.json").read_text())
+    (directory / "run.json").write_text(json.dumps(run | {"outcome": "failure", "reason": "It <b>seems</b> off."}))
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert "The tree claimed failure" in page
+    assert "It &lt;b&gt;seems&lt;/b&gt; off." in page
+
+
+def test_record_without_truth_or_video(tmp_path):
+    recorder = Recorder(tmp_path, task="dressing", seed=0, world="scripted")
+    recorder.finish(RunResult(outcome="safe_stop", reason="The operator stopped it.", sim_time_s=1.0))
+    page = write_report(tmp_path).read_text()
+    parsed(page)
+    assert "safe stop" in page
+    assert "holds no truth.npz" in page
+    assert "No video was recorded" in page
+
+
+def test_run_cut_short(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    run = json.loads((directory / "run.json").read_text())
+    (directory / "run.json").write_text(json.dumps({key: run[key] for key in ("task", "seed", "world")}))
+    (directory / "truth.npz").write_bytes(b"PK")
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert "cut short" in page
+    assert "is damaged" in page
+
+
+def test_folder_without_run_is_one_sentence(tmp_path):
+    with pytest.raises(CaretreeError, match=r"holds no run\.json"):
+        write_report(tmp_path)
+
+
+def test_stage_that_never_ran_is_listed(make_record, tmp_path):
+    from caretree.sim.record import StageResult
+
+    stages = (StageResult(name="A", status="failure", attempts=3, t_start=0.0, t_end=1.0, reason="missed"),
+              StageResult(name="B", status="not_run"))
+    result = RunResult(outcome="failure", reason="It missed.", stages=stages, sim_time_s=7.28)
+    page = write_report(make_record(tmp_path / "run", result=result)).read_text()
+    assert "not_run" in page
+    parsed(page)
