@@ -73,3 +73,15 @@ def clusters(points: np.ndarray, gap: float) -> np.ndarray:
     rank = np.empty(count, dtype=int)
     rank[order] = np.arange(count)
     return rank[labels]
+
+
+def geodesic(points: np.ndarray, start: int, gap: float) -> np.ndarray:
+    """Distance (n,) along the surface from point `start` [m]; steps are at most `gap`, infinite where none lead."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import dijkstra
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(points).query_pairs(gap, output_type="ndarray")
+    lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    graph = coo_matrix((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
+    return dijkstra(graph.tocsr(), directed=False, indices=start)

@@ -24,7 +24,7 @@ class Surface(enum.IntEnum):
     SKIN = 6
 
 
-GOWN = (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR, Surface.ARMHOLE, Surface.CUFF)
+GOWN_SURFACES = (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR, Surface.ARMHOLE, Surface.CUFF)
 
 # surface -> hue from, to [degrees], saturation from, to, lowest value; later rows win
 _BANDS: tuple[tuple[Surface, float, float, float, float, float], ...] = (

@@ -78,3 +78,57 @@ class LayerCount(Estimate):
 
     side: Side
     layers: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class CollarLine(Estimate):
+    """The neck binding as it is seen, from one end of the image to the other.
+
+    Attributes:
+        points_in_map: (n, 3) along the binding [m].
+        whole: (2,) bool, whether the first and last point are ends of what is seen inside the image, not its border.
+        length: along the points [m].
+        straightness: distance between the ends divided by the length; near 1 when the gown is stretched out.
+    """
+
+    points_in_map: np.ndarray
+    whole: np.ndarray
+    length: float
+    straightness: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SleeveOpening(GraspPoint):
+    """A grasp on the rim of an armhole, with what is seen of the rim.
+
+    Attributes:
+        ring_points_in_map: (n, 3) of the armhole's binding [m].
+        centre_in_map: (3,) of the opening [m].
+    """
+
+    ring_points_in_map: np.ndarray
+    centre_in_map: np.ndarray
+
+
+Primitive = Literal["move_left", "direct", "move_right"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PreGrasp(Estimate):
+    """A pre-grasp manipulation: where to go in with open fingers, and how to isolate the cloth before closing.
+
+    Attributes:
+        primitive: sweep 5 cm to the left of the view, or to the right, or grasp at once.
+        view: index of the frame it was chosen from.
+        position_in_map: (3,) middle of the open fingertips at the start [m].
+        approach_in_map: (3,) unit vector, horizontal.
+        sweep_in_map: (3,) displacement of the sweep, zero for `direct` [m].
+        corner_in_map: (3,) the collar corner as it was seen [m].
+    """
+
+    primitive: Primitive
+    view: int
+    position_in_map: np.ndarray
+    approach_in_map: np.ndarray
+    sweep_in_map: np.ndarray
+    corner_in_map: np.ndarray

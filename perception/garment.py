@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..sim.world import Frame
-from .colours import GOWN, Surface, surfaces
+from .colours import GOWN_SURFACES, Surface, surfaces
 from .errors import PerceptionFailure, Problem
 from .estimates import GarmentMask, GownSide
 
@@ -21,7 +21,7 @@ def gown_labels(frame: Frame) -> np.ndarray:
     import cv2
 
     labels = surfaces(frame.rgb)
-    cloth = np.isin(labels, GOWN).astype(np.uint8)
+    cloth = np.isin(labels, GOWN_SURFACES).astype(np.uint8)
     closed = cv2.morphologyEx(cloth, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     count, patches, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
     smallest = max(20, _SMALLEST * labels.size)
