@@ -1,0 +1,42 @@
+"""What the pages say holds: links lead somewhere and Python blocks run."""
+
+import re
+from pathlib import Path
+
+import pytest
+from caretree.sim.scripted import ScriptedWorld
+from caretree.skills.skill import Skill
+from caretree.trees.runner import run
+from caretree.trees.tasks import Task
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
+        if "://" not in target:
+            assert (page.parent / target).exists(), target
+
+
+BLOCKS = [(page.name, code) for page in PAGES for code in re.findall(r"```python\n(.*?)```", page.read_text(), re.S)]
+
+
+@pytest.fixture
+def registry():
+    """Skills of the pages are no skills of the package: they leave the registry again."""
+    before = list(Skill.registry)
+    yield
+    Skill.registry[:] = before
+
+
+@pytest.mark.usefixtures("registry")
+@pytest.mark.parametrize(("page", "code"), BLOCKS, ids=[page for page, _ in BLOCKS])
+def test_python_blocks_run(page, code):
+    names: dict[str, object] = {"__name__": "page"}
+    exec(compile(code, page, "exec"), names)
+    build = names.get("build")
+    if callable(build):
+        result = run(Task("page", build, ROOT / page), ScriptedWorld())
+        assert result.outcome == "success", result.reason

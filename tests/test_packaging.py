@@ -1,0 +1,56 @@
+"""The hand-written lists of the package agree with what is on disk."""
+
+import configparser
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = ("sim", "perception", "learning", "skills", "trees")
+
+
+def setup_cfg() -> configparser.ConfigParser:
+    config = configparser.ConfigParser()
+    config.read(ROOT / "setup.cfg")
+    return config
+
+
+def listed(text: str) -> list[str]:
+    return [line.strip() for line in text.splitlines() if line.strip() and not line.strip().startswith("#")]
+
+
+def name_of(requirement: str) -> str:
+    return re.split(r"[\[=<>!~ ;]", requirement)[0].lower().replace("_", "-")
+
+
+def test_every_package_is_listed_by_hand():
+    on_disk = {init.parent.relative_to(ROOT) for folder in FOLDERS for init in (ROOT / folder).rglob("__init__.py")}
+    options = setup_cfg()["options"]
+    packages = {f"caretree.{'.'.join(path.parts)}": path.as_posix() for path in on_disk}
+    assert set(listed(options["packages"])) == set(packages)
+    places = dict(re.split(r"\s*=\s*", line) for line in listed(options["package_dir"]))
+    assert places == packages
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_every_folder_is_typed(folder):
+    assert (ROOT / folder / "py.typed").exists()
+    assert "py.typed" in setup_cfg()["options.package_data"][f"caretree.{folder}"]
+
+
+def test_lock_pins_everything_asked_for():
+    options = setup_cfg()
+    pins = dict(line.split("==") for line in listed((ROOT / "requirements.lock").read_text()))
+    pinned = {name_of(name) for name in pins}
+    asked = listed(options["options"]["install_requires"]) + listed(options["options.extras_require"]["dev"])
+    assert {name_of(requirement) for requirement in asked} <= pinned
+    for requirement in asked:
+        if "==" in requirement:
+            name, version = requirement.split("#")[0].strip().split("==")
+            assert {name_of(pin): pins[pin] for pin in pins}[name_of(name)] == version
+
+
+def test_one_version():
+    version = setup_cfg()["metadata"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
