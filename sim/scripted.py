@@ -84,6 +84,7 @@ class ScriptedWorld(World):
         kinematics: anything with `pose_hand_in_map` and `jacobian_hand_in_map`; linear arms by default.
 
     Attributes:
+        time: the clock, whose `time` may be set.
         load: side -> force and torque (6,) on that hand in the map frame [N], [N m]; set it at will.
         between_fingers: side -> thickness of what the fingers meet when they close [m]; 0 for nothing.
         person_offset: (3,) how far the person has moved [m]; tests and estimators may read it.
@@ -92,8 +93,8 @@ class ScriptedWorld(World):
 
     def __init__(self, *, seed: int = 0, frames: Callable[[str, float], Frame] | None = None,
                  room: RoomMap | None = None, kinematics: Any = None) -> None:
-        self._time = VirtualClock(self._advance_to)
-        self.clock = self._time
+        self.time = VirtualClock(self._advance_to)
+        self.clock = self.time
         self.room = room or scripted_room()
         self.kinematics = kinematics or LinearArms()
         self.load: dict[Side, np.ndarray] = {side: np.zeros(6) for side in SIDES}
@@ -189,11 +190,11 @@ class ScriptedWorld(World):
         self._motions = [motion for motion in self._motions if not slots & set(motion.slots)]
 
     def _advance_to(self, time: float) -> None:
-        while self._time.time < time - 1e-9:
-            self._step(min(STEP, time - self._time.time))
+        while self.time.time < time - 1e-9:
+            self._step(min(STEP, time - self.time.time))
 
     def _step(self, dt: float) -> None:
-        now = self._time.time + dt
+        now = self.time.time + dt
         before = self._q.copy()
         for motion in list(self._motions):
             for column, (arm, joint) in enumerate(motion.slots):
@@ -206,20 +207,20 @@ class ScriptedWorld(World):
                 self._motions.remove(motion)
         for side, twist in list(self._twists.items()):
             arm = SIDES.index(side)
-            moved = min(self._twist_until[side], now) - self._time.time
+            moved = min(self._twist_until[side], now) - self.time.time
             if moved <= 1e-9:
                 del self._twists[side]
                 continue
             jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
             self._q[arm] += np.linalg.pinv(jacobian, rcond=1e-3) @ np.asarray(twist.twist_in_map, float) * moved
-        driven = max(min(self._base_until, now) - self._time.time, 0.0)
+        driven = max(min(self._base_until, now) - self.time.time, 0.0)
         c, s = np.cos(self._base[2]), np.sin(self._base[2])
         vx, vy, turn = self._base_velocity
         self._base += driven * np.array((c * vx - s * vy, s * vx + c * vy, turn))
         goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
         self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
         self._dq = (self._q - before) / dt
-        self._time.time = now
+        self.time.time = now
 
     # -- effects of faults -------------------------------------------------------------------------------
 

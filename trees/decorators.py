@@ -198,15 +198,15 @@ class Timeout(Wrapper):
         if not seconds > 0:
             raise TreeError(f"seconds of {name!r} is {seconds}, but must be above 0")
         self.seconds = seconds
-        self._end = 0.0
+        self.ends = 0.0  # [s] world clock at which time is up
 
     def initialise(self) -> None:
         """Start the clock."""
-        self._end = self.now() + self.seconds
+        self.ends = self.now() + self.seconds
 
     def advance(self) -> Generator[Behaviour, None, Status]:
         """One tick of the body unless time is up."""
-        if self.now() >= self._end:
+        if self.now() >= self.ends:
             self.failure = Failure(Reason.TIMEOUT, f"allowed {self.seconds:g} s", self.name)
             self.body.stop(Status.INVALID)
             return Status.FAILURE

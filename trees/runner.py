@@ -21,9 +21,10 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ..sim.errors import CaretreeError
+from ..sim.faults import FaultyWorld
 from ..sim.record import RunResult
 from ..sim.world import SIDES, GripperOpening, World, WorldError
-from ..skills.context import Context, Perception, Phase
+from ..skills.context import Context, Perception
 from ..skills.reasons import Failure, Reason
 from ..skills.skill import Skill
 from .decorators import FailSafe, Stage
@@ -42,14 +43,6 @@ class EventSink(Protocol):
 
     def event(self, event: Mapping[str, Any]) -> None:
         """Append one event to the trace on disk."""
-        ...
-
-
-class Faults(Protocol):
-    """A world that wants to know where the tree is (sim.faults.FaultyWorld)."""
-
-    def on_phase(self, node: str, phase: Phase) -> None:
-        """Called just before a skill starts, steps again or begins to cancel."""
         ...
 
 
@@ -113,13 +106,20 @@ class Run:
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self._timing = {"tree": 0.0, "world": 0.0}
-        if hasattr(world, "on_phase"):
-            self.context.observers.append(world.on_phase)  # type: ignore[attr-defined] a Faults world
+        if isinstance(world, FaultyWorld):
+            self._check_fault_nodes(world)
+            self.context.observers.append(world.on_phase)
 
     def request_stop(self, reason: Reason = Reason.INTERRUPTED, detail: str = "") -> None:
         """Ask for the safe stop at the next tick, as an operator's button does."""
         if self._stop is None:
             self._stop = Failure(reason, detail, "operator")
+
+    def _check_fault_nodes(self, world: FaultyWorld) -> None:
+        skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
+        for spec in world.faults:
+            if spec.node not in skills:
+                raise CaretreeError(f"fault {spec} names no skill of this task; there are {', '.join(skills)}")
 
     def run(self) -> RunResult:
         """Tick to the end and make safe.  Raises only what the recorder or the world's owner must know."""

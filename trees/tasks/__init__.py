@@ -1,6 +1,8 @@
 """Tasks by name, one file each: a module with `build(context, **params)` that returns the tree's root.
 
-A user's own file works the same: `caretree run path/to/task.py`.
+A module may also have `scripted(seed) -> (ScriptedWorld, Perception or None)`: the world on which `caretree
+check`, `caretree inject` and `--world scripted` try the task.  A user's own file works the same: `caretree run
+path/to/task.py`.
 """
 
 from __future__ import annotations
@@ -15,12 +17,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 from py_trees.behaviour import Behaviour
 
 from ...sim.errors import CaretreeError
-from ...skills.context import Context
+from ...sim.scripted import ScriptedWorld
+from ...sim.world import World
+from ...skills.context import Context, Perception
 
 
 class TaskError(CaretreeError):
@@ -35,11 +39,26 @@ class Task:
         name: as given on the command line.
         function: `build(context, **params)` of its module.
         file: where it is written.
+        script: `scripted(seed)` of its module, if it has one: the scripted world and estimators to try it on.
     """
 
     name: str
     function: Callable[..., Behaviour]
     file: Path
+    script: Callable[[int], tuple[World, Perception | None]] | None = None
+
+    def scripted(self, seed: int) -> tuple[World, Perception | None]:
+        """A scripted world for this task, and its scripted estimators.
+
+        Raises:
+            TaskError: the file's own code fails.
+        """
+        if self.script is None:
+            return ScriptedWorld(seed=seed), None
+        try:
+            return self.script(seed)
+        except Exception as error:
+            raise TaskError(_located(self.file, error)) from error
 
     def build(self, context: Context, **params: Any) -> Behaviour:
         """The tree, fresh.
@@ -105,10 +124,10 @@ def _load_file(path: Path) -> Task:
 
 
 def _task(name: str, module: ModuleType, file: Path) -> Task:
-    build: Any = getattr(module, "build", None)
+    build = getattr(module, "build", None)
     if not callable(build):
         raise TaskError(f"{file}:1: a task needs a function build(context) that returns the tree")
-    return Task(name, build, file)  # pyright: ignore[reportArgumentType] what it returns is checked when it is called
+    return Task(name, cast(Callable[..., Behaviour], build), file, getattr(module, "scripted", None))
 
 
 def _located(file: Path, error: Exception) -> str:

@@ -1,0 +1,124 @@
+"""The command line: `caretree run|check|inject|replay|trials|gap|learn`.
+
+A user's mistake is answered by one sentence and exit status 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.util
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from ..sim.errors import CaretreeError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence, without the usage text."""
+
+    def error(self, message: str) -> NoReturn:
+        """Turn argparse's error into ours."""
+        raise CaretreeError(f"{message} (see {self.prog} --help)")
+
+
+def _seed(text: str) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) >= 2**32:
+        raise argparse.ArgumentTypeError(f"{text!r} is no seed: a whole number from 0 to {2**32 - 1} is asked for")
+    return int(text)
+
+
+def _count(text: str) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r}: a whole number from 1 is asked for")
+    return int(text)
+
+
+def _world_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--world", default="bullet", choices=("bullet", "scripted", "ros1"), help="default: bullet")
+    parser.add_argument("--gown", metavar="NAME", help="which gown (default: the seed decides)")
+    parser.add_argument("--person", metavar="NAME", help="which person (default: the seed decides)")
+    parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
+    parser.add_argument("--stage", metavar="NAME", help="this stage alone, from a world prepared for it")
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of all commands."""
+    parser = _Parser(prog="caretree", description="Behaviour trees for assistive manipulation.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
+
+    run = commands.add_parser("run", help="run a task", description="Run a task and write its record.")
+    run.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    run.add_argument("--seed", type=_seed, default=0, metavar="N")
+    _world_options(run)
+    run.add_argument("--inject", action="append", default=[], metavar="FAULT@NODE:PHASE", help="may be repeated")
+    run.add_argument("--view", action="store_true", help="open a window")
+    run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
+
+    check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
+    check.add_argument("task", metavar="TASK")
+
+    inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
+    inject.add_argument("task", metavar="TASK")
+    inject.add_argument("--seed", type=_seed, default=0, metavar="N")
+    inject.add_argument("--world", default="scripted", choices=("bullet", "scripted", "ros1"), help="default: scripted")
+    inject.add_argument("--fault", action="append", default=[], metavar="FAULT", help="only this one; may be repeated")
+    inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows")
+
+    replay = commands.add_parser("replay", help="run a record again and say where it differs")
+    replay.add_argument("directory", metavar="DIR")
+
+    trials = commands.add_parser("trials", help="many seeds, and a success table with intervals")
+    trials.add_argument("task", metavar="TASK")
+    trials.add_argument("-n", dest="number", type=_count, default=10, metavar="N", help="number of seeds (default: 10)")
+    trials.add_argument("--seed", type=_seed, default=0, metavar="N", help="the first of them (default: 0)")
+    _world_options(trials)
+    trials.add_argument("--jobs", type=_count, default=1, metavar="J", help="runs at the same time")
+    trials.add_argument("--address", metavar="ray://...", help="not in this version")
+    trials.add_argument("--out", metavar="DIR", help="folder of the campaign")
+
+    commands.add_parser("gap", help="find, name, add and show what a model lacks", add_help=False)
+    commands.add_parser("learn", help="datasets, training and evaluation of learned parts", add_help=False)
+    return parser
+
+
+def _dispatch(argv: list[str]) -> int:
+    if argv and argv[0] in DELEGATED:
+        name = importlib.util.resolve_name(DELEGATED[argv[0]], __package__)
+        try:
+            module = importlib.import_module(name)
+        except ModuleNotFoundError as error:
+            if error.name is None or not name.startswith(error.name):
+                raise  # it is there and lacks something else
+            raise CaretreeError(f"`caretree {argv[0]}` is not in this version") from error
+        return int(module.main(argv[1:]) or 0)
+    options = build_parser().parse_args(argv)
+    return int(importlib.import_module(f".commands.{options.command}", __package__).main(options))
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit status."""
+    try:
+        return _dispatch(list(sys.argv[1:] if argv is None else argv))
+    except CaretreeError as error:
+        print(f"caretree: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:  # the reader of our output has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        print(f"caretree: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("caretree: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

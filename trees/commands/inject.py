@@ -1,0 +1,66 @@
+"""`caretree inject`: the fault campaign; finished rows are kept and not run again."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from ...sim.errors import CaretreeError
+from ...sim.faults import FAULTS
+from ...sim.spool import disk_error
+from ..inject import Campaign, Row, table
+from ..tasks import load_task
+from ..worlds import make_world
+
+ROWS = "inject.jsonl"
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run the campaign; 0 when every fault was survived, else 1.
+
+    Raises:
+        CaretreeError: bad input, or the rows cannot be kept.
+    """
+    task = load_task(options.task)
+    for fault in options.fault:
+        if fault not in FAULTS:
+            raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
+    usual = Path("runs") / f"inject-{Path(options.task).stem}-{options.world}-seed{options.seed}"
+    path = Path(options.out or usual) / ROWS
+    campaign = Campaign(task, lambda: make_world(options.world, task, seed=options.seed), seed=options.seed,
+                        faults=tuple(options.fault) or FAULTS)
+    if campaign.nominal.outcome != "success":
+        print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
+    wanted = campaign.plan()
+    rows = [row for row in read_rows(path) if row.key in set(wanted)]
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a", encoding="utf-8") as file:
+            for row in campaign.rows({row.key for row in rows}):
+                file.write(json.dumps(row.as_dict()) + "\n")
+                file.flush()
+                rows.append(row)
+                if row.outcome != "not_reached" or row.unsafe:
+                    told = f"{row.fault}@{row.node}:{row.phase}: {row.unsafe or row.outcome}"
+                    print(f"[{len(rows)}/{len(wanted)}] {told}", flush=True)
+    except OSError as error:
+        raise disk_error(error, f"writing {path}") from error
+    except KeyboardInterrupt:
+        print(f"interrupted; {len(rows)} of {len(wanted)} rows are kept in {path}, run it again to go on")
+        return 130
+    print(table(sorted(rows, key=lambda row: wanted.index(row.key))))
+    return 0 if all(row.survived for row in rows) else 1
+
+
+def read_rows(path: Path) -> list[Row]:
+    """Rows of an earlier, perhaps interrupted campaign; a last line cut short is left out."""
+    if not path.exists():
+        return []
+    rows = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        try:
+            rows.append(Row(**json.loads(line)))
+        except (ValueError, TypeError):
+            continue
+    return rows
