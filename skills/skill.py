@@ -34,8 +34,11 @@ from ..perception.errors import PerceptionFailure
 from ..sim.world import SensorLost
 from .context import Context
 from .handle import WorldHandle
+from .motion.errors import MotionError, PathBlocked, Unreachable
 from .ports import Input, Output, bind_ports, ports_of
 from .reasons import Failure, Reason, SkillFailure
+
+MOTION_REASONS = {Unreachable: Reason.UNREACHABLE, PathBlocked: Reason.PATH_BLOCKED}
 
 
 class Skill(py_trees.behaviour.Behaviour):
@@ -146,6 +149,8 @@ class Skill(py_trees.behaviour.Behaviour):
         except PerceptionFailure as stop:
             reason = Reason.__members__.get(stop.problem.name, Reason.NOTHING_SEEN)
             self.failure = Failure(reason, str(stop), self.name)
+        except MotionError as stop:
+            self.failure = Failure(MOTION_REASONS.get(type(stop), Reason.MOTION_BLOCKED), str(stop), self.name)
         except SensorLost as stop:
             self.failure = Failure(Reason.SENSOR_LOST, str(stop), self.name)
         except Exception as error:

@@ -1,4 +1,4 @@
-"""The command line: `caretree run|check|inject|replay|trials|gap|learn`.
+"""The command line: `caretree run|check|inject|replay|trials|evaluate|gap|learn`.
 
 A user's mistake is answered by one sentence and exit status 2.
 """
@@ -17,6 +17,10 @@ from ..sim.errors import CaretreeError
 
 BAD_INPUT = 2
 INTERRUPTED = 130
+SELF_PARSED = {
+    "trials": (".trials_command", "run many seeds and count successes, by stage and overall"),
+    "evaluate": (".evaluate_command", "say from the record alone whether the person is dressed"),
+}
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
 
 
@@ -34,12 +38,6 @@ def _seed(text: str) -> int:
     return int(text)
 
 
-def _count(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r}: a whole number from 1 is asked for")
-    return int(text)
-
-
 def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", default="bullet", choices=("bullet", "scripted", "ros1"), help="default: bullet")
     parser.add_argument("--gown", metavar="NAME", help="which gown (default: the seed decides)")
@@ -48,8 +46,8 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stage", metavar="NAME", help="this stage alone, from a world prepared for it")
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """The parser of all commands."""
+def build_parser(command: str = "") -> argparse.ArgumentParser:
+    """The parser of all commands; `command` is the one that will be called."""
     parser = _Parser(prog="caretree", description="Behaviour trees for assistive manipulation.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
 
@@ -74,15 +72,11 @@ def build_parser() -> argparse.ArgumentParser:
     replay = commands.add_parser("replay", help="run a record again and say where it differs")
     replay.add_argument("directory", metavar="DIR")
 
-    trials = commands.add_parser("trials", help="many seeds, and a success table with intervals")
-    trials.add_argument("task", metavar="TASK")
-    trials.add_argument("-n", dest="number", type=_count, default=10, metavar="N", help="number of seeds (default: 10)")
-    trials.add_argument("--seed", type=_seed, default=0, metavar="N", help="the first of them (default: 0)")
-    _world_options(trials)
-    trials.add_argument("--jobs", type=_count, default=1, metavar="J", help="runs at the same time")
-    trials.add_argument("--address", metavar="ray://...", help="not in this version")
-    trials.add_argument("--out", metavar="DIR", help="folder of the campaign")
-
+    for name, (module, summary) in SELF_PARSED.items():
+        if name == command:  # the others' modules stay unread: help must be instant
+            importlib.import_module(module, __package__).add_parser(commands)
+        else:
+            commands.add_parser(name, help=summary)
     commands.add_parser("gap", help="find, name, add and show what a model lacks", add_help=False)
     commands.add_parser("learn", help="datasets, training and evaluation of learned parts", add_help=False)
     return parser
@@ -98,7 +92,9 @@ def _dispatch(argv: list[str]) -> int:
                 raise  # it is there and lacks something else
             raise CaretreeError(f"`caretree {argv[0]}` is not in this version") from error
         return int(module.main(argv[1:]) or 0)
-    options = build_parser().parse_args(argv)
+    options = build_parser(argv[0] if argv else "").parse_args(argv)
+    if hasattr(options, "main"):
+        return int(options.main(options) or 0)
     return int(importlib.import_module(f".commands.{options.command}", __package__).main(options))
 
 
