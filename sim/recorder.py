@@ -20,6 +20,7 @@ from .record import (
     VIDEO_FILE,
     RunResult,
     is_finished,
+    peak_memory,
     read_run,
     versions,
     write_run,
@@ -151,6 +152,7 @@ class Recorder:
         self._run.update(result.fields(), wall_time_s=round(now - self._started, 3),
                          trace_hash=result.trace_hash or self._hash.hexdigest())
         self._run["timing"]["record"] = round(self._run["timing"].get("record", 0.0) + now - began, 3)
+        self._run["peak_memory_mb"] = peak_memory()
         if self._video is not None:
             self._run["video_start_s"] = self._video.t_start
         write_run(self.directory, self._run)

@@ -116,6 +116,8 @@ def _facts(run: Mapping[str, Any]) -> str:
     sim, wall = run.get("sim_time_s"), run.get("wall_time_s")
     factor = f"{sim / wall:.2f} x" if isinstance(sim, (int, float)) and isinstance(wall, (int, float)) and wall else "?"
     facts = [(_seconds(sim), "simulated time"), (_seconds(wall), "wall time"), (factor, "real-time factor")]
+    if isinstance(run.get("peak_memory_mb"), (int, float)):
+        facts.append((f"{run['peak_memory_mb']:.0f} MB", "peak memory"))
     parameters = run.get("parameters") if isinstance(run.get("parameters"), Mapping) else {}
     facts += [(str(parameters[key]), key) for key in ("gown", "person") if parameters and parameters.get(key)]
     return "".join(f'<div class="fact"><b>{_text(value)}</b><span>{_text(name)}</span></div>' for value, name in facts)

@@ -20,6 +20,7 @@ from ..sim.truth import RecordError
 
 TRIAL_FILE = "trial.json"
 CARETREE = (sys.executable, "-m", "caretree.trees.cli")
+JUDGED = ("dressing",)  # tasks after which somebody should be dressed
 BAD_INPUT = 2  # exit status of `caretree` for a mistake of its user
 
 
@@ -35,7 +36,7 @@ class Trial:
         seed: of the run.
         outcome: `success`, `failure` or `safe_stop` as the tree said; `crash` or `timeout` if it said nothing.
         reason: one sentence.
-        dressed: what the evaluator found in the geometry; None where no truth was recorded.
+        dressed: what the evaluator found in the geometry; None where there is none or the task dresses nobody.
         problems: of the evaluator.
         numbers: of the evaluator.
         stages: stage name -> status, as the tree said, in order.
@@ -105,7 +106,7 @@ def judge_run(directory: Path, seed: int) -> Trial:
     stages = {str(stage["name"]): str(stage["status"]) for stage in run.get("stages", ())}
     told = Trial(seed=seed, outcome=run["outcome"], reason=str(run.get("reason") or ""), stages=stages,
                  sim_time_s=run.get("sim_time_s"), wall_time_s=run.get("wall_time_s"))
-    if run.get("world") != "bullet":  # nothing else records truth
+    if run.get("world") != "bullet" or Path(str(run.get("task"))).stem not in JUDGED:  # no truth, or nobody to dress
         return told
     try:
         verdict = evaluate(directory)
@@ -177,4 +178,4 @@ def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event
 
 def _last_line(log: Path) -> str:
     lines = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
-    return lines[-1].strip() if lines else ""
+    return lines[-1].strip().removeprefix("caretree: ") if lines else ""

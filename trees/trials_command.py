@@ -8,7 +8,7 @@ from pathlib import Path
 from ..sim.errors import CaretreeError
 from .trials import TABLE, Plan, run_trials
 
-PASSED_ON = ("world", "gown", "person", "model", "inject")  # to every `caretree run`
+PASSED_ON = ("world", "gown", "person", "model")  # to every `caretree run`
 INTERRUPTED = 130  # as shells count a Ctrl-C
 
 
@@ -27,6 +27,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the campaign (runs/trials-TASK)")
     for name in PASSED_ON:
         parser.add_argument(f"--{name}", metavar=name.upper(), help="handed to every `caretree run`")
+    parser.add_argument("--inject", action="append", default=[], metavar="FAULT@NODE:PHASE",
+                        help="a fault in every run; may be repeated")
     parser.set_defaults(main=main)
 
 
@@ -64,6 +66,7 @@ def main(args: argparse.Namespace) -> int:
     """
     directory = args.out or Path("runs") / f"trials-{Path(args.task).stem}"
     arguments = [part for name in PASSED_ON if getattr(args, name) for part in (f"--{name}", getattr(args, name))]
+    arguments += [part for fault in args.inject for part in ("--inject", fault)]
     plan = Plan(task=args.task, seeds=parse_seeds(args.n, args.seeds), directory=directory, stage=args.stage,
                 arguments=tuple(arguments), jobs=args.jobs)
     try:

@@ -55,7 +55,7 @@ def table(trials: dict[str, list[Trial]]) -> str:
     whole = trials.get(OVERALL, [])
     wrong = [trial.seed for trial in whole if trial.dressed not in (None, trial.outcome == "success")]
     judged = any(trial.dressed is not None for trial in whole)
-    source = "by the evaluator, from the geometry alone" if judged else "as the tree says too (no geometry)"
+    source = "by the evaluator, from the geometry alone" if judged else "as the tree says too"
     lines += ["", f"Stages as the tree says; overall {source}.  Brackets: 95 % Wilson intervals."]
     if wrong:
         lines.append(f"The tree and the evaluator disagree on seeds {', '.join(map(str, wrong))}.")

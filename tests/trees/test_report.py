@@ -46,6 +46,7 @@ def test_whole_page(make_record, tmp_path):
     assert re.search(r"left armhole up the upper arm</td><td class=n>0\.833", page)
     assert "physics" in page
     assert "real-time factor" in page
+    assert re.search(r"<b>\d+ MB</b><span>peak memory", page)
     assert [source[:14] for source in sources].count("data:image/png") == 2
     assert [source[:15] for source in sources].count("data:image/jpeg") == 6  # start, four stages, end
     assert "video.mp4" in sources

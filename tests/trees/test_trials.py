@@ -23,7 +23,7 @@ with (out.parent.parent / "started.txt").open("a") as file:
 if seed == 2:
     sys.exit("it broke")
 if seed == 9:
-    print("gown 'x' is unknown, but small is asked for")
+    print("caretree: gown 'x' is unknown, but small is asked for")
     sys.exit(2)
 names = ["A grasp", "B unfold", "C dress", "D spread"]
 if "--stage" in args:
@@ -95,7 +95,7 @@ def test_interrupt_keeps_what_is_done_and_goes_on(fake_caretree):
 
 
 def test_refused_input_ends_the_campaign_with_the_sentence(fake_caretree):
-    with pytest.raises(CaretreeError, match="gown 'x' is unknown"):
+    with pytest.raises(CaretreeError, match=r"^gown 'x' is unknown"):
         run_trials(plan(fake_caretree, seeds=(9,)), lambda line: None)
 
 
@@ -154,8 +154,10 @@ def test_bad_plans_are_refused(tmp_path, bad):
 def test_command_line(fake_caretree, capsys):
     parser = argparse.ArgumentParser()
     add_parser(parser.add_subparsers())
-    args = parser.parse_args(["trials", "dressing", "-n", "2", "--out", str(fake_caretree), "--gown", "small"])
+    args = parser.parse_args(["trials", "dressing", "-n", "2", "--out", str(fake_caretree), "--gown", "small",
+                              "--inject", "stale@lift:step"])
     assert args.main is main
     assert main(args) == 0
     assert "1/2 = 50%" in capsys.readouterr().out
-    assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == ["--gown", "small"]
+    assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == [
+        "--gown", "small", "--inject", "stale@lift:step"]
