@@ -23,7 +23,7 @@ setup: $(READY)
 $(READY): requirements.lock setup.cfg pyproject.toml
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) is not here, but Python 3.11 is asked for (PYTHON=/path/to/python3.11)" >&2; exit 2; }
 	@test -x $(BIN)/python || { echo "creating $(VENV)"; $(PYTHON) -m venv $(VENV); }
-	@echo "installing $$(grep -c '^[^#]' requirements.lock) locked packages: about 0.8 GB to download, 2 GB on disk"
+	@echo "installing $$(grep -c '^[^#]' requirements.lock) locked packages: about 0.6 GB to download, 2 GB on disk"
 	@$(PIP) install -r requirements.lock 2>&1 | tee $(VENV)/install.log \
 	  | sed -nuE -e 's/^ *(Downloading|Using cached|Processing) ([^ ]*\/)?/  /p' -e 's/^(Installing).*/  installing/p' -e '/^ERROR/p'
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable . >>$(VENV)/install.log 2>&1 \
