@@ -66,7 +66,8 @@ def collar_line(frame: Frame) -> CollarLine:
     border = 4
     ends = project(frame, line[[0, -1]])[:, :2]
     reach = 0.03 * frame.intrinsics[0] / max(project(frame, line.mean(axis=0))[0, 2], 0.1) + border
-    whole = (ends[:, 0] > reach) & (ends[:, 0] < width - 1 - reach) & (ends[:, 1] > border) & (ends[:, 1] < height - border)
+    whole = ((ends[:, 0] > reach) & (ends[:, 0] < width - 1 - reach)
+             & (ends[:, 1] > border) & (ends[:, 1] < height - border))
     length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     span = float(np.linalg.norm(line[-1] - line[0]))
     return CollarLine(stamp=frame.stamp, confidence=min(1.0, len(points) / 150), points_in_map=line, whole=whole,

@@ -18,7 +18,8 @@ def hang_pixel(labels: np.ndarray) -> tuple[float, float]:
     """Pixel (u, v) of the highest part of the largest patch of gown in `labels` (H, W)."""
     import cv2
 
-    count, patches, stats, _ = cv2.connectedComponentsWithStats((labels != Surface.OTHER).astype(np.uint8), connectivity=8)
+    gown = (labels != Surface.OTHER).astype(np.uint8)
+    count, patches, stats, _ = cv2.connectedComponentsWithStats(gown, connectivity=8)
     largest = 1 + int(np.argmax(stats[1:count, cv2.CC_STAT_AREA]))
     rows, columns = np.nonzero(patches == largest)
     top = rows <= rows.min() + 2  # a few rows, so that one noisy pixel does not decide

@@ -50,10 +50,12 @@ def pregrasp_proposal(frames: Sequence[Frame], poses_hand_in_map: Sequence[np.nd
         raise PerceptionFailure(Problem.NOTHING_SEEN, "corner of the neck binding in any view")
     places = np.array([p for _, _, p in found])
     support = []
-    for view, c, place in found:
-        others = [(v, o.score) for (v, o, _), near in
-                  zip(found, np.linalg.norm(places - place, axis=1) < _SAME, strict=True) if near and v != view]
-        support.append(sum(max(s for w, s in others if w == v) for v in {v for v, _ in others}) / max(1, len(frames) - 1))
+    for view, _, place in found:
+        best_of: dict[int, float] = {}  # other view -> score of its best candidate at the same place of the gown
+        for (other, candidate, _), gap in zip(found, np.linalg.norm(places - place, axis=1), strict=True):
+            if gap < _SAME and other != view:
+                best_of[other] = max(best_of.get(other, 0.0), candidate.score)
+        support.append(sum(best_of.values()) / max(1, len(frames) - 1))
     total = [c.score + s for (_, c, _), s in zip(found, support, strict=True)]
     best = int(np.argmax(total))
     view, corner, _ = found[best]

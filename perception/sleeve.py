@@ -19,9 +19,9 @@ _REACH = 0.35  # pieces of one ring are not farther than this from its largest p
 def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
     """Find the armhole nearest to a point and the middle of its rim on the shoulder's side.
 
-    The armhole's binding touches the neck binding where the shoulder seam will be: the strap.  That edge
-    is what has to travel up the arm, so its middle is taken.  Where no contact of the two bindings is seen, the part of the
-    ring nearest to the neck binding is taken, with less confidence.
+    The armhole's upper edge, along the strap that will be the shoulder seam, is what has to travel up the arm, so
+    its middle is taken.  Where the neck binding, whose end marks that edge, is hidden, the middle of what is seen of the
+    ring is taken, with little confidence.
 
     Args:
         frame: a view of the gown lying on the person.

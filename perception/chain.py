@@ -1,0 +1,181 @@
+"""The arm as three capsules, fitted to depth points by damped least squares.
+
+Unknowns are the four joint centres q = (shoulder, elbow, wrist, fingertip), 12 numbers.  Residuals, each divided by its
+standard deviation: signed distance of every skin point to the nearest capsule's surface; every sample of the
+axis that the image shows to be empty, by its distance to the nearest skin; lengths of an adult; a straight
+hand; and a weak pull towards a home, which keeps what nothing observes where it was.  The inverse of the
+Gauss-Newton matrix at the end is the covariance, so an unobserved joint says so itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+LENGTHS = np.array((0.28, 0.25, 0.175))  # upper arm, forearm, hand of an adult of 174 cm [m]
+RADII = np.array((0.041, 0.036, 0.030))  # of the same [m]
+_POINT_SIGMA = 0.012  # one point to the surface: sensor noise and limbs that are no capsules [m]
+_EFFECTIVE = 30  # that many of the points are independent: neighbours share their error
+_EMPTY_SIGMA = 0.010  # an axis sample beside the skin: two pixels [m]
+_SEGMENT = np.repeat(np.arange(3), 6)  # samples along each capsule's axis, and the very end of the fingers
+_SHARE = np.tile(np.linspace(0.1, 1.0, 6), 3)
+_SEGMENT, _SHARE = np.append(_SEGMENT, (2, 2)), np.append(_SHARE, (1.08, 1.15))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SkinView:
+    """What one frame says about skin.
+
+    Attributes:
+        points: (n, 3) skin in the map, thinned [m].
+        depth: (H, W) [m].
+        to_skin: (H, W) distance of every pixel to the nearest skin pixel [px].
+        gradient: (2, H, W) of `to_skin` along u and v.
+        intrinsics: (fx, fy, cx, cy) [px].
+        pose_camera_in_map: (4, 4).
+    """
+
+    points: np.ndarray
+    depth: np.ndarray
+    to_skin: np.ndarray
+    gradient: np.ndarray
+    intrinsics: tuple[float, float, float, float]
+    pose_camera_in_map: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChainFit:
+    """Result of a fit.
+
+    Attributes:
+        joints: (4, 3) shoulder, elbow, wrist, fingertip [m].
+        covariance: (12, 12) [m^2].
+        cost: mean squared residual, about 1 for a good fit.
+        used: number of skin points that the chain explains.
+    """
+
+    joints: np.ndarray
+    covariance: np.ndarray
+    cost: float
+    used: int
+
+
+def nearest_on_chain(points: np.ndarray, joints: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Segment (n,), share along it (n,), signed distance to its surface (n,) and outward unit vector (n, 3)."""
+    start, along = joints[:-1], np.diff(joints, axis=0)
+    share = np.einsum("nkd,kd->nk", points[:, None] - start, along) / np.maximum((along**2).sum(axis=1), 1e-9)
+    share = np.clip(share, 0.0, 1.0)
+    offset = points[:, None] - (start + share[..., None] * along)
+    length = np.linalg.norm(offset, axis=2)
+    segment = np.argmin(length - radii, axis=1)
+    pick = np.arange(len(points))
+    distance = length[pick, segment]
+    outward = offset[pick, segment] / np.maximum(distance, 1e-6)[:, None]
+    return segment, share[pick, segment], distance - radii[segment], outward
+
+
+def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np.ndarray | None = None,
+              scale: float = 1.0, gate: float = 0.08, length_sigma: float = 0.06, iterations: int = 8) -> ChainFit:
+    """Fit the chain to one view.
+
+    Args:
+        view: the skin.
+        start: (4, 3) joints to begin with [m].
+        anchor: (4,) standard deviation of the pull of each joint towards `home` [m].
+        home: (4, 3), `start` if not given [m].
+        scale: body size relative to 174 cm.
+        gate: points farther than this from the surface belong to something else [m].
+        length_sigma: relative standard deviation of the lengths.
+        iterations: Gauss-Newton steps.
+    """
+    q = start.astype(float).copy()
+    lengths, radii = LENGTHS * scale, RADII * scale
+    matrix, cost, used = np.eye(12), np.inf, 0
+    for _ in range(iterations):
+        matrix, vector, total, weight = np.zeros((12, 12)), np.zeros(12), 0.0, 0.0
+        if len(view.points):
+            segment, share, signed, outward = nearest_on_chain(view.points, q, radii)
+            mine = np.abs(signed) < gate
+            used = int(mine.sum())
+            if used:
+                robust = 1.0 / (1.0 + (signed[mine] / 0.03) ** 2)
+                w = robust / _POINT_SIGMA**2 * min(1.0, _EFFECTIVE / used)
+                rows = _rows(segment[mine], share[mine], -outward[mine])
+                _add(matrix, vector, rows, signed[mine], w)
+                total += float((w * signed[mine] ** 2).sum())
+                weight += float(w.sum()) * _POINT_SIGMA**2
+        total += _add_empty(matrix, vector, view, q)
+        _add_priors(matrix, vector, q, start if home is None else home, lengths, length_sigma, anchor)
+        step = np.linalg.solve(matrix + 1e-6 * np.eye(12), -vector)
+        longest = np.linalg.norm(step.reshape(4, 3), axis=1).max()
+        q += (step * min(1.0, 0.06 / max(longest, 1e-9))).reshape(4, 3)
+        cost = total / max(weight, 1.0)
+        if longest < 5e-4:
+            break
+    return ChainFit(joints=q, covariance=np.linalg.inv(matrix), cost=cost, used=used)
+
+
+def _rows(segment: np.ndarray, share: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """Jacobian rows (n, 12) of a residual that changes by `direction` per motion of the point on the axis."""
+    rows = np.zeros((len(segment), 4, 3))
+    pick = np.arange(len(segment))
+    rows[pick, segment] = (1 - share)[:, None] * direction
+    rows[pick, segment + 1] += share[:, None] * direction
+    return rows.reshape(-1, 12)
+
+
+def _add(matrix: np.ndarray, vector: np.ndarray, rows: np.ndarray, residual: np.ndarray, weight: np.ndarray) -> None:
+    weighted = rows * weight[:, None]
+    matrix += rows.T @ weighted
+    vector += weighted.T @ residual
+
+
+def _add_empty(matrix: np.ndarray, vector: np.ndarray, view: SkinView, q: np.ndarray) -> float:
+    """Add samples of the axis that are seen to be empty: no skin there and nothing in front."""
+    segment, share = _SEGMENT, _SHARE
+    samples = q[segment] + share[:, None] * (q[segment + 1] - q[segment])
+    fx, fy, cx, cy = view.intrinsics
+    rotation = view.pose_camera_in_map[:3, :3]
+    local = (samples - view.pose_camera_in_map[:3, 3]) @ rotation
+    z = local[:, 2]
+    u = np.round(fx * local[:, 0] / np.maximum(z, 0.05) + cx).astype(int)
+    v = np.round(fy * local[:, 1] / np.maximum(z, 0.05) + cy).astype(int)
+    height, width = view.depth.shape
+    inside = (z > 0.05) & (u >= 0) & (u < width) & (v >= 0) & (v < height)
+    if not inside.any():
+        return 0.0
+    u, v, z, segment, share = u[inside], v[inside], z[inside], segment[inside], share[inside]
+    seen = view.depth[v, u]
+    metres = view.to_skin[v, u] * z / fx
+    # hidden behind something nearer, without depth, or so far from all skin that skin says nothing
+    count = (seen > z - 0.015) & (metres > 1e-6) & (metres < 0.12)
+    if not count.any():
+        return 0.0
+    metres = np.minimum(metres, 0.05)
+    slope = view.gradient[:, v, u]
+    direction = slope[0][:, None] * rotation[:, 0] + slope[1][:, None] * rotation[:, 1]
+    w = np.full(int(count.sum()), 1 / _EMPTY_SIGMA**2)
+    _add(matrix, vector, _rows(segment[count], share[count], direction[count]), metres[count], w)
+    return float((w * metres[count] ** 2).sum())
+
+
+def _add_priors(matrix: np.ndarray, vector: np.ndarray, q: np.ndarray, home: np.ndarray, lengths: np.ndarray,
+                length_sigma: float, anchor: np.ndarray) -> None:
+    """Add lengths, straightness of the hand and the pull towards home."""
+    along = np.diff(q, axis=0)
+    size = np.linalg.norm(along, axis=1)
+    rows = np.zeros((3, 4, 3))
+    for k in range(3):
+        rows[k, k + 1] = along[k] / size[k]
+        rows[k, k] = -rows[k, k + 1]
+    _add(matrix, vector, rows.reshape(3, 12), size - lengths, 1 / (length_sigma * lengths) ** 2)
+    # fingertip = wrist + hand length along the forearm, within about 12 degrees
+    k = lengths[2] / lengths[1]
+    bend = np.zeros((3, 4, 3))
+    for d in range(3):
+        bend[d, 3, d], bend[d, 2, d], bend[d, 1, d] = 1.0, -(1 + k), k
+    _add(matrix, vector, bend.reshape(3, 12), q[3] - (1 + k) * q[2] + k * q[1], np.full(3, 1 / 0.035**2))
+    pull = np.repeat(1 / anchor**2, 3)
+    matrix += np.diag(pull)
+    vector += pull * (q - home).ravel()

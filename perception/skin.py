@@ -1,0 +1,83 @@
+"""The person on the bed as a camera sees them: bare skin, its head end, its trunk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..sim.world import Frame
+from .cloud import points_in_map
+from .colours import Surface, surfaces
+from .errors import PerceptionFailure, Problem
+
+# Adult of 174 cm, lying on the back (Winter, Biomechanics of Human Movement, fig. 4.1, and hand calipers) [m].
+CROWN_TO_SHOULDER = 0.31
+SHOULDER_HALF_WIDTH = 0.20
+SHOULDER_ABOVE_BED = 0.10
+TRUNK_HALF_WIDTH = 0.20
+HEAD_LENGTH = 0.24
+
+
+@dataclass(frozen=True, kw_only=True)
+class Head:
+    """The person's head.
+
+    Attributes:
+        crown_in_map: (3,) topmost point of the head, away from the feet [m].
+        middle: x of the body's midline at the head [m].
+        confidence: 0 to 1.
+    """
+
+    crown_in_map: np.ndarray
+    middle: float
+    confidence: float
+
+
+def skin_on_bed(frame: Frame, bed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Skin on and above the bed.
+
+    Args:
+        frame: any view.
+        bed: (2, 3) lower and upper corner of the bed in the map [m].
+
+    Returns:
+        Points (n, 3) in the map [m] and the mask (H, W) of all skin.
+    """
+    import cv2
+
+    skin = (surfaces(frame.rgb) == Surface.SKIN).astype(np.uint8)
+    skin = cv2.morphologyEx(skin, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8)) > 0
+    cloud = points_in_map(frame)[skin]
+    margin = np.array((0.45, 0.15, 0.0))  # an arm may reach over the edge of the bed
+    low, high = bed[0] - margin, bed[1] + margin
+    inside = np.isfinite(cloud[:, 2]) & (cloud[:, :2] > low[:2]).all(axis=1) & (cloud[:, :2] < high[:2]).all(axis=1)
+    inside &= (cloud[:, 2] > bed[1, 2] - 0.15) & (cloud[:, 2] < bed[1, 2] + 0.75)
+    return cloud[inside], skin
+
+
+def head_seen(frame: Frame, bed: np.ndarray) -> Head:
+    """Find the head: the skin at the head end of the bed (towards -y), as wide and as high as a head.
+
+    Raises:
+        PerceptionFailure: no skin at the head end, or the image cuts it off.
+    """
+    points, skin = skin_on_bed(frame, bed)
+    if len(points) < 60:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "person")
+    middle_of_bed = bed[:, 0].mean()
+    candidates = points[(np.abs(points[:, 0] - middle_of_bed) < 0.30) & (points[:, 1] < bed[:, 1].mean() - 0.35)]
+    if len(candidates) < 40:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "head")
+    crown = float(np.percentile(candidates[:, 1], 1.0))
+    blob = candidates[candidates[:, 1] < crown + 0.14]
+    width = float(np.ptp(np.percentile(blob[:, 0], (2, 98))))
+    height = float(np.percentile(blob[:, 2], 95)) - bed[1, 2]
+    if not (0.08 < width < 0.30 and 0.10 < height < 0.35 and len(blob) >= 30):
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "head")
+    cut = skin[0].any() or skin[:, 0].any() or skin[:, -1].any()
+    border = np.array((*frame.depth.shape[::-1], 0))
+    confidence = min(1.0, len(blob) / 150) * (0.8 if cut and border.any() else 1.0)
+    middle = float(np.percentile(blob[:, 0], (3, 97)).mean())
+    return Head(crown_in_map=np.array((middle, crown, float(np.median(blob[:, 2])))), middle=middle,
+                confidence=float(confidence))
