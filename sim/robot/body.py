@@ -14,10 +14,12 @@ from .kinematics import Kinematics, default_kinematics
 from .servo import PERIOD, Servo
 from .urdf import urdf_path
 
-COLLISION_GROUP = 1 << 6  # the robot's own broad-phase group; what it may touch is the mask of `set_collisions`
+# PyBullet lets two bodies collide when either one's group is in the other's mask, and every mask defaults to all:
+# only a body in no group at all can choose what it touches.  Cloth and new rigid bodies are in group 1.
+_NO_GROUP = 0
 
 # Motor strength.  Baxter carries most of its arms' weight by springs on s1 and gravity compensation, so the motors
-# here get the rated torque (50 and 15 N m) on top of the most that gravity ever asks (about 75 and 15 N m).
+# here get the rated torque (50 and 15 N m) on top of the most that gravity ever asks (62 and 5 N m).
 _ARM_FORCE = np.array((125.0, 125.0, 125.0, 125.0, 30.0, 30.0, 30.0))
 _BASE_FORCE = np.array((5000.0, 5000.0, 5000.0))
 _POSITION_GAIN = 0.3  # share of a position error taken out per physics step, beside the velocity feed-forward
@@ -53,8 +55,9 @@ class RobotBody:
     """The robot in an existing PyBullet client.
 
     Load it after the soft body.  Call `update(time)` before every physics step.  Its links are in their own
-    collision group and touch nothing until `set_collisions` says what; they never touch each other (the planner
-    checks that beforehand, and resting contacts would push the arms).
+    collision group (none) and touch nothing until `set_collisions` says what; they never touch each other (the
+    planner checks that beforehand, and resting contacts would push the arms).  To let the robot touch the person
+    but not the cloth, put the person in group 2 and pass `collision_mask=2`.
 
     Args:
         client: a `pybullet_utils.bullet_client.BulletClient`, or the `pybullet` module itself.
@@ -104,14 +107,14 @@ class RobotBody:
         """Choose what the robot collides with: bodies whose PyBullet group is in `mask` (0: nothing).
 
         Args:
-            mask: group bits; the other body's mask must hold `COLLISION_GROUP` too (PyBullet's default does).
+            mask: bits of the groups to collide with; 1 is cloth and every body whose group was never set.
             links: only these links; all when omitted.
 
         Raises:
             KeyError: no such link.
         """
         for name in self.links if links is None else links:
-            self._client.setCollisionFilterGroupMask(self.body, self.links[name], COLLISION_GROUP, mask)
+            self._client.setCollisionFilterGroupMask(self.body, self.links[name], _NO_GROUP, mask)
 
     def command(self, command: Command) -> Command:
         """Start a command; returns it as clipped (see `Servo.command`)."""

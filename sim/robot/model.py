@@ -22,7 +22,7 @@ BASE_MASS = 135.0
 
 # Baxter's torso frame in the base frame.  Its floor pedestal is replaced by a column on the Ridgeback's deck.
 # The shoulder (axis s1) is 0.40 above the torso frame, hence 1.25 above the floor.
-TORSO_IN_BASE = np.array((0.15, 0.0, 0.85))
+TORSO_IN_BASE = np.array((0.10, 0.0, 0.85))
 SHOULDER_ABOVE_TORSO = 0.118588 + 0.011038 + 0.27035
 COLUMN_SIZE = np.array((0.28, 0.34))
 
@@ -39,10 +39,12 @@ FINGER_MASS = 0.05
 PAD_LENGTH = 0.038
 
 # Cameras, optical frames (x right, y down, z forward).
-HEAD_CAMERA_IN_HEAD = np.array((0.19, 0.0, 0.12))
-HEAD_CAMERA_PITCH = np.deg2rad(33.0)  # below the horizon
-HAND_CAMERA_IN_HAND_LINK = np.array((0.075, 0.0, 0.04))  # beside the palm, across the closing direction
-HAND_CAMERA_TILT = np.deg2rad(22.0)  # towards the point between the fingertips
+HEAD_CAMERA_IN_HEAD = np.array((0.17, 0.0, 0.12))  # on top of the screen
+# Below the horizon.  1.66 above the floor and with a vertical field of view of 54 degrees it sees, 0.35 m ahead of
+# itself, from 0.6 m up to 1.55 m: the bed from 0.65 m before the base's centre on, and a gown on a rail in whole.
+HEAD_CAMERA_PITCH = np.deg2rad(45.0)
+HAND_CAMERA_IN_HAND_LINK = np.array((0.08, 0.0, 0.10))  # beside the palm, across the closing direction
+HAND_CAMERA_TILT = np.deg2rad(35.0)  # towards the point 3 cm beyond the fingertips
 
 # Limits of motion.  Joint positions and velocities are the URDF's.  Accelerations: Rethink's own MoveIt
 # configuration (baxter_simulator, baxter_moveit_config/config/joint_limits.yaml) plans with 1.0 rad/s^2 on every

@@ -15,26 +15,12 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cm
 from ...sim.robot import model
 from ...sim.robot.kinematics import Kinematics, planar_pose
 from ...sim.world import SIDES, Side
+from .errors import Unreachable
 
 FreeAxis = Literal["none", "approach", "closing", "any"]
 POSITION_TOLERANCE = 1e-3  # [m]
 ROTATION_TOLERANCE = 5e-3  # [rad]
-
-
-class Unreachable(Exception):  # noqa: N818 - the outcome, as the operator reads it
-    """No joint angles bring the hand to the pose.
-
-    Attributes:
-        position_residual: distance left at the best configuration found [m].
-        rotation_residual: angle left there [rad].
-        q: that configuration (7,) [rad].
-    """
-
-    def __init__(self, message: str, position_residual: float, rotation_residual: float, q: np.ndarray) -> None:
-        super().__init__(message)
-        self.position_residual = position_residual
-        self.rotation_residual = rotation_residual
-        self.q = q
+_STEP = 0.25  # greatest change of a joint in one iteration [rad]
 
 
 def solve_ik(kinematics: Kinematics, side: Side, pose_hand_in_map: np.ndarray, pose_base_in_map: np.ndarray,
@@ -172,7 +158,7 @@ def _descend(kinematics: Kinematics, side: Side, target: pin.SE3, q: np.ndarray,
             if not blocked.any():
                 break
             free_joints &= ~blocked
-        q = limits.clip(q + np.clip(step_q, -0.4, 0.4))
+        q = limits.clip(q + step_q * min(1.0, _STEP / max(float(np.abs(step_q).max()), 1e-9)))
     return result
 
 

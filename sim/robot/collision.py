@@ -1,0 +1,90 @@
+"""Does the robot hit itself or a box in the room?  Capsules and boxes of `shapes.py`, tested by coal."""
+
+from __future__ import annotations
+
+import coal  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+import numpy as np
+import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+from ..world import SIDES
+from .kinematics import Kinematics
+from .shapes import Shape, collision_shapes
+
+_LIMB = ("upper_elbow", "lower_elbow", "upper_forearm", "lower_forearm", "wrist", "gripper")
+_DISTAL = ("upper_forearm", "lower_forearm", "wrist", "gripper")  # these can meet the robot's own body
+_FIXED = ("torso", "base", "head")
+
+
+class CollisionChecker:
+    """Tests arm postures against the robot itself and against boxes of the room.
+
+    The fingers are left out: they are meant to touch things.
+
+    Args:
+        kinematics: the robot.
+        boxes: (k, 2, 3) lower and upper corners of axis-aligned boxes in the map that hands and arms must not
+            enter, for instance the bed [m].
+        margin: closest approach that still counts as free [m].
+    """
+
+    def __init__(self, kinematics: Kinematics, boxes: np.ndarray | None = None, margin: float = 0.01) -> None:
+        self._kinematics = kinematics
+        model = kinematics.model
+        self._geometry = pin.GeometryModel()
+        self._names: list[str] = []
+        ids: dict[str, list[int]] = {}
+        for link, shapes in collision_shapes().items():
+            if link.endswith("_link"):  # fingers
+                continue
+            frame = model.frames[model.getFrameId(link)]
+            ids[link] = [self._add(link, frame.parentJoint, frame.placement, shape) for shape in shapes]
+        self._pairs: list[tuple[int, int]] = []
+        for a, b in _own_pairs():
+            self._pairs += [(m, n) for m in ids[a] for n in ids[b]]
+        limbs = [n for side in SIDES for link in _LIMB for n in ids[f"{side}_{link}"]]
+        for k, (lower, upper) in enumerate(np.zeros((0, 2, 3)) if boxes is None else np.asarray(boxes, float)):
+            shape = Shape(kind="box", size=tuple(upper - lower), xyz=tuple((lower + upper) / 2))
+            box = self._add(f"box {k}", 0, pin.SE3.Identity(), shape)
+            self._pairs += [(n, box) for n in limbs]
+        for m, n in self._pairs:
+            self._geometry.addCollisionPair(pin.CollisionPair(m, n))
+        self._data = pin.GeometryData(self._geometry)
+        for request in self._data.collisionRequests:
+            request.security_margin = margin
+
+    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
+        """Whether arms (2, 7) at these angles touch nothing."""
+        q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
+        return not self._compute(q, stop_at_first=True)
+
+    def collisions(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray,
+                   head_pan: float = 0.0) -> list[tuple[str, str]]:
+        """Names of all pairs that are too close, for a message."""
+        q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
+        self._compute(q, stop_at_first=False)
+        hit = [pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True)
+               if result.isCollision()]
+        return list(dict.fromkeys((self._names[m], self._names[n]) for m, n in hit))
+
+    def _compute(self, q: np.ndarray, *, stop_at_first: bool) -> bool:
+        model = self._kinematics
+        return pin.computeCollisions(model.model, model.data, self._geometry, self._data, q, stop_at_first)
+
+    def _add(self, name: str, joint: int, placement: pin.SE3, shape: Shape) -> int:
+        solid = coal.Box(*shape.size) if shape.kind == "box" else coal.Capsule(*shape.size)
+        local = pin.SE3(pin.rpy.rpyToMatrix(*shape.rpy), np.array(shape.xyz))
+        entry = pin.GeometryObject(f"{name} {len(self._names)}", joint, placement * local, solid)
+        self._names.append(name)
+        return self._geometry.addGeometryObject(entry)
+
+
+def _own_pairs() -> list[tuple[str, str]]:
+    pairs = [(f"left_{a}", f"right_{b}") for a in _LIMB for b in _LIMB]
+    for side in SIDES:
+        other = SIDES[1 - SIDES.index(side)]
+        pairs += [(f"{side}_{a}", b) for a in _DISTAL for b in _FIXED]
+        pairs += [(f"{side}_{a}", f"{other}_upper_shoulder") for a in _DISTAL]
+        pairs += [(f"{side}_{a}", f"{side}_{b}") for a in ("wrist", "gripper")
+                  for b in ("upper_shoulder", "upper_elbow")]
+        pairs += [(f"{side}_lower_elbow", b) for b in ("torso", "head")]
+    return pairs

@@ -1,0 +1,125 @@
+"""Paths of the base across the room: A* on the occupancy map, kept off the walls, then straightened."""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+
+from ...sim.world import RoomMap
+from .errors import PathBlocked
+
+_NEIGHBOURS = [(r, c, float(np.hypot(r, c))) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
+_COMFORT = 0.25  # distance from obstacles below which a cell costs extra [m]
+_SNAP = 0.4  # a start or goal outside the free space is taken to the nearest free cell within this [m]
+
+
+def is_free(room: RoomMap, position: np.ndarray) -> bool:
+    """Whether the base's centre may be at `position` (2,) in the map."""
+    row, column = _cell(room, position)
+    rows, columns = room.free.shape
+    return bool(0 <= row < rows and 0 <= column < columns and room.free[row, column])
+
+
+def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray) -> np.ndarray:
+    """Corner points (k, 2) of a free path of the base's centre, start first, goal last.
+
+    A start just outside the free space (the base pushed half under the bed) is allowed: the path leaves by
+    the nearest free cell.
+
+    Args:
+        room: the map.
+        start: (2,) or (3,) in the map [m].
+        goal: (2,) or (3,).
+
+    Raises:
+        PathBlocked: the goal is not free, or walled off, or the start is nowhere near free space.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    start, goal = np.asarray(start, float)[:2], np.asarray(goal, float)[:2]
+    if not is_free(room, goal):
+        raise PathBlocked(f"the base cannot stand at {np.round(goal, 2).tolist()} m: the map has an obstacle there")
+    clearance = np.asarray(distance_transform_edt(np.pad(room.free, 1)))[1:-1, 1:-1] * room.resolution
+    cost = 1.0 + 2.0 * np.clip(1.0 - clearance / _COMFORT, 0.0, 1.0)
+    cells = _astar(room.free, cost, _nearest_free(room, start), _cell(room, goal))
+    if cells is None:
+        raise PathBlocked(f"no free way leads from {np.round(start, 2).tolist()} to {np.round(goal, 2).tolist()} m")
+    points = [_centre(room, cell) for cell in cells]
+    inside = is_free(room, start)
+    points = [start, *(points[1:] if inside else points)]
+    points = [*points[:-1], goal] if len(points) > 1 else [start, goal]
+    return np.array(_straighten(room, points, 0 if inside else 1))
+
+
+def path_length(path: np.ndarray) -> float:
+    """Length [m] of corner points (k, 2)."""
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def _cell(room: RoomMap, position: np.ndarray) -> tuple[int, int]:
+    column, row = np.round((np.asarray(position)[:2] - room.origin) / room.resolution).astype(int)
+    return int(row), int(column)
+
+
+def _centre(room: RoomMap, cell: tuple[int, int]) -> np.ndarray:
+    return np.asarray(room.origin, float) + room.resolution * np.array((cell[1], cell[0]))
+
+
+def _nearest_free(room: RoomMap, position: np.ndarray) -> tuple[int, int]:
+    if is_free(room, position):
+        return _cell(room, position)
+    cells = np.argwhere(room.free)
+    distance = np.linalg.norm(cells[:, ::-1] * room.resolution + room.origin - position, axis=1)
+    if not len(cells) or distance.min() > _SNAP:
+        raise PathBlocked(f"the base at {np.round(position, 2).tolist()} m is over {_SNAP} m from any free space")
+    row, column = cells[int(distance.argmin())]
+    return int(row), int(column)
+
+
+def _astar(free: np.ndarray, cost: np.ndarray, start: tuple[int, int],
+           goal: tuple[int, int]) -> list[tuple[int, int]] | None:
+    rows, columns = free.shape
+    best = {start: 0.0}
+    came: dict[tuple[int, int], tuple[int, int]] = {}
+    queue = [(0.0, start)]
+    done: set[tuple[int, int]] = set()
+    while queue:
+        _, cell = heapq.heappop(queue)
+        if cell == goal:
+            path = [cell]
+            while path[-1] in came:
+                path.append(came[path[-1]])
+            return path[::-1]
+        if cell in done:
+            continue
+        done.add(cell)
+        for dr, dc, length in _NEIGHBOURS:
+            r, c = cell[0] + dr, cell[1] + dc
+            if not (0 <= r < rows and 0 <= c < columns and free[r, c]):
+                continue
+            if dr and dc and not (free[cell[0], c] and free[r, cell[1]]):
+                continue  # no cutting of corners
+            total = best[cell] + length * 0.5 * (cost[cell] + cost[r, c])
+            if total < best.get((r, c), np.inf):
+                best[r, c], came[r, c] = total, cell
+                heapq.heappush(queue, (total + float(np.hypot(goal[0] - r, goal[1] - c)), (r, c)))
+    return None
+
+
+def _straighten(room: RoomMap, points: list[np.ndarray], keep: int) -> list[np.ndarray]:
+    """Leave out corners that a straight free line makes unnecessary; the first `keep` segments stay."""
+    result = points[:keep + 1]
+    n = keep
+    while n < len(points) - 1:
+        m = len(points) - 1
+        while m > n + 1 and not _line_free(room, points[n], points[m]):
+            m -= 1
+        result.append(points[m])
+        n = m
+    return result
+
+
+def _line_free(room: RoomMap, a: np.ndarray, b: np.ndarray) -> bool:
+    count = int(np.ceil(np.linalg.norm(b - a) / (0.3 * room.resolution))) + 1
+    return all(is_free(room, point) for point in np.linspace(a, b, count))

@@ -1,0 +1,136 @@
+"""Motions of the hands to poses: along a straight line, or any way that is free."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...sim.robot.collision import CollisionChecker
+from ...sim.robot.kinematics import Kinematics
+from ...sim.world import SIDES, JointTrajectory, Side
+from .errors import Unreachable
+from .ik import FreeAxis, solve_ik
+from .rrt import connect, segment_free
+from .trajectory import HandSpeed, plan_joint_motion
+
+_LINE_STEP = 0.02  # [m]
+_LINE_TURN = 0.1  # [rad]
+_JUMP = 0.5  # largest change of a joint from one point of a line to the next [rad]
+
+
+def plan_hand_line(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_positions: np.ndarray,
+                   pose_base_in_map: np.ndarray, *, free: FreeAxis = "none", speed_scale: float = 1.0,
+                   hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None) -> JointTrajectory:
+    """Move one or both hands along straight lines, turning evenly on the way.
+
+    Args:
+        kinematics: the robot.
+        goals: by side, pose (4, 4) in the map.
+        arm_positions: (2, 7) where the arms are now [rad].
+        pose_base_in_map: (3,) where the base stands.
+        free: hand axis about which the orientation does not matter (see `solve_ik`).
+        speed_scale: share of the joint limits to use.
+        hand_speed: limit on the hands' speed (see `plan_joint_motion`).
+        checker: tests the whole motion when given.
+
+    Raises:
+        Unreachable: a point of a line is out of reach, or the arm would have to fold over on the way.
+        MotionBlocked: the motion would hit something.
+    """
+    sides: list[Side] = [side for side in SIDES if side in goals]
+    starts = {side: kinematics.pose_hand_in_map(side, arm_positions[SIDES.index(side)], pose_base_in_map)
+              for side in sides}
+    count = max(_line_points(starts[side], goals[side]) for side in sides)
+    waypoints: dict[Side, np.ndarray] = {}
+    for side in sides:
+        q = np.asarray(arm_positions[SIDES.index(side)], float)
+        path = [q]
+        for share in np.linspace(0.0, 1.0, count + 1)[1:]:
+            pose = _between(starts[side], np.asarray(goals[side], float), share)
+            q = solve_ik(kinematics, side, pose, pose_base_in_map, path[-1], free=free, seeds=1)
+            if np.abs(q - path[-1]).max() > _JUMP:
+                raise Unreachable(f"the {side} arm would fold over {share:.0%} along the straight line to "
+                                  f"{np.round(goals[side][:3, 3], 3).tolist()} m", 0.0, 0.0, q)
+            path.append(q)
+        waypoints[side] = np.array(path)
+    other = None if len(sides) == 2 else arm_positions[1 - SIDES.index(sides[0])]
+    return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale, hand_speed=hand_speed,
+                             checker=checker, other_arm=other)
+
+
+def plan_reach(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_positions: np.ndarray,
+               pose_base_in_map: np.ndarray, *, free: FreeAxis = "none", speed_scale: float = 1.0,
+               hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None) -> JointTrajectory:
+    """Bring one or both hands to poses by any free joint motion: the straight one, or round what blocks it.
+
+    Arguments and errors are those of `plan_hand_line`; the way there is not a line.
+    """
+    arms = np.asarray(arm_positions, float)
+    sides: list[Side] = [side for side in SIDES if side in goals]
+    target = arms.copy()
+    for side in sides:
+        n = SIDES.index(side)
+
+        def accept(q: np.ndarray, n: int = n) -> bool:
+            if checker is None:
+                return True
+            trial = target.copy()
+            trial[n] = q
+            return checker.free(pose_base_in_map, trial)
+
+        target[n] = solve_ik(kinematics, side, goals[side], pose_base_in_map, arms[n], free=free, accept=accept)
+    return plan_arms(kinematics, target, arms, pose_base_in_map, sides=tuple(sides), speed_scale=speed_scale,
+                     hand_speed=hand_speed, checker=checker)
+
+
+def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndarray, pose_base_in_map: np.ndarray, *,
+              sides: tuple[Side, ...] = SIDES, speed_scale: float = 1.0, hand_speed: HandSpeed | None = None,
+              checker: CollisionChecker | None = None) -> JointTrajectory:
+    """Move the arms on `sides` to joint angles `target` (2, 7): straight in joint space when that is free, else round.
+
+    Raises:
+        MotionBlocked: no free way was found.
+    """
+    moving: list[Side] = [side for side in SIDES if side in sides]
+    index = [SIDES.index(side) for side in moving]
+    other = None if len(moving) == 2 else arm_positions[1 - index[0]]
+    start, goal = np.concatenate([arm_positions[n] for n in index]), np.concatenate([target[n] for n in index])
+    points = np.stack((start, goal))
+    if checker is not None:
+        arms = np.array(arm_positions, float)
+
+        def free(q: np.ndarray) -> bool:
+            arms[index] = q.reshape(-1, 7)
+            return checker.free(pose_base_in_map, arms)
+
+        if not segment_free(start, goal, free):
+            limits = [kinematics.limits[side] for side in moving]
+            points = _follow_corners(connect(start, goal, np.concatenate([limit.lower for limit in limits]),
+                                             np.concatenate([limit.upper for limit in limits]), free))
+    waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n:7 * n + 7] for n, side in enumerate(moving)}
+    return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale, hand_speed=hand_speed,
+                             checker=checker, other_arm=other)
+
+
+def _follow_corners(points: np.ndarray) -> np.ndarray:
+    """More points along a polyline (k, n), so that a spline through them keeps close to it."""
+    lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    marks = np.linspace(0.0, lengths[-1], max(2, int(np.ceil(lengths[-1] / 0.25)) + 1))
+    return np.column_stack([np.interp(marks, lengths, column) for column in points.T])
+
+
+def _line_points(start: np.ndarray, goal: np.ndarray) -> int:
+    angle = np.arccos(np.clip((np.trace(start[:3, :3].T @ goal[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
+    distance = np.linalg.norm(goal[:3, 3] - start[:3, 3])
+    return max(1, int(np.ceil(max(distance / _LINE_STEP, angle / _LINE_TURN))))
+
+
+def _between(start: np.ndarray, goal: np.ndarray, share: float) -> np.ndarray:
+    from scipy.spatial.transform import Rotation
+
+    turn = Rotation.from_matrix(goal[:3, :3] @ start[:3, :3].T).as_rotvec()
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.from_rotvec(share * turn).as_matrix() @ start[:3, :3]
+    pose[:3, 3] = (1.0 - share) * start[:3, 3] + share * goal[:3, 3]
+    return pose

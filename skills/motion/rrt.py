@@ -1,0 +1,115 @@
+"""A way through joint space when the straight one is blocked: RRT-Connect with shortcuts, seeded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from .errors import MotionBlocked
+
+_STEP = 0.4  # longest branch of the tree, greatest joint change [rad]
+_RESOLUTION = 0.08  # spacing of the tests along a branch [rad]
+Test = Callable[[np.ndarray], bool]
+
+
+def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test, *,
+            tries: int = 1500, seed: int = 0) -> np.ndarray:
+    """Waypoints (k, n) of a free path between two joint vectors (n,).
+
+    Args:
+        start: where the arms are [rad].
+        goal: where they should be [rad].
+        lower: lower joint limits (n,) [rad].
+        upper: upper joint limits (n,) [rad].
+        free: whether a joint vector is allowed.
+        tries: random samples before giving up.
+        seed: of the samples; the same seed gives the same path.
+
+    Raises:
+        MotionBlocked: start or goal is not free, or no path was found.
+    """
+    for q, what in ((start, "the arms already touch something"), (goal, "the goal posture touches something")):
+        if not free(q):
+            raise MotionBlocked(f"no way to plan: {what}")
+    generator = np.random.default_rng(seed)
+    trees = (_Tree(start), _Tree(goal))
+    forward = True
+    for n in range(tries):
+        grown, other = trees if forward else trees[::-1]
+        sample = other.nodes[0] if n == 0 else generator.uniform(lower, upper)
+        tip = grown.extend(sample, free)
+        if tip is not None:
+            met = other.reach(grown.nodes[tip], free)
+            if met is not None:
+                first, second = (tip, met) if forward else (met, tip)
+                path = np.array(trees[0].branch(first)[::-1] + trees[1].branch(second)[1:])
+                return _shorten(path, free, generator)
+        forward = not forward
+    raise MotionBlocked(f"no free way found for the arms in {tries} tries")
+
+
+def segment_free(a: np.ndarray, b: np.ndarray, free: Test) -> bool:
+    """Whether every posture between two joint vectors is allowed (the first one is taken on trust)."""
+    count = max(1, int(np.ceil(np.abs(b - a).max() / _RESOLUTION)))
+    return all(free(a + (b - a) * (n / count)) for n in range(1, count + 1))
+
+
+class _Tree:
+    def __init__(self, root: np.ndarray) -> None:
+        self.nodes = [np.asarray(root, float)]
+        self._parents = [-1]
+
+    def extend(self, target: np.ndarray, free: Test) -> int | None:
+        """Grow one branch towards `target`; returns the new node."""
+        nearest = int(np.argmin(np.linalg.norm(np.array(self.nodes) - target, axis=1)))
+        return self._grow(nearest, target, free)
+
+    def reach(self, target: np.ndarray, free: Test) -> int | None:
+        """Grow until `target` is met; returns the node that equals it, or None when something is in the way."""
+        node = int(np.argmin(np.linalg.norm(np.array(self.nodes) - target, axis=1)))
+        while True:
+            grown = self._grow(node, target, free)
+            if grown is None:
+                return None
+            if np.abs(self.nodes[grown] - target).max() < 1e-9:
+                return grown
+            node = grown
+
+    def branch(self, node: int) -> list[np.ndarray]:
+        """Nodes from `node` back to the root."""
+        path = []
+        while node >= 0:
+            path.append(self.nodes[node])
+            node = self._parents[node]
+        return path
+
+    def _grow(self, node: int, target: np.ndarray, free: Test) -> int | None:
+        offset = target - self.nodes[node]
+        size = float(np.abs(offset).max())
+        q = target if size <= _STEP else self.nodes[node] + offset * (_STEP / size)
+        if size < 1e-12 or not segment_free(self.nodes[node], q, free):
+            return node if size < 1e-12 else None
+        self.nodes.append(np.asarray(q, float))
+        self._parents.append(node)
+        return len(self.nodes) - 1
+
+
+def _shorten(path: np.ndarray, free: Test, generator: np.random.Generator, rounds: int = 60) -> np.ndarray:
+    """Replace stretches between random points of the path by straight free segments."""
+    points = list(path)
+    for _ in range(rounds):
+        if len(points) < 3:
+            break
+        steps = [float(np.linalg.norm(b - a)) for a, b in pairwise(points)]
+        lengths = np.append(0.0, np.cumsum(steps))
+        first, last = np.sort(generator.uniform(0.0, lengths[-1], 2))
+        i, j = int(np.searchsorted(lengths, first, "right")) - 1, int(np.searchsorted(lengths, last, "right")) - 1
+        if i == j:
+            continue
+        a, b = (points[k] + (points[k + 1] - points[k]) * ((at - lengths[k]) / max(lengths[k + 1] - lengths[k], 1e-12))
+                for k, at in ((i, first), (j, last)))
+        if segment_free(a, b, free):
+            points = [*points[:i + 1], a, b, *points[j + 1:]]
+    return np.array(points)

@@ -1,0 +1,141 @@
+"""Timing of joint motions: as fast as velocity, acceleration and the hand's speed limit allow (toppra)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ...sim.robot import model
+from ...sim.robot.collision import CollisionChecker
+from ...sim.robot.kinematics import Kinematics
+from ...sim.world import SIDES, JointTrajectory, Side
+from .errors import MotionBlocked
+
+SAMPLE_PERIOD = 0.02  # [s]
+_MARGIN = 0.95  # of the limits: between the points where toppra checks them a motion overshoots by a few percent
+HandSpeed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one that depends on where the hand is (3,)
+
+
+def plan_joint_motion(kinematics: Kinematics, waypoints: Mapping[Side, np.ndarray],
+                      pose_base_in_map: np.ndarray | None = None, *, speed_scale: float = 1.0,
+                      hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None,
+                      other_arm: np.ndarray | None = None) -> JointTrajectory:
+    """Time a smooth motion of one or both arms through waypoints, from rest to rest.
+
+    Args:
+        kinematics: the robot.
+        waypoints: by side, (k, 7) joint angles with the current ones first [rad]; both sides need the same k.
+        pose_base_in_map: (3,) where the base stands; needed with `checker` or a `hand_speed` that depends on place.
+        speed_scale: share of the velocity limits to use; accelerations scale with its square.
+        hand_speed: greatest speed of each hand [m/s], or a function of the hand's position in the map.
+        checker: when given, every sample is tested.
+        other_arm: (7,) angles of the arm that does not move, for `checker`; the ready posture when omitted.
+
+    Returns:
+        One trajectory with 7 or 14 joints, sampled every `SAMPLE_PERIOD`.
+
+    Raises:
+        MotionBlocked: a sample collides, or no timing exists.
+        ValueError: waypoints that do not fit together.
+    """
+    sides: list[Side] = [side for side in SIDES if side in waypoints]
+    paths = [np.atleast_2d(np.asarray(waypoints[side], float)) for side in sides]
+    if not paths or any(path.shape != (len(paths[0]), 7) for path in paths):
+        shapes = ", ".join(f"{side} {np.shape(waypoints[side])}" for side in sides)
+        raise ValueError(f"waypoints are (k, 7) for each side with the same k, got {shapes or 'none'}")
+    if not 0.0 < speed_scale <= 1.0:
+        raise ValueError(f"speed_scale must be over 0 and at most 1, got {speed_scale}")
+    base = np.zeros(3) if pose_base_in_map is None else np.asarray(pose_base_in_map, float)
+    points = _distinct(np.hstack(paths))
+    joints = tuple(name for side in sides for name in model.arm_joints(side))
+    if len(points) == 1:  # already there
+        return JointTrajectory(joints=joints, times=np.array((0.0, SAMPLE_PERIOD)), positions=np.repeat(points, 2, 0))
+    times, samples = _retime(kinematics, sides, points, base, speed_scale, hand_speed)
+    if checker is not None:
+        check_motion(checker, sides, samples, base, other_arm)
+    return JointTrajectory(joints=joints, times=times, positions=samples)
+
+
+def check_motion(checker: CollisionChecker, sides: list[Side], samples: np.ndarray, pose_base_in_map: np.ndarray,
+                 other_arm: np.ndarray | None = None) -> None:
+    """Test samples (k, 7 or 14) of the arms on `sides`.
+
+    Raises:
+        MotionBlocked: names the first pair that would touch.
+    """
+    arms = model.READY.copy()
+    if other_arm is not None and len(sides) == 1:
+        arms[1 - SIDES.index(sides[0])] = other_arm
+    for sample in samples[:: max(1, len(samples) // 60)]:
+        for n, side in enumerate(sides):
+            arms[SIDES.index(side)] = sample[7 * n:7 * n + 7]
+        if not checker.free(pose_base_in_map, arms):
+            a, b = checker.collisions(pose_base_in_map, arms)[0]
+            raise MotionBlocked(f"the motion would bring {a.replace('_', ' ')} against {b.replace('_', ' ')}")
+
+
+def _distinct(points: np.ndarray) -> np.ndarray:
+    """Waypoints without repetitions, which a spline cannot pass."""
+    keep = np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-6)
+    return points[keep]
+
+
+def _retime(kinematics: Kinematics, sides: list[Side], points: np.ndarray, base: np.ndarray, scale: float,
+            hand_speed: HandSpeed | None) -> tuple[np.ndarray, np.ndarray]:
+    import toppra
+
+    toppra.setup_logging("ERROR")
+    length = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    path = toppra.SplineInterpolator(length, points)
+    limits = [kinematics.limits[side] for side in sides]
+    velocity = scale * np.concatenate([limit.velocity for limit in limits])
+    acceleration = _MARGIN * scale**2 * np.concatenate([limit.acceleration for limit in limits])
+    constraints: list[Any] = [
+        toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
+        toppra.constraint.JointAccelerationConstraint(np.stack((-acceleration, acceleration), axis=1),
+                                                      toppra.constraint.DiscretizationType.Interpolation),
+    ]
+    if hand_speed is not None:
+        constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed))
+    grid = np.linspace(0.0, length[-1], int(np.clip(length[-1] / 0.02, 40, 200)) + 1)
+    problem = toppra.algorithm.TOPPRA(constraints, path, gridpoints=grid, solver_wrapper="seidel")
+    trajectory: Any = problem.compute_trajectory(0.0, 0.0)
+    if trajectory is None:
+        raise MotionBlocked("no timing of this joint path keeps the velocity and acceleration limits")
+    duration = float(trajectory.duration)
+    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / SAMPLE_PERIOD)) + 1))
+    samples = trajectory(times)
+    lower = np.concatenate([limit.lower for limit in limits])
+    upper = np.concatenate([limit.upper for limit in limits])
+    return times, np.clip(samples, lower, upper)
+
+
+def _hand_speed_constraint(kinematics: Kinematics, sides: list[Side], base: np.ndarray, hand_speed: HandSpeed) -> Any:
+    """A toppra constraint: path speed such that no hand exceeds its limit there."""
+    from toppra.constraint import ConstraintType, DiscretizationType, LinearConstraint
+
+    class HandSpeedConstraint(LinearConstraint):
+        """sdot^2 <= (limit / |d hand / d s|)^2 at every grid point."""
+
+        def __init__(self) -> None:
+            super().__init__()
+            self.dof = 7 * len(sides)
+            self.discretization_type = DiscretizationType.Collocation
+            self._format_string = "    hand speed limit"
+            self.constraint_type = ConstraintType.CanonicalLinear
+
+        def compute_constraint_params(self, path: Any, gridpoints: np.ndarray, *_: Any) -> tuple:
+            bounds = np.full((len(gridpoints), 2), (0.0, 1e6))
+            for n, (q, slope) in enumerate(zip(path(gridpoints), path(gridpoints, 1), strict=True)):
+                for k, side in enumerate(sides):
+                    arm, rate = q[7 * k:7 * k + 7], slope[7 * k:7 * k + 7]
+                    limit = hand_speed
+                    if callable(limit):
+                        limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])
+                    moved = np.linalg.norm(kinematics.jacobian_hand_in_base(side, arm)[:3] @ rate)
+                    bounds[n, 1] = min(bounds[n, 1], (_MARGIN * float(limit) / max(float(moved), 1e-6)) ** 2)
+            return None, None, None, None, None, None, bounds
+
+    return HandSpeedConstraint()

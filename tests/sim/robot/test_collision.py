@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+from caretree.sim.robot import model
+from caretree.sim.robot.collision import CollisionChecker
+from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.world import SIDES
+
+BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
+BASE = np.array((1.0, 0.0, np.pi))
+
+
+@pytest.fixture(scope="module")
+def kinematics():
+    return Kinematics()
+
+
+def test_ready_and_stretched_postures_are_free(kinematics):
+    checker = CollisionChecker(kinematics, BED)
+    assert checker.free(BASE, model.READY)
+    assert checker.free(BASE, np.zeros((2, 7)))
+
+
+def test_hands_clapped_together_collide(kinematics):
+    from caretree.skills.motion.ik import hand_pose, solve_ik
+
+    arms = np.stack([solve_ik(kinematics, side, hand_pose((0.6, 0.0, 1.2), (1, 0, 0)), np.zeros(3), model.READY[n],
+                              free="approach") for n, side in enumerate(SIDES)])
+    pairs = CollisionChecker(kinematics).collisions(np.zeros(3), arms)
+    assert ("left_gripper", "right_gripper") in pairs
+
+
+def test_a_hand_in_the_bed_is_named_and_free_without_the_bed(kinematics):
+    from caretree.skills.motion.ik import hand_pose, solve_ik
+
+    arms = model.READY.copy()
+    arms[0] = solve_ik(kinematics, "left", hand_pose((0.3, -0.3, 0.45), (0, 0, -1)), BASE, arms[0], free="approach")
+    assert CollisionChecker(kinematics).free(BASE, arms)
+    assert ("left_gripper", "box 0") in CollisionChecker(kinematics, BED).collisions(BASE, arms)
+
+
+def test_an_arm_folded_into_the_chest_collides(kinematics):
+    from caretree.skills.motion.ik import hand_pose, solve_ik
+
+    arms = model.READY.copy()
+    arms[1] = solve_ik(kinematics, "right", hand_pose((0.1, -0.05, 1.05), (-1, 0, 0)), np.zeros(3), arms[1], free="any")
+    checker = CollisionChecker(kinematics)
+    assert not checker.free(np.zeros(3), arms)
+    assert any("torso" in pair for pair in checker.collisions(np.zeros(3), arms))

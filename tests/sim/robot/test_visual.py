@@ -1,0 +1,45 @@
+import numpy as np
+from caretree.sim.robot import urdf, visual
+from caretree.sim.robot.kinematics import default_kinematics
+
+
+def test_every_mesh_belongs_to_a_link_and_is_light():
+    meshes = visual.visual_meshes()
+    poses = default_kinematics().link_poses(np.zeros(default_kinematics().model.nq))
+    assert set(meshes) <= set(poses)
+    assert {"base", "torso", "left_wrist", "right_finger_a_link"} <= set(meshes)
+    for vertices, faces, rgb in meshes.values():
+        assert len(faces) <= 1000
+        assert faces.min() >= 0
+        assert faces.max() < len(vertices)
+        assert np.isfinite(vertices).all()
+        assert all(0.0 <= value <= 1.0 for value in rgb)
+
+
+def test_hulls_keep_the_size_of_the_originals_and_face_outwards():
+    vertices, _ = visual._read_mesh("upper_elbow/E0.DAE")
+    hull, faces, _ = visual.visual_meshes()["left_upper_elbow"]
+    np.testing.assert_allclose(hull.min(axis=0), vertices.min(axis=0), atol=0.01)
+    np.testing.assert_allclose(hull.max(axis=0), vertices.max(axis=0), atol=0.01)
+    a, b, c = (hull[faces[:, k]] for k in range(3))
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0  # positive volume: outward winding
+
+
+def test_a_damaged_cache_is_built_again(tmp_path, monkeypatch):
+    monkeypatch.setattr(visual, "cache_folder", lambda: tmp_path)
+    path = tmp_path / f"robot_visual_{visual._VERSION}.npz"
+    path.write_bytes(b"not a zip file")
+    assert visual._load(path) is None
+    assert not path.exists()
+
+
+def test_urdf_is_written_once_and_whole(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    urdf.urdf_path.cache_clear()
+    try:
+        path = urdf.urdf_path()
+        assert path.is_relative_to(tmp_path)
+        assert path.read_text() == urdf.compose()
+        assert [file.name for file in path.parent.iterdir()] == [path.name]
+    finally:
+        urdf.urdf_path.cache_clear()

@@ -1,0 +1,108 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.robot.model import READY
+from caretree.sim.robot.servo import Servo
+from caretree.sim.world import RoomMap
+from caretree.skills.motion.drive import PathFollower
+from caretree.skills.motion.errors import PathBlocked, Unreachable
+from caretree.skills.motion.ik import hand_pose
+from caretree.skills.motion.path import is_free, path_length, plan_path
+from caretree.skills.motion.stance import best_base_pose, reach_score
+
+BED = np.array(((-0.45, -1.0, 0.0), (0.45, 1.0, 0.6)))
+
+
+def room(wall=False):
+    """5 x 6 m with the bed in the middle, inflated by 0.35 m; with `wall`, the foot end touches the wall."""
+    resolution = 0.05
+    xs, ys = np.arange(-2.5, 2.501, resolution), np.arange(-3.0, 3.001, resolution)
+    X, Y = np.meshgrid(xs, ys)
+    free = ~((np.abs(X) < 0.45 + 0.35) & (np.abs(Y) < 1.35))
+    free &= (np.abs(X) < 2.1) & (np.abs(Y) < 2.6)
+    if wall:
+        free &= ~((np.abs(X) < 0.6) & (np.abs(Y) > 1.0))
+    return RoomMap(free=free, origin=np.array((-2.5, -3.0)), resolution=resolution, bed=BED)
+
+
+def test_the_path_goes_round_the_bed_and_is_straightened():
+    path = plan_path(room(), np.array((1.2, 0.0, 3.0)), np.array((-1.2, 0.3)))
+    np.testing.assert_allclose(path[[0, -1]], ((1.2, 0.0), (-1.2, 0.3)))
+    for a, b in pairwise(path):
+        assert all(is_free(room(), point) for point in np.linspace(a, b, 100))
+    assert 3 <= len(path) <= 8
+    assert path_length(path) < 5.0  # the shortest way round is 4.4 m
+
+
+def test_a_free_line_of_sight_is_one_segment():
+    assert len(plan_path(room(), np.array((1.2, -2.0)), np.array((1.2, 2.0)))) == 2
+
+
+def test_a_base_half_under_the_bed_backs_out_first():
+    path = plan_path(room(), np.array((0.7, 0.0)), np.array((1.3, 1.5)))
+    np.testing.assert_allclose(path[0], (0.7, 0.0))
+    assert 0.75 <= path[1, 0] <= 0.95
+    assert abs(path[1, 1]) < 0.1
+
+
+@pytest.mark.parametrize(("start", "goal", "message"), [
+    ((1.2, 0.0), (0.0, 0.0), "obstacle"), ((1.2, 0.0), (9.0, 0.0), "obstacle"),
+    ((0.0, 0.0), (1.2, 0.0), "any free space")])
+def test_impossible_goals_are_told_in_one_sentence(start, goal, message):
+    with pytest.raises(PathBlocked, match=message):
+        plan_path(room(), np.array(start), np.array(goal))
+
+
+def test_walled_off_means_no_way():
+    with pytest.raises(PathBlocked, match="no free way"):
+        plan_path(room(wall=True), np.array((1.2, 0.0)), np.array((-1.2, 0.0)))
+
+
+@pytest.mark.parametrize("tick", [0.05, 0.1])
+def test_the_follower_arrives_within_two_centimetres_and_two_degrees(tick):
+    path = plan_path(room(), np.array((1.5, -1.0)), np.array((-1.2, 0.3)))
+    servo = Servo(Kinematics(), np.array((1.5, -1.0, np.pi)), READY)
+    follower = PathFollower(path, 0.0)
+    now, last = 0.0, np.inf
+    for _ in range(round(60 / tick)):
+        if follower.done(servo.pose_base_in_map):
+            break
+        servo.command(follower.command(servo.pose_base_in_map))
+        now += tick
+        servo.advance(now)
+        assert is_free(room(), servo.pose_base_in_map[:2])
+    assert now < path_length(path) / 0.5 + 6.0
+    for n in range(50):  # the last command runs out: it must not carry the base past its goal
+        servo.advance(now + 0.01 * n)
+    last = np.linalg.norm(servo.pose_base_in_map[:2] - (-1.2, 0.3))
+    assert last < 0.025
+    assert abs((servo.pose_base_in_map[2] + np.pi) % (2 * np.pi) - np.pi) < np.deg2rad(2.5)
+
+
+def test_the_follower_is_done_only_with_the_right_heading():
+    follower = PathFollower(np.array(((0.0, 0.0), (1.0, 0.0))), np.pi)
+    assert not follower.done(np.array((1.0, 0.0, 0.0)))
+    assert follower.done(np.array((0.99, 0.01, -np.pi + 0.01)))
+    turning = follower.command(np.array((1.0, 0.0, 0.0)))
+    assert abs(turning.velocity[2]) > 0.3
+
+
+def test_best_stance_reaches_what_the_waypoint_does_not():
+    kinematics = Kinematics()
+    targets = [("right", hand_pose((-0.1, -0.1, 0.9), (-1, 0, -1))),
+               ("left", hand_pose((-0.1, -0.7, 0.9), (-1, 0, -1)))]
+    near = np.array((1.4, 0.1, np.pi))
+    assert min(reach_score(kinematics, side, pose, near) for side, pose in targets) == 0.0
+    stance = best_base_pose(kinematics, targets, room(), near, radius=0.5, step=0.25)
+    assert stance.reached == 2
+    assert is_free(room(), stance.pose_base_in_map[:2])
+    assert stance.pose_base_in_map[0] < 1.1
+    assert all(reach_score(kinematics, side, pose, stance.pose_base_in_map) > 0 for side, pose in targets)
+
+
+def test_no_stance_is_told():
+    far = hand_pose((-2, 0, 0.9), (-1, 0, 0))
+    with pytest.raises(Unreachable, match="no free base pose"):
+        best_base_pose(Kinematics(), [("left", far)], room(), (1.2, 0, np.pi), radius=0.1)

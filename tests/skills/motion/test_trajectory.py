@@ -1,0 +1,146 @@
+import numpy as np
+import pytest
+from caretree.sim.robot import model
+from caretree.sim.robot.collision import CollisionChecker
+from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.world import SIDES
+from caretree.skills.motion.errors import MotionBlocked, Unreachable
+from caretree.skills.motion.ik import hand_pose
+from caretree.skills.motion.reach import plan_arms, plan_hand_line, plan_reach
+from caretree.skills.motion.trajectory import plan_joint_motion
+
+BASE = np.array((0.95, -0.2, np.pi))
+BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
+
+
+@pytest.fixture(scope="module")
+def kinematics():
+    return Kinematics()
+
+
+def rates(trajectory):
+    step = np.diff(trajectory.times)
+    velocity = np.diff(trajectory.positions, axis=0) / step[:, None]
+    return np.abs(velocity).max(axis=0), np.abs(np.diff(velocity, axis=0) / step[1:, None]).max(axis=0)
+
+
+def hand_path(kinematics, trajectory, side):
+    n = trajectory.joints.index(f"{side}_s0")
+    return np.array([kinematics.pose_hand_in_map(side, q[n:n + 7], BASE)[:3, 3] for q in trajectory.positions])
+
+
+def hand_speed(kinematics, trajectory, side):
+    path = hand_path(kinematics, trajectory, side)
+    return np.linalg.norm(np.diff(path, axis=0), axis=1) / np.diff(trajectory.times)
+
+
+def random_waypoints(kinematics, count, seed):
+    generator = np.random.default_rng(seed)
+    return {side: np.vstack((model.READY[n], generator.uniform(0.6 * kinematics.limits[side].lower,
+                                                               0.6 * kinematics.limits[side].upper, (count, 7))))
+            for n, side in enumerate(SIDES)}
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.4])
+def test_limits_are_kept_and_one_of_them_is_used(kinematics, scale):
+    for seed in range(3):
+        trajectory = plan_joint_motion(kinematics, random_waypoints(kinematics, 4, seed), speed_scale=scale)
+        limits = [kinematics.limits[side] for side in SIDES]
+        speed, acceleration = rates(trajectory)
+        assert (speed <= 1.02 * scale * np.concatenate([limit.velocity for limit in limits])).all()
+        share = acceleration / scale**2 / np.concatenate([limit.acceleration for limit in limits])
+        assert (share <= 1.1).all()
+        assert share.max() > 0.8
+        assert trajectory.joints == model.ALL_ARM_JOINTS
+        assert trajectory.times[0] == 0.0
+        assert np.diff(trajectory.times).max() <= 0.0201
+
+
+def test_it_passes_its_waypoints_and_rests_at_both_ends(kinematics):
+    waypoints = {"left": random_waypoints(kinematics, 3, 9)["left"]}
+    trajectory = plan_joint_motion(kinematics, waypoints)
+    for point in waypoints["left"]:
+        assert np.abs(trajectory.positions - point).max(axis=1).min() < 0.05
+    np.testing.assert_allclose(trajectory.positions[[0, -1]], waypoints["left"][[0, -1]], atol=1e-6)
+    ends = np.abs(np.diff(trajectory.positions, axis=0)[[0, -1]]) / 0.02
+    assert ends.max() < 0.06
+
+
+def test_the_hand_obeys_its_speed_limit_where_the_limit_holds(kinematics):
+    waypoints = random_waypoints(kinematics, 2, 5)
+    slow = plan_joint_motion(kinematics, waypoints, BASE, hand_speed=0.15)
+    assert max(hand_speed(kinematics, slow, side).max() for side in SIDES) <= 0.15
+
+    def near_the_head(position):
+        return 0.1 if position[0] < 0.45 else 10.0
+
+    goals = {"right": hand_pose((0.2, -0.1, 0.9), (-1, 0, -1))}
+    trajectory = plan_reach(kinematics, goals, model.READY, BASE, free="approach", hand_speed=near_the_head)
+    speed, path = hand_speed(kinematics, trajectory, "right"), hand_path(kinematics, trajectory, "right")
+    assert speed[path[:-1, 0] < 0.44].max() <= 0.102
+    free = plan_reach(kinematics, goals, model.READY, BASE, free="approach")
+    assert trajectory.times[-1] > free.times[-1]
+
+
+def test_being_there_already_is_a_motion_too(kinematics):
+    trajectory = plan_joint_motion(kinematics, {"left": np.stack((model.READY[0], model.READY[0]))})
+    np.testing.assert_allclose(trajectory.positions, np.stack((model.READY[0],) * 2))
+
+
+def test_waypoints_that_do_not_fit_are_refused(kinematics):
+    with pytest.raises(ValueError, match="same k"):
+        plan_joint_motion(kinematics, {"left": np.zeros((2, 7)), "right": np.zeros((3, 7))})
+    with pytest.raises(ValueError, match="speed_scale"):
+        plan_joint_motion(kinematics, {"left": np.zeros((2, 7))}, speed_scale=2.0)
+
+
+def test_a_line_is_straight_and_keeps_both_hands_together(kinematics):
+    goals = {}
+    for n, side in enumerate(SIDES):
+        pose = kinematics.pose_hand_in_map(side, model.READY[n], BASE)
+        pose[:3, 3] += (-0.15, 0.05, 0.2)
+        goals[side] = pose
+    trajectory = plan_hand_line(kinematics, goals, model.READY, BASE, hand_speed=0.2)
+    for side in SIDES:
+        path = hand_path(kinematics, trajectory, side)
+        along = (path[-1] - path[0]) / np.linalg.norm(path[-1] - path[0])
+        off = (path - path[0]) - np.outer((path - path[0]) @ along, along)
+        assert np.abs(off).max() < 1e-3
+        np.testing.assert_allclose(path[-1], goals[side][:3, 3], atol=1e-3)
+    apart = hand_path(kinematics, trajectory, "left") - hand_path(kinematics, trajectory, "right")
+    assert np.ptp(apart, axis=0).max() < 1e-3
+
+
+def test_a_line_out_of_reach_or_through_the_bed_is_refused(kinematics):
+    pose = kinematics.pose_hand_in_map("left", model.READY[0], BASE)
+    pose[:3, 3] += (-1.2, 0.0, 0.0)
+    with pytest.raises(Unreachable):
+        plan_hand_line(kinematics, {"left": pose}, model.READY, BASE)
+    low = kinematics.pose_hand_in_map("left", model.READY[0], BASE)
+    low[:3, 3] += (0.0, 0.0, -0.3)
+    with pytest.raises(MotionBlocked, match="box 0"):
+        plan_hand_line(kinematics, {"left": low}, model.READY, BASE, free="approach",
+                       checker=CollisionChecker(kinematics, BED))
+
+
+def test_reaching_goes_round_what_is_in_the_way(kinematics):
+    board = np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),))
+    checker = CollisionChecker(kinematics, board)
+    arms = model.READY.copy()
+    before, beyond = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (-0.75, -0.28))
+    arms[0] = plan_reach(kinematics, {"left": before}, arms, BASE, free="approach", checker=checker).positions[-1]
+    straight = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach")
+    assert not all(checker.free(BASE, np.stack((q, arms[1]))) for q in straight.positions)
+    round_it = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
+    assert all(checker.free(BASE, np.stack((q, arms[1]))) for q in round_it.positions[::3])
+    hand = kinematics.pose_hand_in_map("left", round_it.positions[-1], BASE)
+    np.testing.assert_allclose(hand[:3, 3], beyond[:3, 3], atol=1e-3)
+    again = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
+    np.testing.assert_array_equal(again.positions, round_it.positions)
+
+
+def test_no_way_out_of_a_box_is_told(kinematics):
+    hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
+    inside = CollisionChecker(kinematics, np.array(((hand - 0.3, hand + 0.3),)))
+    with pytest.raises(MotionBlocked, match="already touch"):
+        plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, checker=inside)
