@@ -5,3 +5,7 @@ from __future__ import annotations
 
 class CaretreeError(Exception):
     """A user's or a world's mistake, told in one sentence; the command line prints it and exits with 2."""
+
+
+class RecordError(CaretreeError):
+    """A record cannot be written or read."""

@@ -12,8 +12,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from .errors import RecordError
 from .spool import disk_error
-from .truth import RecordError
 
 Outcome = Literal["success", "failure", "safe_stop"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from .errors import RecordError
 from .record import (
     RUN_FILE,
     SPOOL_FOLDER,
@@ -26,7 +27,7 @@ from .record import (
     write_run,
 )
 from .spool import Spool, disk_error, write_npz
-from .truth import RecordError, TruthFrame, TruthStatic
+from .truth import TruthFrame, TruthStatic
 from .video import VideoWriter
 
 FRAME_PERIOD = 0.08  # [s] of world clock between truth frames: 12.5 a second, DESIGN.md asks for at least 10

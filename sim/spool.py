@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .truth import RecordError, TruthFrame, TruthStatic, frame_type
+from .errors import RecordError
+from .truth import TruthFrame, TruthStatic, frame_type
 
 CHUNK = 256  # frames held in memory at once while writing truth.npz
 

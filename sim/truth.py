@@ -10,14 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import CaretreeError
+from .errors import RecordError
 
 LOOPS = ("armhole_left", "cuff_left", "armhole_right", "cuff_right")
 TORSO_POINTS_MIN = 100  # DESIGN.md: m >= 100
-
-
-class RecordError(CaretreeError):
-    """A record cannot be written or read."""
 
 
 def _check_shape(name: str, array: np.ndarray, shape: tuple[int | None, ...]) -> None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .errors import RecordError
 from .spool import disk_error
-from .truth import RecordError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

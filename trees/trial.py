@@ -12,11 +12,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..sim.errors import CaretreeError
+from ..sim.errors import CaretreeError, RecordError
 from ..sim.evaluate.verdict import evaluate
 from ..sim.record import is_finished, read_run
 from ..sim.spool import disk_error
-from ..sim.truth import RecordError
 
 TRIAL_FILE = "trial.json"
 CARETREE = (sys.executable, "-m", "caretree.trees.cli")

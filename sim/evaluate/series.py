@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..truth import RecordError
+from ..errors import RecordError
 from ..world import SIDES
 from .plausibility import motion
 from .truth_file import Truth, read_arrays, read_truth

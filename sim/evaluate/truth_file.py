@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import RecordError
 from ..record import SPOOL_FOLDER, TRUTH_FILE
-from ..truth import LOOPS, RecordError
+from ..truth import LOOPS
 
 # T frames, V vertices; None is free
 SHAPES: dict[str, tuple[str | int | None, ...]] = {

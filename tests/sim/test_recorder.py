@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from caretree.sim.errors import RecordError
 from caretree.sim.record import RunResult, StageResult, is_finished, read_finished_run, read_run
 from caretree.sim.recorder import Recorder
 from caretree.sim.spool import open_spool
-from caretree.sim.truth import RecordError, TruthFrame, TruthStatic
+from caretree.sim.truth import TruthFrame, TruthStatic
 
 RESULT = RunResult(outcome="failure", reason="The gown fell.", sim_time_s=0.5,
                    stages=(StageResult(name="A", status="failure", attempts=2),), timing={"physics": 0.25})

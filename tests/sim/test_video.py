@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.sim.truth import RecordError
+from caretree.sim.errors import RecordError
 from caretree.sim.video import VideoWriter, read_pictures
 
 

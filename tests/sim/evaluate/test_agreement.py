@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from caretree.sim.errors import RecordError
 from caretree.sim.evaluate.coverage import coverage
 from caretree.sim.evaluate.crossings import crossing
 from caretree.sim.evaluate.plausibility import depth_inside
 from caretree.sim.evaluate.verdict import evaluate
-from caretree.sim.truth import RecordError
 
 JUDGE = Path(__file__).parents[3] / ".." / "shared" / "judge" / "judge_run.py"
 pytestmark = pytest.mark.skipif(not JUDGE.exists(), reason=f"the outside judge is not at {JUDGE}")
