@@ -17,7 +17,7 @@ _SINGULAR = 0.06  # smallest singular value below which damping sets in
 
 
 class TwistTracker:
-    """Follows a `HandTwist` with one arm, holding the hand's path in the map even while the base moves.
+    """Follows a `HandTwist` with one arm; until it expires the hand's path holds in the map even while the base moves.
 
     The twist is ramped at `model.HAND_ACCELERATION`, integrated into a hand pose, and that pose is followed
     with feedback, so a purely linear twist does not turn the hand.
@@ -75,7 +75,7 @@ class TwistTracker:
         for part, limit in zip((slice(0, 3), slice(3, 6)), model.HAND_ACCELERATION, strict=True):
             change = wanted[part] - self._twist[part]
             self._twist[part] += change * min(1.0, limit * dt / max(float(np.linalg.norm(change)), 1e-12))
-        if time > self._until and np.abs(self._twist).max() < 1e-6 and np.abs(twist_base).max() < 1e-6:
+        if time > self._until and np.abs(self._twist).max() < 1e-6:
             self.cancel()
             return None
         self._pose = self._lead(_integrate(goal, self._twist, dt), pose)

@@ -21,8 +21,8 @@ from .urdf import baxter_folder, cache_folder, write_atomically
 
 Mesh = tuple[np.ndarray, np.ndarray, tuple[float, float, float]]
 
-_VERSION = 1  # of the cached file: raise it when the meshes change
-_GRID = 0.008  # vertices closer than this are one [m]
+_VERSION = 2  # of the cached file: raise it when the meshes change
+_GRID = 0.008  # vertices closer than this are one [m]; more for a large link
 
 # Link (without its side) -> mesh file, axis it is sliced along, slices, colour.
 _BAXTER: dict[str, tuple[str, int, int, tuple[float, float, float]]] = {
@@ -109,10 +109,11 @@ def _slice_hulls(vertices: np.ndarray, faces: np.ndarray, axis: int,
     """Convex hulls of what lies between equally spaced planes across `axis`."""
     edges = np.linspace(vertices[:, axis].min(), vertices[:, axis].max(), slices + 1)
     points = np.concatenate((vertices, *(_cut(vertices, faces, axis, plane) for plane in edges[1:-1])))
+    grid = max(_GRID, float(np.ptp(vertices, axis=0).max()) / 60.0)
     hulls = []
     for low, high in pairwise(edges):
         inside = points[(points[:, axis] >= low - 1e-6) & (points[:, axis] <= high + 1e-6)]
-        hull = _hull(np.unique(np.round(inside / _GRID), axis=0) * _GRID)
+        hull = _hull(np.unique(np.round(inside / grid), axis=0) * grid)
         if hull is not None:
             hulls.append(hull)
     return hulls

@@ -9,7 +9,7 @@ import numpy as np
 from ...sim.robot.collision import CollisionChecker
 from ...sim.robot.kinematics import Kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
-from .errors import Unreachable
+from .errors import MotionBlocked, Unreachable
 from .ik import FreeAxis, solve_ik
 from .rrt import connect, segment_free
 from .trajectory import HandSpeed, plan_joint_motion
@@ -96,27 +96,37 @@ def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndar
     index = [SIDES.index(side) for side in moving]
     other = None if len(moving) == 2 else arm_positions[1 - index[0]]
     start, goal = np.concatenate([arm_positions[n] for n in index]), np.concatenate([target[n] for n in index])
-    points = np.stack((start, goal))
-    if checker is not None:
-        arms = np.array(arm_positions, float)
 
-        def free(q: np.ndarray) -> bool:
-            arms[index] = q.reshape(-1, 7)
-            return checker.free(pose_base_in_map, arms)
+    def timed(points: np.ndarray) -> JointTrajectory:
+        waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n:7 * n + 7] for n, side in enumerate(moving)}
+        return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale,
+                                 hand_speed=hand_speed, checker=checker, other_arm=other)
 
-        if not segment_free(start, goal, free):
-            limits = [kinematics.limits[side] for side in moving]
-            points = _follow_corners(connect(start, goal, np.concatenate([limit.lower for limit in limits]),
-                                             np.concatenate([limit.upper for limit in limits]), free))
-    waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n:7 * n + 7] for n, side in enumerate(moving)}
-    return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale, hand_speed=hand_speed,
-                             checker=checker, other_arm=other)
+    if checker is None:
+        return timed(np.stack((start, goal)))
+    arms = np.array(arm_positions, float)
+
+    def free(q: np.ndarray) -> bool:
+        arms[index] = q.reshape(-1, 7)
+        return checker.free(pose_base_in_map, arms)
+
+    if segment_free(start, goal, free):
+        return timed(np.stack((start, goal)))
+    limits = [kinematics.limits[side] for side in moving]
+    corners = connect(start, goal, np.concatenate([limit.lower for limit in limits]),
+                      np.concatenate([limit.upper for limit in limits]), free)
+    for spacing in (0.25, 0.1):  # a spline through wide-spaced points is quicker, and may cut a corner
+        try:
+            return timed(_subdivide(corners, spacing))
+        except MotionBlocked:
+            continue
+    return timed(_subdivide(corners, 0.04))
 
 
-def _follow_corners(points: np.ndarray) -> np.ndarray:
+def _subdivide(points: np.ndarray, spacing: float) -> np.ndarray:
     """More points along a polyline (k, n), so that a spline through them keeps close to it."""
     lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-    marks = np.linspace(0.0, lengths[-1], max(2, int(np.ceil(lengths[-1] / 0.25)) + 1))
+    marks = np.linspace(0.0, lengths[-1], max(2, int(np.ceil(lengths[-1] / spacing)) + 1))
     return np.column_stack([np.interp(marks, lengths, column) for column in points.T])
 
 

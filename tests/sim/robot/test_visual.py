@@ -9,7 +9,7 @@ def test_every_mesh_belongs_to_a_link_and_is_light():
     assert set(meshes) <= set(poses)
     assert {"base", "torso", "left_wrist", "right_finger_a_link"} <= set(meshes)
     for vertices, faces, rgb in meshes.values():
-        assert len(faces) <= 1000
+        assert len(faces) <= 600
         assert faces.min() >= 0
         assert faces.max() < len(vertices)
         assert np.isfinite(vertices).all()
