@@ -82,6 +82,7 @@ class ScriptedWorld(World):
         frames: `(camera, time) -> Frame`; flat grey pictures by default.
         room: map; `scripted_room()` by default.
         kinematics: anything with `pose_hand_in_map` and `jacobian_hand_in_map`; linear arms by default.
+        stopping_time: how long arms and base run on after a stop, slowing down evenly [s].
 
     Attributes:
         time: the clock, whose `time` may be set.
@@ -92,7 +93,7 @@ class ScriptedWorld(World):
     """
 
     def __init__(self, *, seed: int = 0, frames: Callable[[str, float], Frame] | None = None,
-                 room: RoomMap | None = None, kinematics: Any = None) -> None:
+                 room: RoomMap | None = None, kinematics: Any = None, stopping_time: float = 0.15) -> None:
         self.time = VirtualClock(self._advance_to)
         self.clock = self.time
         self.room = room or scripted_room()
@@ -110,6 +111,8 @@ class ScriptedWorld(World):
         self._twists: dict[Side, HandTwist] = {}
         self._twist_until: dict[Side, float] = {}
         self._motions: list[_Motion] = []
+        self._stopping_time = stopping_time
+        self._coast_start, self._coast_q, self._coast_base = -np.inf, np.zeros((2, 7)), np.zeros(3)
         self._opening = np.full(2, STROKE)
         self._opening_goal = np.full(2, STROKE)
         self._force_limit = np.zeros(2)
@@ -123,7 +126,7 @@ class ScriptedWorld(World):
         wrench = np.stack([self.load[side] for side in SIDES]) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
         poses = np.stack([self.kinematics.pose_hand_in_map(side, self._q[n], self._base)
                           for n, side in enumerate(SIDES)])
-        moving = self._base_velocity if now < self._base_until else np.zeros(3)
+        moving = self._base_velocity if now < self._base_until else self._coast_base * self._slowing(now)
         return Observation(
             time=now, arm_positions=self._q.copy(), arm_velocities=self._dq.copy(), arm_efforts=np.zeros((2, 7)),
             head_pan=self._head, pose_base_in_map=self._base.copy(), twist_base=np.array(moving, float),
@@ -151,13 +154,17 @@ class ScriptedWorld(World):
             motion = self._motion(command, now)
             self._drop(set(motion.slots))
             self._motions.append(motion)
+            for arm in {arm for arm, _ in motion.slots if arm >= 0}:
+                self._end_coasting(arm)
             for n, side in enumerate(SIDES):
                 if any(arm == n for arm, _ in motion.slots):
                     self._twists.pop(side, None)
         elif isinstance(command, HandTwist):
             self._drop({(SIDES.index(command.side), joint) for joint in range(7)})
+            self._end_coasting(SIDES.index(command.side))
             self._twists[command.side], self._twist_until[command.side] = command, now + command.duration
         elif isinstance(command, BaseVelocity):
+            self._end_coasting(-1)
             self._base_velocity, self._base_until = np.array(command.velocity, float), now + command.duration
         elif isinstance(command, GripperOpening):
             n = SIDES.index(command.side)
@@ -166,11 +173,28 @@ class ScriptedWorld(World):
         return command
 
     def stop(self) -> None:
-        """End every motion now; the fingers go on holding."""
+        """End every motion, which takes the stopping time; the fingers go on holding."""
+        now = self.clock.now()
+        driving = now < self._base_until
+        if self._motions or self._twists or driving:
+            self._coast_start, self._coast_q = now, self._dq.copy()
+            self._coast_base = self._base_velocity.copy() if driving else np.zeros(3)
         self._motions.clear()
         self._twists.clear()
-        self._base_until = self.clock.now()
-        self._dq[:] = 0.0
+        self._base_until = now
+
+    def _slowing(self, time: float) -> float:
+        """Fraction of the speed that is left at `time` after a stop."""
+        if self._stopping_time <= 0.0:
+            return 0.0
+        return float(np.clip(1.0 - (time - self._coast_start) / self._stopping_time, 0.0, 1.0))
+
+    def _end_coasting(self, arm: int) -> None:
+        """A new command takes an arm over (-1: the base)."""
+        if arm < 0:
+            self._coast_base = np.zeros(3)
+        else:
+            self._coast_q[arm] = 0.0
 
     def _motion(self, command: JointTrajectory, now: float) -> _Motion:
         slots: list[tuple[int, int]] = []
@@ -192,6 +216,7 @@ class ScriptedWorld(World):
     def _advance_to(self, time: float) -> None:
         while self.time.time < time - 1e-9:
             self._step(min(STEP, time - self.time.time))
+        self.time.time = max(self.time.time, time)  # without the rounding of the sum
 
     def _step(self, dt: float) -> None:
         now = self.time.time + dt
@@ -213,10 +238,12 @@ class ScriptedWorld(World):
                 continue
             jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
             self._q[arm] += np.linalg.pinv(jacobian, rcond=1e-3) @ np.asarray(twist.twist_in_map, float) * moved
+        left = self._slowing(now)
+        self._q += self._coast_q * left * dt
         driven = max(min(self._base_until, now) - self.time.time, 0.0)
         c, s = np.cos(self._base[2]), np.sin(self._base[2])
-        vx, vy, turn = self._base_velocity
-        self._base += driven * np.array((c * vx - s * vy, s * vx + c * vy, turn))
+        vx, vy, turn = driven * self._base_velocity + dt * left * self._coast_base
+        self._base += np.array((c * vx - s * vy, s * vx + c * vy, turn))
         goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
         self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
         self._dq = (self._q - before) / dt

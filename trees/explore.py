@@ -32,6 +32,10 @@ class _Known(Exception):  # noqa: N818 ends an execution, no defect
     """This situation has been explored already."""
 
 
+class _Round(Exception):  # noqa: N818 a finding about the tree
+    """The same situation twice in one execution."""
+
+
 class _Missing(Exception):  # noqa: N818 a finding about the tree
     """A leaf reads what is not there."""
 
@@ -104,6 +108,7 @@ class Explorer:
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._seen: set[Any] = set()
+        self._met: set[Any] = set()  # situations of the present execution
         self._prefix: list[int] = []
         self._taken: list[int] = []
         self._way: list[tuple[Stub, Any]] = []
@@ -129,10 +134,13 @@ class Explorer:
         """The outcome of `leaf` in this execution: True, a Reason, or None for never."""
         options = self._options[leaf]
         depth = len(self._taken)
+        situation = self._situation(leaf)
+        if situation in self._met:
+            raise _Round(f"the tree goes round for ever at {leaf.name}")
+        self._met.add(situation)
         if depth < len(self._prefix):
             choice = self._prefix[depth]
         else:
-            situation = self._situation(leaf)
             if situation in self._seen:
                 raise _Known
             self._seen.add(situation)
@@ -156,8 +164,8 @@ class Explorer:
             self._find("the tree does not end")
         except _Known:
             return
-        except _Missing as missing:
-            self._find(str(missing))
+        except (_Missing, _Round) as finding:
+            self._find(str(finding))
 
     def _pass_time(self) -> None:
         """When a leaf hangs, the next timeout is what happens next."""
@@ -180,6 +188,7 @@ class Explorer:
 
     def _reset(self) -> None:
         self.board.clear()
+        self._met.clear()
         self._taken, self._way, self._hung = [], [], False
         self._clock.time = 0.0
         for node in self._nodes:
@@ -188,17 +197,25 @@ class Explorer:
                 node.current_child = None
 
     def _situation(self, leaf: Stub) -> Any:
-        state: list[Any] = [id(leaf), frozenset(self.board)]
-        for node in self._nodes:
-            state.append(node.status)
-            if isinstance(node, py_trees.composites.Composite) and node.current_child is not None:
-                state.append(id(node.current_child))
-            if isinstance(node, Wrapper):
-                state.append(node.failure.reason if node.failure else None)
-            if isinstance(node, (Retry, RecoverBy)) and node.status == Status.RUNNING:
-                state.append(node.tried)
+        """All that decides what can happen from here on."""
+        active = {leaf, *(above for above, _ in _ancestors(leaf))}
         moved = any(each.commands and each not in self._in_safe for each, _ in self._way)
-        return (*state, moved)
+        return leaf.id, frozenset(self.board), moved, self._state(self._root, active)
+
+    def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
+        """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
+        if node not in active and node.status != Status.RUNNING:
+            return node.status
+        state: list[Any] = [node.status]
+        if isinstance(node, (Retry, RecoverBy)):
+            state.append(node.tried)
+        if isinstance(node, FailSafe) or (isinstance(node, RecoverBy) and node.recovering is not None):
+            state.append(node.failure.reason if node.failure else None)
+        remembers = isinstance(node, Wrapper) or getattr(node, "memory", False) is True
+        if remembers and isinstance(node, py_trees.composites.Composite):
+            child = node.current_child
+            return (*state, child and child.id, child and self._state(child, active))
+        return (*state, *(self._state(child, active) for child in node.children))
 
     def _outcomes(self, stub: Stub) -> list[Any]:
         """True, then each reason that makes a difference above, then `never` under a timeout."""

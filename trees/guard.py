@@ -58,7 +58,7 @@ class GuardedWorld:
         self.clock = inner.clock
         self.room = inner.room
         self._inner = inner
-        self._zone = PersonZone(inner.room.bed)
+        self._zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
         self._hand_positions = hand_positions_from(kinematics or getattr(inner, "kinematics", None))
         self._grip: dict[Side, Grip] = {"left": "nothing", "right": "nothing"}

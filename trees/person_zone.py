@@ -12,10 +12,12 @@ class PersonZone:
 
     Args:
         bed: (2, 3) lower and upper corner [m], taken as the person until a part has been seen.
+        above_bed: how far the person may rise above it [m].
     """
 
-    def __init__(self, bed: np.ndarray) -> None:
+    def __init__(self, bed: np.ndarray, above_bed: float = 0.0) -> None:
         self._bed = np.sort(np.asarray(bed, float).reshape(2, 3), axis=0)
+        self._bed[1, 2] += above_bed
         self._parts: dict[str, tuple[np.ndarray, float]] = {}
 
     def update(self, points_in_map: np.ndarray, *, part: str, radius: float) -> None:
