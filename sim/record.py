@@ -95,8 +95,8 @@ def peak_memory() -> float | None:
         import resource
     except ImportError:  # not on Windows
         return None
-    unit = 1e6 if sys.platform == "darwin" else 1e3  # bytes there, kibibytes elsewhere
-    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit, 1)
+    unit = 1 if sys.platform == "darwin" else 1024  # [bytes] what the system counts in
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6, 1)
 
 
 def write_run(directory: Path, run: Mapping[str, Any]) -> None:

@@ -44,7 +44,8 @@ class VideoWriter:
         self._last = -1
         try:
             self._container: Any = av.open(str(path), "w", format="mp4",
-                                           options={"movflags": "+hybrid_fragmented+frag_keyframe"})
+                                           options={"movflags": "+hybrid_fragmented+frag_keyframe",
+                                                    "flush_packets": "1"})  # each fragment at once, not every 32 kB
             stream: Any = self._container.add_stream("libx264", rate=25)
             stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
             # one thread: physics owns the cores; a keyframe every 25 pictures bounds what a kill loses
@@ -111,6 +112,8 @@ def _time_base() -> Fraction:
 def read_pictures(path: Path, times: list[float]) -> list[np.ndarray]:
     """The picture shown at each of `times` [s from the start of the file], in the order given.
 
+    A video cut short by a kill is read up to the cut.
+
     Returns:
         One (H, W, 3) uint8 for each time; a time past the end gives the last picture.
 
@@ -122,18 +125,19 @@ def read_pictures(path: Path, times: list[float]) -> list[np.ndarray]:
 
     found: dict[int, np.ndarray] = {}
     order = sorted(range(len(times)), key=times.__getitem__)
+    shown: Any = None
     try:
         with av.open(str(path)) as container:
-            shown: Any = None
             for frame in container.decode(video=0):
                 while shown is not None and order and times[order[0]] < (frame.time or 0.0):
                     found[order.pop(0)] = shown.to_ndarray(format="rgb24")
                 if not order:
                     break
                 shown = frame
-            if shown is None:
-                raise RecordError(f"{path} holds no picture")
-            found.update({index: shown.to_ndarray(format="rgb24") for index in order})
     except (OSError, FFmpegError) as error:
-        raise RecordError(f"{path} is not a readable video") from error
+        if shown is None:
+            raise RecordError(f"{path} is not a readable video") from error
+    if shown is None:
+        raise RecordError(f"{path} holds no picture")
+    found.update({index: shown.to_ndarray(format="rgb24") for index in order})
     return [found[index] for index in range(len(times))]

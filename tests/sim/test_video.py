@@ -1,5 +1,9 @@
 """The video is H.264, keeps the world's pace and refuses odd pictures."""
 
+import signal
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from caretree.sim.errors import RecordError
@@ -46,3 +50,21 @@ def test_missing_folder_and_broken_file_are_one_sentence(tmp_path):
     (tmp_path / "broken.mp4").write_bytes(b"no video")
     with pytest.raises(RecordError, match="not a readable video"):
         read_pictures(tmp_path / "broken.mp4", [0.0])
+
+
+def test_killed_run_leaves_a_readable_video(tmp_path):
+    path = tmp_path / "video.mp4"
+    code = f"""
+import os, signal, numpy as np
+from pathlib import Path
+from caretree.sim.video import VideoWriter
+rng = np.random.default_rng(0)
+writer = VideoWriter(Path({str(path)!r}), width=64, height=48)
+for k in range(120):
+    writer.add(0.1 * k, np.full((48, 64, 3), 2 * k, dtype=np.uint8) + rng.integers(0, 9, (48, 64, 3), dtype=np.uint8))
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == -signal.SIGKILL
+    early, last = read_pictures(path, [1.0, 99.0])
+    assert early.mean() == pytest.approx(24, abs=4)
+    assert last.mean() > 100  # well past the first half
