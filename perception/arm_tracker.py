@@ -64,6 +64,7 @@ class ArmTracker:
         self._filter: Any = None
         self._rejected = 0
         self._wrong = 0
+        self._frame_stamp = -np.inf
 
     @property
     def started(self) -> bool:
@@ -83,6 +84,9 @@ class ArmTracker:
         if self._filter is None:
             self._start(frame, view)
             return len(view.points)
+        if frame.stamp <= self._frame_stamp:
+            return 0  # a picture seen twice is not new evidence
+        self._frame_stamp = frame.stamp
         self._predict(frame.stamp)
         if self._deviation().max() > _LOST:
             return self._find_again(frame, view)
@@ -230,7 +234,7 @@ class ArmTracker:
         self._lengths = np.linalg.norm(np.diff(fit.joints, axis=0), axis=1)
         self._shoulder = fit.joints[0].copy()
         self._rejected = self._wrong = 0
-        self.time = self.seen = stamp
+        self.time = self.seen = self._frame_stamp = stamp
 
     def _predict(self, time: float) -> None:
         step = time - self.time

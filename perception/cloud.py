@@ -63,9 +63,9 @@ def clusters(points: np.ndarray, gap: float) -> np.ndarray:
     """Label (n,) of each point; two points closer than `gap` [m] share a label.  0 is the largest cluster."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    pairs = cKDTree(points).query_pairs(gap, output_type="ndarray")
+    pairs = KDTree(points).query_pairs(gap, output_type="ndarray")
     n = len(points)
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     count, labels = connected_components(graph, directed=False)
@@ -79,9 +79,9 @@ def geodesic(points: np.ndarray, start: int, gap: float) -> np.ndarray:
     """Distance (n,) along the surface from point `start` [m]; steps are at most `gap`, infinite where none lead."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import dijkstra
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    pairs = cKDTree(points).query_pairs(gap, output_type="ndarray")
+    pairs = KDTree(points).query_pairs(gap, output_type="ndarray")
     lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
     graph = coo_matrix((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
     return dijkstra(graph.tocsr(), directed=False, indices=start)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from ..sim.world import Frame, Side
 from .cloud import across, clusters, geodesic, main_direction, pixel_scale, points_in_map, project, surface_normal, unit
 from .colours import Surface
 from .errors import PerceptionFailure, Problem
-from .estimates import CollarLine, GraspPoint
+from .estimates import COLLAR_OF, CORNER_OF, CollarLine, GraspPoint
 from .garment import gown_labels
 
 _MOST = 1200  # points of the binding that are worked on
@@ -128,7 +127,7 @@ def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.nd
     return float((0.25 + 0.75 * min(1.0, close / 10)) * (0.4 + 0.6 * size) * (0.4 + 0.6 * facing))
 
 
-def collar_corner(frame: Frame, corner: Literal["left", "right"], exclude: np.ndarray | None = None,
+def collar_corner(frame: Frame, corner: Side, exclude: np.ndarray | None = None,
                   below: float = 0.0) -> GraspPoint:
     """The end of the neck binding that looks most like a corner, where it meets the shoulder seam.
 
@@ -148,7 +147,7 @@ def collar_corner(frame: Frame, corner: Literal["left", "right"], exclude: np.nd
     best = wanted[0]
     approach = best.position_in_map - frame.pose_camera_in_map[:3, 3]
     approach = unit(np.array((approach[0], approach[1], 0.0)))
-    return GraspPoint(stamp=frame.stamp, confidence=best.score, target=f"collar_corner_{corner}",
+    return GraspPoint(stamp=frame.stamp, confidence=best.score, target=CORNER_OF[corner],
                       position_in_map=best.position_in_map, approach_in_map=approach,
                       closing_in_map=across(best.outward_in_map, approach))
 
@@ -174,6 +173,6 @@ def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray, 
     strip = points[np.linalg.norm(points - position, axis=1) < 0.05]
     position = np.median(points[np.linalg.norm(points - position, axis=1) < 0.02], axis=0)
     normal = surface_normal(strip, frame.pose_camera_in_map[:3, 3])
-    return GraspPoint(stamp=frame.stamp, confidence=min(1.0, near.sum() / 60), target=f"collar_{side}",
+    return GraspPoint(stamp=frame.stamp, confidence=min(1.0, near.sum() / 60), target=COLLAR_OF[side],
                       position_in_map=position, approach_in_map=-normal,
                       closing_in_map=across(main_direction(strip), -normal))

@@ -11,6 +11,9 @@ from ..sim.world import Side
 
 GraspTarget = Literal["near_hang", "collar_corner_left", "collar_corner_right", "sleeve_left", "sleeve_right",
                       "collar_left", "collar_right"]
+SLEEVE_OF: dict[Side, GraspTarget] = {"left": "sleeve_left", "right": "sleeve_right"}
+COLLAR_OF: dict[Side, GraspTarget] = {"left": "collar_left", "right": "collar_right"}
+CORNER_OF: dict[Side, GraspTarget] = {"left": "collar_corner_left", "right": "collar_corner_right"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +91,8 @@ class CollarLine(Estimate):
         points_in_map: (n, 3) along the binding [m].
         whole: (2,) bool, whether the first and last point are ends of what is seen inside the image, not its border.
         length: along the points [m].
-        straightness: distance between the ends divided by the length; near 1 when the gown is stretched out.
+        straightness: distance between the ends divided by the length; near 1 when the gown is stretched out between
+            two hands (then the ends are there), and also where the binding hangs straight down from one.
     """
 
     points_in_map: np.ndarray

@@ -69,7 +69,7 @@ def head_seen(frame: Frame, bed: np.ndarray) -> Head:
     candidates = points[(np.abs(points[:, 0] - middle_of_bed) < 0.30) & (points[:, 1] < bed[:, 1].mean() - 0.35)]
     if len(candidates) < 40:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "head")
-    crown = float(np.percentile(candidates[:, 1], 1.0))
+    crown = float(np.percentile(candidates[:, 1], 0.5))
     blob = candidates[candidates[:, 1] < crown + 0.14]
     width = float(np.ptp(np.percentile(blob[:, 0], (2, 98))))
     height = float(np.percentile(blob[:, 2], 95)) - bed[1, 2]
@@ -78,6 +78,31 @@ def head_seen(frame: Frame, bed: np.ndarray) -> Head:
     cut = skin[0].any() or skin[:, 0].any() or skin[:, -1].any()
     border = np.array((*frame.depth.shape[::-1], 0))
     confidence = min(1.0, len(blob) / 150) * (0.8 if cut and border.any() else 1.0)
-    middle = float(np.percentile(blob[:, 0], (3, 97)).mean())
+    middle = _centre_of_round(blob[blob[:, 1] > crown + 0.05])
+    crown = _end_of_round(blob[blob[:, 1] < crown + 0.08], crown)
     return Head(crown_in_map=np.array((middle, crown, float(np.median(blob[:, 2])))), middle=middle,
                 confidence=float(confidence))
+
+
+def _centre_of_round(points: np.ndarray) -> float:
+    """X of the centre of a round body along y, of which only the side towards the camera is seen (n, 3)."""
+    x, z = points[:, 0], points[:, 2]
+    plain = float(np.percentile(x, (3, 97)).mean())
+    if len(points) < 20:
+        return plain
+    # x^2 + z^2 = 2 a x + 2 b z + c is linear in the centre (a, b)
+    system = np.column_stack([2 * x, 2 * z, np.ones(len(x))])
+    a, b, c = np.linalg.lstsq(system, x**2 + z**2, rcond=None)[0]
+    radius = np.sqrt(max(c + a**2 + b**2, 0.0))
+    return float(a) if 0.06 < radius < 0.13 and abs(a - plain) < 0.06 else plain
+
+
+def _end_of_round(points: np.ndarray, seen: float) -> float:
+    """Y of the far end of a ball of which the crown itself is turned away from the camera; `seen` is what shows [m]."""
+    if len(points) < 20:
+        return seen
+    system = np.column_stack([2 * points, np.ones(len(points))])
+    *centre, rest = np.linalg.lstsq(system, (points**2).sum(axis=1), rcond=None)[0]
+    radius = np.sqrt(max(rest + float(np.square(centre).sum()), 0.0))
+    end = float(centre[1] - radius)
+    return end if 0.06 < radius < 0.13 and -0.08 < end - seen < 0.01 else seen

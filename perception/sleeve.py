@@ -8,7 +8,7 @@ from ..sim.world import Frame, Side
 from .cloud import across, clusters, geodesic, main_direction, points_in_map, surface_normal, unit
 from .colours import Surface
 from .errors import PerceptionFailure, Problem
-from .estimates import SleeveOpening
+from .estimates import SLEEVE_OF, SleeveOpening
 from .garment import gown_labels
 
 _HALF_WIDTH = 0.08  # of an adult's armhole laid flat [m]
@@ -20,8 +20,8 @@ def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveO
     """Find the armhole nearest to a point and the middle of its rim on the shoulder's side.
 
     The armhole's upper edge, along the strap that will be the shoulder seam, is what has to travel up the arm, so
-    its middle is taken.  Where the neck binding, whose end marks that edge, is hidden, the middle of what is seen of the
-    ring is taken, with little confidence.
+    its middle is taken.  Where the neck binding, whose end marks that edge, is hidden, the middle of what is seen
+    of the ring is taken, with little confidence.
 
     Args:
         frame: a view of the gown lying on the person.
@@ -50,7 +50,7 @@ def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveO
     around = ring_points[np.linalg.norm(ring_points - position, axis=1) < 0.06]
     normal = surface_normal(around if len(around) >= 8 else ring_points, frame.pose_camera_in_map[:3, 3])
     low, high = np.percentile(ring_points, (5, 95), axis=0)
-    return SleeveOpening(stamp=frame.stamp, confidence=confidence, target=f"sleeve_{side}", position_in_map=position,
+    return SleeveOpening(stamp=frame.stamp, confidence=confidence, target=SLEEVE_OF[side], position_in_map=position,
                          approach_in_map=-normal, closing_in_map=across(edge, -normal), ring_points_in_map=ring_points,
                          centre_in_map=(low + high) / 2)
 
@@ -62,12 +62,12 @@ def _strap_edge(labels: np.ndarray, cloud: np.ndarray, ring: np.ndarray) -> tupl
     sleeve mostly lies folded over that edge, so its middle is not the middle of what is seen: it is half
     an armhole's width from the corner along the strap, which may bend down over the edge of the bed.
     """
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     seen = np.isfinite(cloud[..., 2])
     navy = cloud[(labels == Surface.COLLAR) & seen]
     navy = navy[:: len(navy) // 1000 + 1]
-    near = cKDTree(ring).query(navy)[0] if len(navy) >= 8 else np.array([np.inf])
+    near = KDTree(ring).query(navy)[0] if len(navy) >= 8 else np.array([np.inf])
     if near.min() > 0.12:  # the neck binding is hidden: the part of the ring seen is all there is
         return np.median(ring, axis=0), main_direction(ring), 0.2
     end = np.median(navy[near <= max(0.03, float(near.min()) + 0.02)], axis=0)
