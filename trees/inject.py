@@ -20,13 +20,12 @@ from ..skills.context import Perception, Phase
 from ..skills.reasons import Reason, SkillFailure
 from ..skills.skill import Skill
 from .decorators import FailSafe, RecoverBy
-from .runner import Run
+from .runner import OPEN, Run
 from .tasks import Task
 
 MakeWorld = Callable[[], tuple[World, Perception | None]]
 SETTLE = 1.0  # [s] watched after the end for anything that still moves
 MOVED = 0.02  # [rad] or [m] in that time
-OPEN = 0.07  # [m] fingers further apart than this hold nothing
 SIGNS = {"success": "ok", "safe_stop": "stop", "failure": "fail", "not_reached": "-"}
 
 

@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
+import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -34,7 +35,10 @@ from .limits import DEFAULT, Limits
 from .tasks import Task
 from .trace import Trace
 
-RELEASED_OPENING = 0.08  # [m] lets go of anything the fingers can hold
+RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
+OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
+OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
+CALM_TICKS = 5
 DEAD_CLOCK_TICKS = 30  # ticks without any progress of the world's clock
 
 
@@ -212,8 +216,9 @@ class Run:
             failure = Failure(Reason.INTERNAL_ERROR, f"the tree ended as {self.root.status.name}", self.root.name)
         branches = [node for node in self.root.iterate() if isinstance(node, FailSafe)]
         owed = failure is not None and (not branches or any(node.entered for node in branches))
-        stood = self._last_resort(release=owed)
         made_safe = any(node.made_safe is not None for node in branches)
+        # even a safe branch that succeeded may have misread fingers that were on their way
+        stood = self._last_resort(release=failure is not None and (owed or made_safe))
         self.trace.sweep()
         if failure is None:
             outcome, reason = "success", "The task is done."
@@ -271,26 +276,30 @@ class Run:
     def _last_resort(self, release: bool = True) -> bool:
         """Stop until nothing moves, open the fingers if asked to; True when the robot stands still.
 
-        A stop may be lost on its way, so it is repeated.  Errors are kept: nothing may keep the rest from happening.
+        A command may be lost on its way, so stop and open are sent until they are seen to have worked for some
+        ticks on end.  Errors are kept: nothing may keep the rest from happening.
         """
-        opened = not release
         ends = self.context.now() + self.limits.stop_patience
+        calm, wanted = 0, CALM_TICKS if release else 1
+        before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
             self._try(self.context.lease.advance)
             self._try(self.guard.stop)
-            if not opened:
-                opened = all([self._try(lambda side=side: self.world.send(
-                    GripperOpening(side=side, opening=RELEASED_OPENING)), default=None) is not None for side in SIDES])
+            if release:
+                for side in SIDES:
+                    self._try(lambda side=side: self.world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
             rests = bool(self._try(self.guard.still, default=False))
-            if (rests and opened and not self.context.lease.releasing()) or self.context.now() >= ends:
+            opening = self._try(lambda: self.world.observe().gripper_opening, default=np.zeros(2))
+            opened = not release or bool((opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all())
+            before = opening
+            calm = calm + 1 if rests and opened and not self.context.lease.releasing() else 0
+            if calm >= wanted or self.context.now() >= ends:
                 break
             if self._try(lambda: self._pass_time() or True, default=False) is False:
                 break
-        else:
-            rests = False
         self.context.lease.clear()
         self._try(self.guard.stop)
-        return rests
+        return calm > 0
 
     def _try(self, action: Callable[[], Any], default: Any = None) -> Any:
         try:

@@ -174,16 +174,16 @@ class Forgetful(Explorer):
             return False
 
     def __init__(self, root):
-        super().__init__(root, limit=20_000)
+        super().__init__(root, limit=3_000)
         self._seen = self._Nothing()
 
 
 def random_tree(rng, context, depth, names):
     """Any tree that can be built, sound or not."""
-    kind = rng.integers(0, 8 if depth > 0 else 2)
+    kind = rng.integers(2, 8) if depth > 0 else 0
     name = f"n{next(names)}"
     if kind < 2:
-        keys = {"used": Key(f"k{rng.integers(2)}")} if rng.random() < 0.4 else {}
+        keys = {"used": Key(f"k{rng.integers(2)}")} if rng.random() < 0.15 else {}
         return (Use if keys else Make)(name, context, **(keys or {"made": Key(f"k{rng.integers(2)}")}))
 
     def below():
@@ -203,7 +203,7 @@ def random_tree(rng, context, depth, names):
     return safe(context, below())
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(40))
 def test_remembering_situations_hides_nothing(seed):
     """Against following every way of a random tree: the same faults are found, with less work."""
     found = []

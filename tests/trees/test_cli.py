@@ -1,0 +1,156 @@
+"""The command line as its user meets it."""
+
+import errno
+import json
+import subprocess
+import sys
+
+import pytest
+from caretree.sim.recorder import Recorder
+from caretree.trees.cli import main
+
+
+@pytest.fixture(autouse=True)
+def in_an_empty_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_run_shows_progress_outcome_and_paths(tmp_path, capsys):
+    assert main(["run", "wave", "--world", "scripted", "--seed", "3"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "    0.00 s > wave"
+    assert lines[1].startswith("    0.00 s     > hand up: turns w1 by 0.60 rad")
+    assert "success: The task is done." in lines
+    assert "runs/wave-seed3/run.json" in lines
+    record = json.loads((tmp_path / "runs/wave-seed3/run.json").read_text())
+    assert (record["task"], record["seed"], record["world"], record["outcome"]) == ("wave", 3, "scripted", "success")
+    assert [stage["name"] for stage in record["stages"]] == ["wave", "hold"]
+    assert len(record["trace_hash"]) == 64
+    assert main(["run", "wave", "--world", "scripted", "--seed", "3"]) == 0
+    assert json.loads((tmp_path / "runs/wave-seed3-2/run.json").read_text())["trace_hash"] == record["trace_hash"]
+
+
+def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
+    assert main(["run", "wave", "--world", "scripted", "--inject", "dead_camera@hold still:start", "--out", "r"]) == 1
+    assert "safe stop: A sensor gave nothing. [hold still]" in capsys.readouterr().out
+    record = json.loads((tmp_path / "r/run.json").read_text())
+    assert record["outcome"] == "safe_stop"
+    assert record["parameters"]["inject"] == ["dead_camera@hold still:start"]
+    assert [stage["status"] for stage in record["stages"]] == ["success", "failure"]
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
+    ([], "required: COMMAND"),
+    (["fly"], "invalid choice: 'fly'"),
+    (["run"], "required: TASK"),
+    (["run", "dance"], "unknown task 'dance'; there are"),
+    (["run", "wave", "--seed", "-1"], "'-1' is no seed"),
+    (["run", "wave", "--seed", "one"], "'one' is no seed: a whole number from 0"),
+    (["run", "wave", "--seed", "4294967296"], "is no seed"),
+    (["run", "wave", "--world", "mars"], "invalid choice: 'mars'"),
+    (["run", "wave", "--world", "ros1"], "ros1 adapter is not in this version"),
+    (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
+    (["run", "wave", "--world", "scripted", "--inject", "slip"], "is not written FAULT@NODE:PHASE"),
+    (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
+    (["run", "wave", "--world", "scripted", "--stage", "C"], "unexpected keyword argument 'stage'"),
+    (["check", "dance"], "unknown task 'dance'"),
+    (["inject", "wave", "--fault", "rain"], "unknown fault 'rain'; there are"),
+    (["replay", "nowhere"], "nowhere is not a folder"),
+    (["evaluate", "nowhere"], "nowhere"),
+    (["trials", "dance", "-n", "1", "--world", "scripted"], "unknown task 'dance'"),
+])
+def test_a_users_mistake_is_one_sentence_and_status_2(arguments, said, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert said in captured.err
+    assert captured.err.startswith("caretree: ")
+    assert captured.err.count("\n") == 1
+    assert "Traceback" not in captured.err
+
+
+def test_a_finished_record_is_not_overwritten(capsys):
+    assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 0
+    assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 2
+    assert "already holds a finished run" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("event", [0, 5])
+def test_a_full_disk_is_one_sentence_and_loses_nothing(tmp_path, monkeypatch, capsys, event):
+    class Full:
+        def __init__(self, file):
+            self.file, self.count = file, 0
+
+        def write(self, line):
+            self.count += 1
+            if self.count > event:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return self.file.write(line)
+
+        def close(self):
+            self.file.close()
+
+    made = Recorder.__init__
+
+    def init(self, *args, **kwargs):
+        made(self, *args, **kwargs)
+        self._trace = Full(self._trace)
+
+    monkeypatch.setattr(Recorder, "__init__", init)
+    assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("caretree: the disk is full")
+    assert error.count("\n") == 1
+    assert len((tmp_path / "r/trace.jsonl").read_text().splitlines()) == event
+    assert json.loads((tmp_path / "r/run.json").read_text())["outcome"] is None
+
+
+def test_check_says_what_holds_and_what_does_not(tmp_path, capsys):
+    assert main(["check", "wave"]) == 0
+    assert capsys.readouterr().out.startswith("wave holds: ")
+    (tmp_path / "bad.py").write_text("""
+from caretree.trees.tasks.wave import LetGo
+
+
+def build(context):
+    return LetGo("let go", context)
+""")
+    assert main(["check", "bad.py"]) == 1
+    out = capsys.readouterr().out
+    assert "fault: let go: it moves the robot, but no FailSafe is above it" in out
+    assert "bad.py does not hold" in out
+
+
+def test_inject_keeps_rows_and_goes_on(tmp_path, capsys):
+    assert main(["inject", "wave", "--fault", "occlusion", "--out", "i"]) == 0
+    first = capsys.readouterr().out
+    path = tmp_path / "i/inject.jsonl"
+    whole = path.read_text()
+    path.write_text("".join(whole.splitlines(keepends=True)[:4]) + '{"node": "cut sho')
+    assert main(["inject", "wave", "--fault", "occlusion", "--out", "i"]) == 0
+    second = capsys.readouterr().out
+    assert first[first.index("node "):] == second[second.index("node "):]
+    assert second.count("[") < first.count("[")
+
+
+def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
+    import types
+    given = []
+    monkeypatch.setitem(sys.modules, "caretree.learning.gap", types.ModuleType("caretree.learning.gap"))
+    module = types.ModuleType("caretree.learning.gap.cli")
+    module.main = lambda argv: given.append(argv) or 7
+    monkeypatch.setitem(sys.modules, "caretree.learning.gap.cli", module)
+    assert main(["gap", "run", "SET", "--out", "x"]) == 7
+    assert given == [["run", "SET", "--out", "x"]]
+
+
+def test_help_is_instant_because_nothing_heavy_is_imported():
+    code = ("import sys; from caretree.trees.cli import main\n"
+            "try: main(['--help'])\n"
+            "except SystemExit: pass\n"
+            "heavy = {'numpy', 'scipy', 'pybullet', 'pinocchio', 'toppra', 'numba', 'cv2', 'matplotlib', 'torch', "
+            "'av', 'py_trees'}\n"
+            "print(sorted(heavy & set(sys.modules)))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+    for command in ("run", "check", "inject", "replay", "trials", "evaluate", "gap", "learn"):
+        assert command in done.stdout

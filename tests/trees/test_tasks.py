@@ -1,0 +1,83 @@
+import pytest
+from caretree.sim.scripted import ScriptedWorld
+from caretree.skills.context import Context
+from caretree.trees.guard import GuardedWorld
+from caretree.trees.runner import run
+from caretree.trees.tasks import TaskError, load_task, task_names
+
+GOOD = """
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from caretree.skills.ports import Input
+from caretree.skills.skill import Skill
+from caretree.trees.decorators import FailSafe
+
+
+@dataclass
+class Size:
+    metres: float
+
+
+class Wait(Skill):
+    seconds = Input(float, default=0.5)
+
+    def steps(self):
+        yield from self.wait(self.seconds)
+
+
+def build(context, seconds: float = 0.5):
+    return FailSafe("safe", Wait("wait", context, seconds=seconds), Wait("stay", context))
+"""
+
+
+def build(task, **params):
+    guard = GuardedWorld(ScriptedWorld())
+    return task.build(Context(world=guard, guard=guard), **params)
+
+
+def test_named_tasks_build():
+    assert "wave" in task_names()
+    for name in task_names():
+        world, perception = load_task(name).scripted(0)
+        guard = GuardedWorld(world)
+        load_task(name).build(Context(world=guard, guard=guard, perception=perception))
+
+
+def test_a_users_own_file_runs(tmp_path):
+    path = tmp_path / "mine.py"
+    path.write_text(GOOD)
+    task = load_task(str(path))
+    assert task.name == "mine"
+    result = run(task, ScriptedWorld(), params={"seconds": 2.0})
+    assert result.outcome == "success"
+    assert 2.0 < result.sim_time_s < 2.5
+
+
+@pytest.mark.parametrize(("change", "line", "said"), [
+    (lambda text: text.replace("def build(", "def make("), 1, "a task needs a function build(context)"),
+    (lambda text: text.replace("    return FailSafe(", "    return FailSafe(("), 24, "was never closed"),
+    (lambda text: text.replace("decorators import", "decorator import"), 8, "No module named"),
+    (lambda text: text.replace('seconds=seconds)', 'second=seconds)'), 24, "Wait has no port 'second'; it has seconds"),
+    (lambda text: text.replace('    return FailSafe', '    FailSafe'), 23, "build() returned NoneType"),
+    (lambda text: text + "\nraise KeyError('x')\n", 26, "KeyError: 'x'"),
+    (lambda text: text.replace('seconds=seconds)', 'seconds="long")'), 24, "takes float, but was given str 'long'"),
+])
+def test_a_broken_file_is_told_with_its_line(tmp_path, change, line, said):
+    path = tmp_path / "mine.py"
+    path.write_text(change(GOOD))
+    with pytest.raises(TaskError) as error:
+        build(load_task(str(path)))
+    assert str(error.value).startswith(f"{path}:{line}: ")
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_unknown_tasks_files_and_parameters():
+    with pytest.raises(TaskError, match=r"unknown task 'dance'; there are .*wave.*, or give the path of a \.py file"):
+        load_task("dance")
+    with pytest.raises(TaskError, match=r"task file nowhere/x\.py does not exist"):
+        load_task("nowhere/x.py")
+    with pytest.raises(TaskError, match=r"wave\.py:\d+: .*unexpected keyword argument 'colour'"):
+        build(load_task("wave"), colour="red")
