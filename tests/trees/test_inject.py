@@ -57,7 +57,7 @@ def test_recoveries_and_safe_branches_are_reached_too():
 
 def test_an_arm_is_never_left_held():
     def build(context):
-        body = sequence("s", Grasp("grasp arm", context), Plan("lift", context, outcomes=[True], ticks=10),
+        body = sequence("s", Grasp("grasp arm", context), Plan("lift", context, outcomes=[True], ticks=30),
                         Release("put down", context))
         return FailSafe("safe", body, Release("let go", context))
 
