@@ -1,0 +1,149 @@
+"""What the four steps say, as frozen values that become verdict.json."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+VerdictName = Literal["adequate", "recalibration", "effects", "unknown"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Where:
+    """A place where model and measurement disagree beyond noise.
+
+    Attributes:
+        channel: column of the measurement (joint load, height, marker).
+        target: joint or region it belongs to.
+        episode: name of the episode.
+        t0, t1: interval [s].
+        state_region: what the system was doing.
+        phase: named phase that covers most of it, or "".
+        p_value: after correction for everything tried.
+        size: root mean square disagreement there over the noise floor.
+        effect: effect that explains it, or "".
+    """
+
+    channel: str
+    target: str
+    episode: str
+    t0: float
+    t1: float
+    state_region: str
+    phase: str
+    p_value: float
+    size: float
+    effect: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Value:
+    """A fitted number with its 95 % interval."""
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffectFinding:
+    """One effect, named.
+
+    Attributes:
+        name: from the bank, or `mass` and the like under recalibration.
+        target: joint, body, region.
+        parameters: values with units and intervals.
+        equivalent: other names this data cannot tell from it.
+        experiment: what would tell them apart, computed.
+        size: root mean square of its load over the floor, in the channel it changes most.
+        smallest: smallest size of this effect this data could have shown, as a factor of the size found.
+        confidence: part of the bootstrap resamples in which it keeps paying its price.
+    """
+
+    name: str
+    target: str
+    parameters: tuple[Value, ...]
+    equivalent: tuple[str, ...] = ()
+    experiment: str = ""
+    size: float = 0.0
+    smallest: float = float("nan")
+    confidence: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gap:
+    """Root mean square disagreement on held-out episodes.
+
+    Attributes:
+        unit: of every number.
+        floor, before, after: over all channels.
+        low, high: 95 % interval of `after / before`.
+        channels: channel -> the same three.
+    """
+
+    unit: str
+    floor: float
+    before: float
+    after: float
+    low: float
+    high: float
+    channels: dict[str, dict[str, float]] = field(default_factory=dict)
+
+    @property
+    def closed(self) -> float:
+        """Part of the gap above the floor that is gone, by root mean square; NaN where there was none."""
+        above = self.before - self.floor
+        return float(np.clip((self.before - self.after) / above, -9.0, 1.0)) if above > 1e-3 * self.before else float("nan")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Placebo:
+    """A control that must not help: what was put in, and how the held-out gap changed (after / before)."""
+
+    what: str
+    ratio: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """Everything the workflow says about one measurement set."""
+
+    set: str
+    system: str
+    verdict: VerdictName
+    where: tuple[Where, ...]
+    effects: tuple[EffectFinding, ...]
+    recalibration: tuple[EffectFinding, ...]
+    gap: Gap
+    alpha: float
+    p_value: float
+    floor_source: str
+    guess: str = ""
+    placebos: tuple[Placebo, ...] = ()
+    forward: Gap | None = None
+    detectable: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; numbers that are not finite become null."""
+        return _plain({**dataclasses.asdict(self), "gap": {**dataclasses.asdict(self.gap), "closed": self.gap.closed}})
+
+
+def _plain(x: Any) -> Any:
+    if isinstance(x, dict):
+        return {str(k): _plain(v) for k, v in x.items()}
+    if isinstance(x, list | tuple):
+        return [_plain(v) for v in x]
+    if isinstance(x, bool | np.bool_):
+        return bool(x)
+    if isinstance(x, int | np.integer):
+        return int(x)
+    if isinstance(x, float | np.floating):
+        return float(x) if np.isfinite(x) else None
+    return x

@@ -1,0 +1,146 @@
+"""Effects this data cannot tell apart, and the experiment that would."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .block import AXIS_IS_MASS, Block
+from .log import JointLog
+from .rigid import RigidModel
+from .search import Search
+
+SAME = 9.0  # drop of the Wald statistic below which two explanations count as equal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Alternative:
+    """Another explanation that fits as well.
+
+    Attributes:
+        names: effects of the other explanation.
+        blocks: their blocks.
+        replaces: index of the chosen block it stands for.
+    """
+
+    names: tuple[str, ...]
+    blocks: tuple[Block, ...]
+    replaces: int
+
+
+def alternatives(search: Search, chosen: tuple[int, ...], index: int) -> list[Alternative]:
+    """Explanations that could stand in for one chosen block without a noticeably worse fit."""
+    block = search.blocks[index]
+    base = float(search.rows @ np.log(search.rss(chosen)))
+    rest = tuple(i for i in chosen if i != index)
+    slack = SAME * max(search.widening[index], 1.0)
+    out: dict[tuple[str, ...], tuple[float, Alternative]] = {}
+
+    def consider(new: tuple[int, ...]) -> None:
+        theta = search.fit((*rest, *new))
+        mine = theta[len(search.columns(rest)):]
+        if not np.any(np.abs(mine) > 1e-9):
+            return
+        worse = float(search.rows @ np.log(search.rss((*rest, *new), theta))) - base
+        names = tuple(search.blocks[i].name + ("" if search.blocks[i].target == block.target else
+                                               f" of {search.blocks[i].target}") for i in new)
+        if worse < slack and (names not in out or worse < out[names][0]):
+            out[names] = (worse, Alternative(names=names, replaces=index,
+                                             blocks=tuple(search.blocks[i] for i in new)))
+
+    for i, other in enumerate(search.blocks):
+        if i in chosen or other.key == block.key or not set(other.channels) & set(block.channels):
+            continue
+        if block.name in other.contains and other.target == block.target:
+            continue  # a richer form of the same effect always fits as well; that says nothing
+        if not search.clash(i, rest):
+            consider((i,))
+    if block.name == "asymmetric_friction":
+        parts = [i for i, b in enumerate(search.blocks) if b.target == block.target
+                 and b.name in ("coulomb_friction", "offset") and i not in chosen]
+        if len(parts) == 2:
+            consider(tuple(parts))
+    if block.name in ("coulomb_friction", "offset"):
+        partner = [i for i in rest if search.blocks[i].target == block.target
+                   and {block.name, search.blocks[i].name} == {"coulomb_friction", "offset"}]
+        unequal = [i for i, b in enumerate(search.blocks) if b.key == ("asymmetric_friction", block.target)]
+        if partner and unequal:
+            new = tuple(i for i in rest if i != partner[0])
+            worse = float(search.rows @ np.log(search.rss((*new, unequal[0])))) - base
+            if worse < slack:
+                out[("asymmetric_friction",)] = (worse, Alternative(
+                    names=("asymmetric_friction",), blocks=(search.blocks[unequal[0]],), replaces=index))
+    return [a for _, a in sorted(out.values(), key=lambda pair: pair[0])][:4]
+
+
+def mass_twins(block: Block) -> tuple[str, ...]:
+    """Effects with exactly the columns of a recalibrated axis mass."""
+    return tuple(sorted({*AXIS_IS_MASS, "payload"})) if block.key == ("mass", "axis") else ()
+
+
+def experiments(model: RigidModel, log: JointLog) -> dict[str, JointLog]:
+    """Motions that could be run next, made from a log: the sentence for the reader and the log it would give."""
+    out = {}
+    for text, factor in (("repeat the same path at half the speed", 0.5), ("repeat the same path at a fifth of the speed", 0.2),
+                         ("repeat the same path at twice the speed", 2.0)):
+        out[text] = _again(model, log, log.q, log.dq * factor, log.ddq * factor**2, 1.0 / factor)
+    steps = _staircase(log)
+    out["hold still at eight positions across the range"] = _again(model, log, steps, 0 * steps, 0 * steps, 1.0)
+    middle = log.q.mean(axis=0)
+    out["repeat the same path with half the range"] = _again(model, log, middle + 0.5 * (log.q - middle), 0.5 * log.dq,
+                                                              0.5 * log.ddq, 1.0)
+    terms = [t for t in model.body_terms() if t.name in ("payload", "mass")]
+    term = next((t for t in terms if t.name == "payload"), terms[0] if terms else None)
+    if term is not None:
+        typical = float(np.abs(log.rigid).max()) * 0.05 + 0.5
+        values = {p.name: (typical if p.name == "mass" else 0.0) for p in term.parameters}
+        heavier = model.patched(term, values)
+        out[f"repeat the same path with {typical:.1f} kg added at the end"] = _again(heavier, log, log.q, log.dq, log.ddq, 1.0)
+    return out
+
+
+def _staircase(log: JointLog) -> np.ndarray:
+    low, high = log.q.min(axis=0), log.q.max(axis=0)
+    return low + (high - low) * (np.floor(np.linspace(0, 7.999, len(log.t)))[:, None] / 7.0)
+
+
+def _again(model: RigidModel, log: JointLog, q, dq, ddq, stretch: float) -> JointLog:
+    rigid = model.load(q, dq, ddq)
+    return replace(log, name=f"{log.name}*", t=log.t[0] + (log.t - log.t[0]) * stretch, dt=log.dt * stretch,
+                   cutoff=log.cutoff / stretch, q=q, dq=dq, ddq=ddq, rigid=rigid, measured=rigid, residual=0.0 * rigid)
+
+
+def best_experiment(block: Block, theta: np.ndarray, other: Alternative, model: RigidModel, logs: list[JointLog],
+                    floor: np.ndarray) -> tuple[str, float]:
+    """The motion in which two explanations differ most, both having to explain the old data too.
+
+    Returns:
+        (sentence, predicted difference in units of the noise floor).
+    """
+    def columns(blocks: tuple[Block, ...], log: JointLog) -> np.ndarray:
+        channel = block.channels[0] if len(block.channels) == 1 else int(np.argmax(
+            [np.abs(block.build(logs[0])[:, k] @ theta).max() / floor[c] for k, c in enumerate(block.channels)]))
+        c = block.channels[channel] if len(block.channels) > 1 else block.channels[0]
+        return np.concatenate([b.build(log)[:, b.channels.index(c), :] for b in blocks if c in b.channels], axis=1) / floor[c]
+
+    old = np.concatenate([columns(other.blocks, log) for log in logs])
+    target = np.concatenate([columns((block,), log) @ theta for log in logs])
+    best = ("", 0.0)
+    for text, log in experiments(model, logs[0]).items():
+        X, y = columns(other.blocks, log), columns((block,), log) @ theta
+        fit = np.linalg.lstsq(np.concatenate([old, X]), np.concatenate([target, y]), rcond=None)[0]
+        apart = float(np.sqrt(np.mean((y - X @ fit) ** 2)))
+        for b in (block, *other.blocks):  # synthetic logs are not kept
+            _forget(b, log.name)
+        if apart > best[1]:
+            best = (text, apart)
+    return best
+
+
+def _forget(block: Block, name: str) -> None:
+    for cell in block.build.__closure__ or ():
+        if isinstance(cell.cell_contents, dict):
+            cell.cell_contents.pop(name, None)
+
+

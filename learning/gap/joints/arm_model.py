@@ -1,0 +1,173 @@
+"""A serial arm predicted by pinocchio from a URDF."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ....sim.effects.effect import Parameter
+from ....sim.effects.link_inertia import with_point_mass, with_scaled_mass
+from ..errors import GapError
+from .rigid import BodyTerm, RigidModel
+
+GRAVITY = (0.0, 0.0, -9.81)
+MASS_DEVIATION = 0.1  # a link mass in a URDF is usually right to a tenth
+
+
+def find_urdf(robot: str, folder: Path) -> Path:
+    """Path of a robot's URDF: a file beside the measurement set, or a name in example-robot-data.
+
+    Raises:
+        GapError: there is none; the message lists names that resemble the one given.
+    """
+    for path in (Path(robot), folder / robot):
+        if path.suffix == ".urdf" and path.is_file():
+            return path
+    if robot.endswith(".urdf"):
+        raise GapError(f"robot: no URDF file {robot} (looked beside measurement.yaml too)")
+    root = Path(sys.prefix) / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
+    base = root / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
+    files = sorted(base.rglob("*.urdf"), key=lambda p: (len(p.stem), str(p)))
+    for match in (lambda s: s == robot, lambda s: s.startswith(robot + "_"), lambda s: s.startswith(robot)):
+        for path in files:
+            if match(path.stem.lower() if robot.islower() else path.stem):
+                return path
+    near = [p.stem for p in files if robot.lower()[:3] in p.stem.lower()][:5] or ["ur10", "panda"]
+    raise GapError(f"robot is '{robot}', it must be a URDF file or a name in example-robot-data such as {', '.join(near)}")
+
+
+class ArmModel(RigidModel):
+    """Inverse dynamics by the recursive Newton-Euler algorithm, forward by the articulated-body algorithm."""
+
+    def __init__(self, urdf: Path, joints: int, gravity: tuple[float, float, float] = GRAVITY) -> None:
+        """Build the model and lock every joint beyond the first `joints` movable ones.
+
+        Raises:
+            GapError: the URDF cannot be read or has fewer movable joints.
+        """
+        import pinocchio as pin
+
+        try:
+            full = pin.buildModelFromUrdf(str(urdf))
+        except Exception as error:  # pinocchio raises several kinds
+            raise GapError(f"{urdf}: not a URDF that pinocchio can read ({str(error).splitlines()[0]})") from None
+        movable = [i for i in range(1, full.njoints) if full.joints[i].nv == 1]
+        if len(movable) < joints:
+            raise GapError(f"{urdf}: has {len(movable)} movable joints, the columns name {joints}")
+        tool = full.frames  # bodies fixed to the last measured link keep their own inertia as frames
+        self.tool = None
+        for frame in tool:
+            if frame.parentJoint == movable[joints - 1] and frame.inertia.mass > 1e-6:
+                part = frame.placement.act(frame.inertia)
+                self.tool = part if self.tool is None else self.tool + part
+        lock = [i for i in range(1, full.njoints) if i not in movable[:joints]]
+        self.model = pin.buildReducedModel(full, lock, pin.neutral(full)) if lock else full
+        self.model.gravity.linear = np.asarray(gravity, dtype=float)
+        self.urdf = urdf
+        self._finish(pin)
+
+    def _finish(self, pin) -> None:
+        self._pin = pin
+        self.data = self.model.createData()
+        self.joints = tuple(self.model.names[1:])
+        self.prismatic = tuple("P" in self.model.joints[i].shortname()[10:12] for i in range(1, self.model.njoints))
+        self._round = [self.model.joints[i].nq == 2 for i in range(1, self.model.njoints)]
+
+    def configuration(self, q: np.ndarray) -> np.ndarray:
+        """Pinocchio's configuration of joint angles (n,): continuous joints become cosine and sine."""
+        if not any(self._round):
+            return np.ascontiguousarray(q)
+        out = []
+        for angle, turning in zip(q, self._round, strict=True):
+            out += [np.cos(angle), np.sin(angle)] if turning else [angle]
+        return np.array(out)
+
+    def load(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+        """Joint torques along a motion, (T, n) [N m]."""
+        pin, model, data = self._pin, self.model, self.data
+        return np.array([pin.rnea(model, data, self.configuration(a), b, c) for a, b, c in zip(q, dq, ddq, strict=True)])
+
+    def acceleration(self, q: np.ndarray, dq: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """Joint acceleration at one instant, (n,) [rad/s^2]."""
+        return self._pin.aba(self.model, self.data, self.configuration(q), dq, load)
+
+    def tip(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Position (3,) [m] of the last link's centre of mass in the base frame and its Jacobian (3, n)."""
+        pin, model, data = self._pin, self.model, self.data
+        last = model.njoints - 1
+        jac = pin.computeJointJacobian(model, data, self.configuration(q), last)
+        spin, lever = data.oMi[last].rotation, model.inertias[last].lever
+        return data.oMi[last].act(lever), spin @ (jac[:3] - pin.skew(lever) @ jac[3:])
+
+    def body_terms(self) -> list[BodyTerm]:
+        """Link masses (the model's own numbers), a payload and a wrong tool on the last link."""
+        n = self.model.njoints
+        terms = [BodyTerm(name="mass", target=self.model.names[i], recalibration=True, shape={},
+                          deviation=MASS_DEVIATION * self.model.inertias[i].mass,
+                          parameters=(Parameter(name="mass", unit="kg", lower=-self.model.inertias[i].mass),))
+                 for i in range(1, n - 1) if self.model.inertias[i].mass > 1e-3]
+        com = tuple(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz")
+        last = self.model.names[n - 1]
+        terms.append(BodyTerm(name="payload", target=last, recalibration=False, shape={},
+                              parameters=(Parameter(name="mass", unit="kg", lower=0.0), *com)))
+        if self.tool is not None:
+            terms.append(BodyTerm(name="wrong_tool", target=last, recalibration=False, shape={},
+                                  parameters=(Parameter(name="mass", unit="kg"),)))
+        else:
+            terms.append(BodyTerm(name="wrong_tool", target=last, recalibration=False, shape={},
+                                  parameters=(Parameter(name="mass", unit="kg", upper=0.0), *com)))
+        return terms
+
+    def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+        """Torque per unit of each parameter, (T, n, p).
+
+        Payload inertia about its own centre is neglected; `shape` may carry the centre (com_x, com_y, com_z) [m] at
+        which the point mass is taken, so that its inertia about the joint axes is not.
+        """
+        pin, model, data = self._pin, self.model, self.data
+        index = model.getJointId(term.target)
+        if term.name == "mass":
+            inertia = model.inertias[index]
+            mix = inertia.toDynamicParameters()[:, None] / inertia.mass
+        elif term.name == "wrong_tool" and self.tool is not None:
+            mix = self.tool.toDynamicParameters()[:, None] / self.tool.mass
+        else:
+            mix = np.zeros((10, 4))
+            mix[:4] = np.eye(4)
+            if term.shape:
+                c = np.array([term.shape[f"com_{a}"] for a in "xyz"])
+                point = pin.Inertia(1.0, c, np.zeros((3, 3))).toDynamicParameters()
+                mix[4:, 0] = point[4:]
+        block = slice(10 * (index - 1), 10 * index)
+        return np.array([pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)[:, block] @ mix
+                         for a, b, c in zip(q, dq, ddq, strict=True)])
+
+    def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:
+        """The arm with a body changed by `values`."""
+        out = object.__new__(ArmModel)
+        out.tool, out.urdf = self.tool, self.urdf
+        if term.name == "mass":
+            out.model = with_scaled_mass(self.model, term.target, values["mass"])
+        else:
+            out.model = with_point_mass(self.model, term.target, self.moments(term, values))
+        out._finish(self._pin)
+        return out
+
+    def with_armature(self, joint: int, inertia: float) -> ArmModel:
+        """The arm with a rotor's inertia [kg m^2] on one joint."""
+        out = object.__new__(ArmModel)
+        out.tool, out.urdf, out.model = self.tool, self.urdf, self.model.copy()
+        armature = np.array(out.model.armature)
+        armature[joint] += inertia
+        out.model.armature = armature
+        out._finish(self._pin)
+        return out
+
+    def moments(self, term: BodyTerm, values: dict[str, float]) -> dict[str, float]:
+        """Mass and first moments of a payload or tool change; a scaled tool brings the URDF tool's own centre."""
+        if "mass_com_x" in values or self.tool is None:
+            return {"mass": values["mass"], **{f"mass_com_{a}": values.get(f"mass_com_{a}", 0.0) for a in "xyz"}}
+        return {"mass": values["mass"],
+                **{f"mass_com_{a}": float(values["mass"] * c) for a, c in zip("xyz", self.tool.lever, strict=True)}}

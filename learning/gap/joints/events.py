@@ -1,0 +1,78 @@
+"""Contacts that happen at a time rather than at a place: short bursts of load that no function of the state explains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..regions import intervals
+from .log import JointLog
+
+LONGEST = 0.35  # a burst may last this part of an episode
+PEAK = 6.0  # smoothed leftover over its robust deviation before anything counts as a burst
+
+
+@dataclass(frozen=True, kw_only=True)
+class Burst:
+    """One burst.  load: mean leftover inside, signed [N or N m]; strength: over the robust noise."""
+
+    episode: str
+    channel: int
+    t0: float
+    t1: float
+    load: float
+    strength: float
+
+
+def bursts(logs: list[JointLog], left: list[np.ndarray], channel: int) -> list[Burst]:
+    """Bursts in one channel's leftover.
+
+    Args:
+        logs: the logs.
+        left: (T_inner, C) per log.
+        channel: which joint.
+    """
+    out = []
+    smooth_all = []
+    for log, series in zip(logs, left, strict=True):
+        width = max(3, int(0.06 * len(series) * 0.5))
+        width = min(width, max(3, int(0.12 / log.dt)))
+        kernel = np.hanning(2 * width + 1)
+        smooth_all.append(np.convolve(series[:, channel], kernel / kernel.sum(), mode="same"))
+    pooled = np.concatenate(smooth_all)
+    centre = float(np.median(pooled))
+    spread = 1.4826 * float(np.median(np.abs(pooled - centre))) + 1e-12
+    for log, smooth in zip(logs, smooth_all, strict=True):
+        t = log.t[log.inner]
+        z = (smooth - centre) / spread
+        span = t[-1] - t[0]
+        for a, b in intervals(np.abs(z) > 3.0, t, 0.02 * span, 0.0):
+            rows = (t >= a) & (t <= b)
+            if np.abs(z[rows]).max() > PEAK and b - a < LONGEST * span and not _turns(log, channel, a, b):
+                out.append(Burst(episode=log.name, channel=channel, t0=float(a), t1=float(b),
+                                 load=float(smooth[rows].mean()), strength=float(np.abs(z[rows]).max())))
+    return out
+
+
+def burst_share(logs: list[JointLog], left: list[np.ndarray], channel: int, found: list[Burst]) -> float:
+    """Part of the leftover's energy inside the bursts."""
+    total = inside = 0.0
+    for log, series in zip(logs, left, strict=True):
+        t = log.t[log.inner]
+        energy = (series[:, channel] - np.median(series[:, channel])) ** 2
+        rows = np.zeros(len(t), dtype=bool)
+        for b in found:
+            if b.episode == log.name:
+                rows |= (t >= b.t0) & (t <= b.t1)
+        total += energy.sum()
+        inside += energy[rows].sum()
+    return inside / (total + 1e-30)
+
+
+def _turns(log: JointLog, channel: int, a: float, b: float) -> bool:
+    """Whether the joint reverses right at a burst: then it is friction or play, not a contact."""
+    rows = (log.t >= a - 0.05) & (log.t <= b + 0.05)
+    v = log.dq[rows, channel]
+    slow = 3.0 * log.slow[channel]
+    return bool(v.max() > slow and v.min() < -slow) or bool(np.abs(v).min() < log.slow[channel])

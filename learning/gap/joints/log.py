@@ -1,0 +1,151 @@
+"""A joint log made ready for comparison: uniform in time, smoothed within its own bandwidth, differentiated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....sim.effects.effect import JointMotion, Spread
+from ..measurement import Episode
+from ..smoothing import bandwidth, derivative, lowpass, resample
+from .rigid import RigidModel
+
+ROWS = 6000  # an episode is thinned to at most about this many rows
+SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointLog:
+    """One episode.  Arrays are (T, n) over joints; `load` and `measured` went through the same filter.
+
+    Attributes:
+        name: of the episode.
+        role: `fit`, `heldout` or `repeat`.
+        t: time, uniform [s].
+        dt: time step [s].
+        cutoff: half-power frequency of the shared filter [Hz].
+        q, dq, ddq: motion.
+        rigid: load of the rigid model along the smoothed motion (T, n).
+        measured: measured load, smoothed once like the motion (T, n).
+        residual: what the model misses, `measured - rigid` after the shared filter (T, n).
+        raw: measured load, thinned but not smoothed to the motion's bandwidth (T, n).
+        slow: (n,) speed below which the sign of the velocity is not known.
+        trim: rows at either end that the filters spoil.
+    """
+
+    name: str
+    role: str
+    t: np.ndarray
+    dt: float
+    cutoff: float
+    q: np.ndarray
+    dq: np.ndarray
+    ddq: np.ndarray
+    rigid: np.ndarray
+    measured: np.ndarray
+    residual: np.ndarray
+    raw: np.ndarray
+    slow: np.ndarray
+    trim: int
+
+    @property
+    def inner(self) -> slice:
+        """Rows the filters left sound."""
+        return slice(self.trim, len(self.t) - self.trim)
+
+    def motion(self, joint: int) -> JointMotion:
+        """The motion of one joint, before the shared filter."""
+        return JointMotion(t=self.t, q=self.q[:, joint], dq=self.dq[:, joint], ddq=self.ddq[:, joint],
+                           load=self.rigid[:, joint], measured=self.measured[:, joint], slow=float(self.slow[joint]))
+
+    def wide(self) -> JointLog:
+        """The same log without the shared filter, to see what lies outside the motion's bandwidth."""
+        return replace(self, name=f"{self.name}~", cutoff=float("inf"), residual=self.raw - self.rigid)
+
+    def shared(self, columns: np.ndarray) -> np.ndarray:
+        """Columns through the filter both sides of the balance go through, ends trimmed."""
+        return lowpass(columns, self.dt, self.cutoff)[self.inner]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointColumns:
+    """Which columns of the CSV hold what, per joint."""
+
+    q: tuple[str, ...]
+    dq: tuple[str, ...]
+    load: tuple[str, ...]
+
+
+def _matrix(episode: Episode, names: tuple[str, ...]) -> np.ndarray:
+    return np.stack([episode.columns[name] for name in names], axis=1)
+
+
+def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -> list[JointLog]:
+    """Smooth and differentiate all episodes with one bandwidth, and compare each with the model."""
+    raw = []
+    for episode in episodes:
+        n = len(names.q)
+        parts = [_matrix(episode, names.q), _matrix(episode, names.load)]
+        has_dq = all(name in episode.columns for name in names.dq)
+        if has_dq:
+            parts.append(_matrix(episode, names.dq))
+        t, table, dt = resample(episode.t, np.concatenate(parts, axis=1))
+        raw.append((t, dt, table[:, :n], table[:, n:2 * n], table[:, 2 * n:] if has_dq else None))
+    measured_speed = all(r[4] is not None for r in raw)
+    dt = float(np.median([r[1] for r in raw]))
+    per_q = [[bandwidth(r[2][:, j], r[1]) for j in range(r[2].shape[1])] for r in raw]
+    cut = float(np.max(np.median([[c for c, _ in row] for row in per_q], axis=0)))
+    noise_q = np.median([[s for _, s in row] for row in per_q], axis=0)  # (n,)
+    use_speed = np.zeros(len(noise_q), dtype=bool)
+    noise_v = noise_q * 2 * np.pi * cut * np.sqrt(2 * cut * dt / 3)
+    if measured_speed:
+        per_v = [[bandwidth(r[4][:, j], r[1]) for j in range(r[4].shape[1])] for r in raw]
+        sensor = np.median([[s for _, s in row] for row in per_v], axis=0) * np.sqrt(2 * cut * dt)
+        # the same speed by either route; take the quieter, unless the speed column is no speed at all
+        agree = np.median([[_agree(r[2][:, j], r[4][:, j], r[1]) for j in range(r[4].shape[1])] for r in raw], axis=0)
+        use_speed = (sensor < noise_v) & (agree > 0.98)
+        noise_v = np.where(use_speed, sensor, noise_v)
+    return [_prepare(episode, r, cut, use_speed, noise_v, model) for episode, r in zip(episodes, raw, strict=True)]
+
+
+def _agree(q: np.ndarray, dq: np.ndarray, dt: float) -> float:
+    slope = np.gradient(q, dt)
+    if dq.std() == 0 or slope.std() == 0:
+        return 1.0 if slope.std() == dq.std() else 0.0
+    scale = float(np.polyfit(lowpass(slope, dt, 0.05 / dt), lowpass(dq, dt, 0.05 / dt), 1)[0])
+    return float(np.corrcoef(lowpass(slope, dt, 0.05 / dt), lowpass(dq, dt, 0.05 / dt))[0, 1]) * (0.9 < scale < 1.1)
+
+
+def _prepare(episode: Episode, raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray,
+             model: RigidModel) -> JointLog:
+    t, dt, q, load, dq = raw
+    step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (4.0 * cut * dt)))
+    cut = min(cut, 0.4 / (dt * step))
+    position = lowpass(q, dt, cut)
+    speed, acceleration = derivative(q, dt, cut, 1), derivative(q, dt, cut, 2)
+    if dq is not None and use_speed.any():
+        speed[:, use_speed] = lowpass(dq, dt, cut)[:, use_speed]
+        acceleration[:, use_speed] = derivative(dq, dt, cut, 1)[:, use_speed]
+    smooth = lowpass(load, dt, cut)
+    raw = lowpass(load, dt, 0.4 / (dt * step)) if step > 1 else load
+    pick = slice(None, None, step)
+    t, position, speed, acceleration, smooth = t[pick], position[pick], speed[pick], acceleration[pick], smooth[pick]
+    raw = raw[pick]
+    dt = dt * step
+    rigid = model.load(position, speed, acceleration)
+    # the motion was smoothed before the model saw it, the load was smoothed once: one more filter for both
+    shared = min(SHARED * cut, 0.5 / dt)
+    residual = lowpass(smooth - rigid, dt, shared)
+    slow = np.maximum(4.0 * noise_v, 2e-3 * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
+    trim = int(min(len(t) // 10, np.ceil(0.7 / (shared * dt))))
+    return JointLog(name=episode.name, role=episode.role, t=t, dt=dt, cutoff=shared, q=position, dq=speed,
+                    ddq=acceleration, rigid=rigid, measured=smooth, residual=residual, raw=raw, slow=slow, trim=trim)
+
+
+def spread(logs: list[JointLog], joint: int) -> Spread:
+    """What the logs cover of one joint's motion."""
+    q = np.concatenate([log.q[:, joint] for log in logs])
+    dq = np.concatenate([log.dq[:, joint] for log in logs])
+    return Spread(q=(float(q.min()), float(q.max())), speed=float(np.quantile(np.abs(dq), 0.95)),
+                  slow=float(np.max([log.slow[joint] for log in logs])), dt=float(np.max([log.dt for log in logs])))

@@ -1,0 +1,105 @@
+"""From a set of effects and what it leaves to a verdict: adequate, recalibration, effects or unknown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..findings import EffectFinding, Value, VerdictName
+from .events import Burst, burst_share, bursts
+from .log import JointLog
+from .remainder import Remainder, leftover
+from .symbolic import guess
+from .thresholds import BURST_SHARE, REMAINDER, REMAINDER_SIZE
+from .workflow import Named, explained
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """The judgement.
+
+    Attributes:
+        verdict: one of the four.
+        p_value: of the leftover, where it speaks for a missing effect; else 1.
+        floor: (C,) noise floor: repeats, or what no prediction removes.
+        left: residual after the effects, per log.
+        bursts: contacts in time.
+        contacts: the same as findings.
+        remainders: per channel.
+        guess: formula for an unknown effect, or "".
+    """
+
+    verdict: VerdictName
+    p_value: float
+    floor: np.ndarray
+    left: list[np.ndarray]
+    bursts: tuple[Burst, ...]
+    contacts: tuple[EffectFinding, ...]
+    remainders: tuple[Remainder, ...]
+    guess: str
+
+
+def judge(named: Named, logs: list[JointLog]) -> Outcome:
+    """Look at what the named effects leave and decide."""
+    blocks = list(named.blocks)
+    left = [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
+    channels = left[0].shape[1]
+    found: list[Burst] = []
+    for c in range(channels):
+        mine = bursts(logs, left, c)
+        total = np.mean(np.concatenate([log.residual[log.inner][:, c] for log in logs]) ** 2)
+        rest = np.mean(np.concatenate([x[:, c] for x in left]) ** 2)
+        share = burst_share(logs, left, c, mine) if mine else 0.0
+        # next to a large effect, a burst may be no more than that effect's own form being a little wrong
+        if share > BURST_SHARE and share * rest > REMAINDER * (total - rest + share * rest):
+            found += mine
+    calm = _without(logs, left, found)
+    broad = [log.wide() for log in logs]
+    wide = _without(logs, [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad], found)
+    remainders = tuple(leftover(logs, calm, wide, c) for c in range(channels))
+    total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
+    rest = np.mean(np.concatenate(calm) ** 2, axis=0)
+    floor2 = np.array([max(rest[c] - (r.energy if r.p_value < 0.01 else 0.0), 0.05 * rest[c]) for c, r in enumerate(remainders)])
+    if named.noise.source == "repeats":
+        floor2 = np.minimum(named.noise.rms**2, np.maximum(rest, 1e-30))
+    weight = 1.0 / floor2
+    energy = np.array([r.energy if r.p_value < 0.01 and r.energy > REMAINDER_SIZE * floor2[c] else 0.0
+                       for c, r in enumerate(remainders)])
+    explained_energy = np.maximum(total - rest, 0.0)
+    share = float(weight @ energy / (weight @ (energy + explained_energy) + 1e-30))
+    p = float(min([r.p_value * channels for r, e in zip(remainders, energy, strict=True) if e > 0], default=1.0))
+    unknown = energy.any() and share > REMAINDER
+    effects = any(not b.recalibration for b in blocks) or bool(found)
+    verdict: VerdictName = ("unknown" if unknown else "effects" if effects else "recalibration" if blocks else "adequate")
+    text = ""
+    if unknown:
+        worst = max((r for r, e in zip(remainders, energy, strict=True) if e > 0), key=lambda r: weight[r.channel] * r.energy)
+        text = guess(logs, calm, worst)
+    return Outcome(verdict=verdict, p_value=min(p, 1.0), floor=np.sqrt(floor2), left=left, bursts=tuple(found),
+                   contacts=_contacts(found, logs), remainders=remainders, guess=text)
+
+
+def _without(logs: list[JointLog], left: list[np.ndarray], found: list[Burst]) -> list[np.ndarray]:
+    out = [x.copy() for x in left]
+    for b in found:
+        for log, x in zip(logs, out, strict=True):
+            if log.name == b.episode:
+                t = log.t[log.inner]
+                x[(t >= b.t0) & (t <= b.t1), b.channel] = 0.0
+    return out
+
+
+def _contacts(found: list[Burst], logs: list[JointLog]) -> tuple[EffectFinding, ...]:
+    """Bursts of one joint as a contact with its mean load."""
+    out = []
+    for c in sorted({b.channel for b in found}):
+        mine = [b for b in found if b.channel == c]
+        load = np.array([b.load for b in mine])
+        spread = 1.96 * load.std() / max(np.sqrt(len(load)), 1.0)
+        out.append(EffectFinding(
+            name="contact", target=f"joint {c + 1}", size=float(max(b.strength for b in mine)),
+            parameters=(Value(name="load", unit="N m", value=float(load.mean()), low=float(load.mean() - spread),
+                              high=float(load.mean() + spread)),),
+            experiment="repeat the motion: a contact with something in the way comes back at the same place"))
+    return tuple(out)

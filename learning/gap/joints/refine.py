@@ -1,0 +1,66 @@
+"""Shapes the search only screened are fitted: thresholds, Stribeck speeds, gaps, a payload's centre of mass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ....sim.effects.joint_bank import JOINT_EFFECTS
+from .block import Block, body_block, joint_block
+from .log import JointLog
+from .rigid import RigidModel
+
+
+def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: list[JointLog]) -> list[Block]:
+    """The same blocks with their shapes fitted, one after the other, linear parameters projected out."""
+    out = list(chosen)
+    at = 0
+    for i, block in enumerate(chosen):
+        values = theta[at:at + len(block.parameters)]
+        at += len(block.parameters)
+        if block.term is not None and len(values) == 4 and abs(values[0]) > 1e-6:
+            com = np.clip(values[1:] / values[0], -1.0, 1.0)
+            shape = {f"com_{a}": float(x) for a, x in zip("xyz", com, strict=True)}
+            out[i] = body_block(replace(block.term, shape=shape), model)
+        elif block.shape and block.name in JOINT_EFFECTS:
+            out[i] = _fit_shape(block, [b for k, b in enumerate(out) if k != i], model, logs)
+    return out
+
+
+def _fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:
+    channel = block.channels[0]
+    effect = JOINT_EFFECTS[block.name]
+    mine = [b for b in others if channel in b.channels]
+    base = [np.column_stack([log.residual[log.inner, channel],
+                             *(b.build(log)[:, b.channels.index(channel), :] for b in mine)]) for log in logs]
+    table = np.concatenate(base)
+    y, X = table[:, 0], table[:, 1:]
+    q = np.linalg.qr(X)[0] if X.shape[1] else np.zeros((len(y), 0))
+    y = y - q @ (q.T @ y)
+    free = [p.name for p in block.shape_parameters if p.name != "side"]
+    start = np.array([block.shape[name] for name in free])
+    span = float(max(np.ptp(log.q[:, channel]) for log in logs))
+    unit = np.array([span if name == "threshold" else max(abs(block.shape[name]), 1e-9) for name in free])
+
+    def rss(x: np.ndarray) -> float:
+        shape = {**block.shape, **dict(zip(free, (float(v) for v in x * unit), strict=True))}
+        if any(p.lower > shape[p.name] or p.upper < shape[p.name] for p in block.shape_parameters):
+            return float(y @ y)
+        Z = np.concatenate([log.shared(effect.columns(log.motion(channel), shape)) for log in logs])
+        Z = Z - q @ (q.T @ Z)
+        theta = np.linalg.lstsq(Z, y, rcond=1e-8)[0]
+        if any(not p.lower <= v <= p.upper for p, v in zip(effect.linear, theta, strict=True)):
+            theta = np.array([np.clip(v, p.lower, p.upper) for p, v in zip(effect.linear, theta, strict=True)])
+        left = y - Z @ theta
+        return float(left @ left)
+
+    simplex = np.stack([start / unit] + [start / unit + (0.12 if free[k] == "threshold" else 0.4) * np.eye(len(free))[k]
+                                         for k in range(len(free))])
+    best = minimize(rss, start / unit, method="Nelder-Mead",
+                    options={"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4 * rss(start / unit), "maxfev": 60})
+    if best.fun >= rss(start / unit):
+        return block
+    shape = {**block.shape, **dict(zip(free, (float(v) for v in best.x * unit), strict=True))}
+    return joint_block(effect, model, channel, shape, block.trials)

@@ -1,0 +1,126 @@
+"""From logs to the set of effects: floor, whitening, search, refinement of shapes, search again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .block import Block, bank
+from .generic import generic_columns, scales
+from .gram import Gram, assemble, exchange
+from .log import JointLog
+from .noise import NoiseModel, estimate_noise, repeat_difference
+from .refine import refined
+from .rigid import RigidModel
+from .search import Search
+
+
+@dataclass(frozen=True, kw_only=True)
+class Named:
+    """What the search found.
+
+    Attributes:
+        blocks: chosen blocks, shapes refined.
+        theta: their parameters, concatenated.
+        noise: the floor and its colour.
+        search: the last search, for questions about alternatives.
+        chosen: indices of `blocks` in it.
+    """
+
+    blocks: tuple[Block, ...]
+    theta: np.ndarray
+    noise: NoiseModel
+    search: Search
+    chosen: tuple[int, ...]
+
+    @property
+    def gram(self) -> Gram:
+        """Normal equations of the last search."""
+        return self.search.gram
+
+
+def one_shape_each(blocks: list[Block]) -> list[Block]:
+    """One representative shape per effect and target, the middle one."""
+    groups: dict[tuple[str, str], list[Block]] = {}
+    for block in blocks:
+        groups.setdefault(block.key, []).append(block)
+    return [g[len(g) // 2] for g in groups.values()]
+
+
+FOLDS = 6
+ROUNDS = 5
+
+
+def first_noise(blocks: list[Block], logs: list[JointLog]) -> NoiseModel:
+    """A first picture of the noise: repeats, else what a fit of everything at once leaves.
+
+    The latter is too small (a hundred functions of a slow motion also explain slow noise), so the first search may
+    take too much; the rounds that follow see the honest residual and take it back.
+    """
+    repeats = repeat_difference([log.residual[log.inner] for log in logs], [log.q[log.inner] for log in logs])
+    if repeats:
+        return estimate_noise(repeats, "repeats")
+    scale = scales(logs)
+    out = [np.zeros_like(log.residual[log.inner]) for log in logs]
+    for c in range(logs[0].q.shape[1]):
+        mine = [b for b in one_shape_each(blocks) if c in b.channels]
+        X = np.concatenate([np.column_stack([*(b.build(log)[:, b.channels.index(c), :] for b in mine),
+                                             generic_columns(log, c, scale)]) for log in logs])
+        X = X / (np.sqrt(np.mean(X**2, axis=0)) + 1e-12)
+        y = np.concatenate([log.residual[log.inner, c] for log in logs])
+        left = y - X @ np.linalg.solve(X.T @ X + 1e-4 * len(y) * np.eye(X.shape[1]), X.T @ y)
+        at = 0
+        for i, series in enumerate(out):
+            series[:, c] = left[at:at + len(series)]
+            at += len(series)
+    return estimate_noise(out, "residual")
+
+
+def explained(blocks: list[Block], theta: np.ndarray, log: JointLog) -> np.ndarray:
+    """What the blocks add to the model in one log, after the shared filter, (T_inner, C)."""
+    out = np.zeros_like(log.residual[log.inner])
+    at = 0
+    for block in blocks:
+        k = len(block.parameters)
+        out[:, list(block.channels)] += block.build(log) @ theta[at:at + k]
+        at += k
+    return out
+
+
+def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: float = 1.0) -> Named:
+    """Floor, search, refine, search again until the set stands still."""
+    blocks = bank(model, logs, system)
+    noise = first_noise(blocks, logs)
+    gram = assemble(blocks, logs)
+    chosen: tuple[int, ...] = ()
+    seen: list[set] = []
+    for _ in range(ROUNDS):
+        chosen, gram = _settle(gram, model, logs, noise, strict, chosen)
+        blocks = gram.blocks
+        found = {(*blocks[i].key, tuple(blocks[i].shape.items())) for i in chosen}
+        if found in seen:
+            break
+        seen.append(found)
+        if noise.source == "residual":
+            theta = Search(gram=gram, noise=noise).fit(chosen)
+            noise = estimate_noise([log.residual[log.inner] - explained([blocks[i] for i in chosen], theta, log)
+                                    for log in logs], "residual")
+    search = Search(gram=gram, noise=noise, strict=strict)
+    return Named(blocks=tuple(gram.blocks[i] for i in chosen), noise=noise, search=search, chosen=chosen,
+                 theta=search.fit(chosen))
+
+
+def _settle(gram: Gram, model: RigidModel, logs: list[JointLog], noise: NoiseModel, strict: float,
+            chosen: tuple[int, ...]) -> tuple[tuple[int, ...], Gram]:
+    """Search, fit the shapes of what was found, and search again with them."""
+    for _ in range(2):
+        search = Search(gram=gram, noise=noise, strict=strict)
+        chosen = search.run(chosen)
+        old = [gram.blocks[i] for i in chosen]
+        better = refined(old, search.fit(chosen), model, logs)
+        changed = {i: new for i, new, was in zip(chosen, better, old, strict=True) if new is not was}
+        if not changed:
+            break
+        gram = exchange(gram, changed, logs)
+    return chosen, gram

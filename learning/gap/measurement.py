@@ -1,0 +1,170 @@
+"""A measurement set: a folder with `measurement.yaml` and one CSV per episode."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from .errors import GapError
+from .table import read_table
+
+SYSTEMS = ("arm", "axis", "fall", "cloth")
+ROLES = ("fit", "heldout", "repeat")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phase:
+    """A named span of time, for instance a tree node.  t0, t1: [s]."""
+
+    name: str
+    t0: float
+    t1: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Episode:
+    """One recording.
+
+    Attributes:
+        name: file name without ending, unique in the set.
+        file: where it was read from.
+        role: `fit`, `heldout` or `repeat`.
+        columns: name -> (T,), with `t`.
+        phases: named spans of time in this episode.
+        settings: what measurement.yaml says of this episode beside file and role.
+    """
+
+    name: str
+    file: Path
+    role: str
+    columns: dict[str, np.ndarray]
+    phases: tuple[Phase, ...] = ()
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def t(self) -> np.ndarray:
+        """Time stamps, (T,) [s]."""
+        return self.columns["t"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasurementSet:
+    """What was measured, and what is known of the system it was measured on."""
+
+    folder: Path
+    system: str
+    settings: dict[str, Any]
+    episodes: tuple[Episode, ...]
+
+    @property
+    def fitted(self) -> tuple[Episode, ...]:
+        """Episodes parameters may be fitted to (roles `fit` and `repeat`)."""
+        return tuple(e for e in self.episodes if e.role != "heldout")
+
+    @property
+    def heldout(self) -> tuple[Episode, ...]:
+        """Episodes kept for the final comparison."""
+        return tuple(e for e in self.episodes if e.role == "heldout")
+
+    def number(self, key: str) -> float | None:
+        """A positive setting, or None where the file does not give it.
+
+        Raises:
+            GapError: it is there and is not a positive number.
+        """
+        value = self.settings.get(key)
+        if value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value) or value <= 0:
+            raise GapError(f"{self.folder / 'measurement.yaml'}: {key} is {value!r}, a positive number is needed")
+        return float(value)
+
+
+def load_set(folder: Path | str) -> MeasurementSet:
+    """Read and check a measurement set; systems check their own columns when they are built.
+
+    Raises:
+        GapError: anything in it cannot be used; the message names file, column and row.
+    """
+    folder = Path(folder)
+    file = folder / "measurement.yaml"
+    if not file.is_file():
+        raise GapError(f"{file}: no such file, a measurement set is a folder with measurement.yaml and one CSV per episode")
+    try:
+        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        raise GapError(f"{file}: row {mark.line + 1 if mark else 1} is not YAML") from None
+    if not isinstance(content, dict) or not content:
+        raise GapError(f"{file}: the file is empty, `system` and `episodes` are needed")
+    system = content.get("system")
+    if system not in SYSTEMS:
+        raise GapError(f"{file}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
+    listed = content.get("episodes")
+    if not isinstance(listed, list) or not listed:
+        raise GapError(f"{file}: `episodes` must list at least two entries with `file`")
+    if len(listed) < 2:
+        raise GapError(f"{file}: `episodes` lists one episode only, at least two are needed (one to fit, one held out)")
+    shared = _phases(file, content.get("phases"))
+    episodes = [_episode(file, entry, shared) for entry in listed]
+    names = [e.name for e in episodes]
+    for name in names:
+        if names.count(name) > 1:
+            raise GapError(f"{file}: episode '{name}' is listed twice")
+    settings = {k: v for k, v in content.items() if k not in ("system", "episodes", "phases")}
+    return MeasurementSet(folder=folder, system=system, settings=settings, episodes=_with_roles(file, episodes))
+
+
+def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
+    if isinstance(entry, str):
+        entry = {"file": entry}
+    if not isinstance(entry, dict) or not isinstance(entry.get("file"), str):
+        raise GapError(f"{file}: every episode needs `file`, this one is {entry!r}")
+    role = entry.get("role", "")
+    if role not in ("", None, *ROLES):
+        raise GapError(f"{file}: role of {entry['file']} is {role!r}, it must be one of {', '.join(ROLES)}")
+    path = file.parent / entry["file"]
+    return Episode(name=path.stem, file=path, role=role or "", columns=read_table(path),
+                   phases=_phases(file, entry.get("phases")) or shared,
+                   settings={k: v for k, v in entry.items() if k not in ("file", "role", "phases")})
+
+
+def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:
+    if listed is None:
+        return ()
+    if isinstance(listed, dict):
+        listed = [{"name": k, "t0": v[0], "t1": v[1]} for k, v in listed.items()]
+    try:
+        return tuple(Phase(name=str(p["name"]), t0=float(p.get("t0", p.get("start", 0.0))),
+                           t1=float(p.get("t1", p.get("end", np.inf)))) for p in listed)
+    except (TypeError, KeyError, ValueError, AttributeError, IndexError):
+        raise GapError(f"{file}: `phases` must list entries with name, t0 and t1 [s]") from None
+
+
+def _with_roles(file: Path, episodes: list[Episode]) -> tuple[Episode, ...]:
+    """Fill in missing roles: the last third (at least one) is held out unless some episode says so already."""
+    if not any(e.role == "heldout" for e in episodes):
+        blank = [i for i, e in enumerate(episodes) if e.role == ""]
+        if not blank:
+            blank = [i for i, e in enumerate(episodes) if e.role == "fit"] or list(range(len(episodes)))
+        for i in blank[-max(1, len(blank) // 3):]:
+            episodes[i] = replace(episodes[i], role="heldout")
+    episodes = [e if e.role else replace(e, role="fit") for e in episodes]
+    if all(e.role == "heldout" for e in episodes):
+        raise GapError(f"{file}: every episode is held out, at least one must have role fit")
+    return tuple(episodes)
+
+
+def require_columns(episode: Episode, names: list[str]) -> None:
+    """Refuse an episode that lacks a column.
+
+    Raises:
+        GapError: names the file, the column and the header row.
+    """
+    for name in names:
+        if name not in episode.columns:
+            raise GapError(f"{episode.file}: column '{name}' is missing (row 1 has {', '.join(episode.columns)})")

@@ -1,0 +1,68 @@
+"""Pictures of the report: measured and simulated overlaid, residual with the places found."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """One channel of one held-out episode.
+
+    Attributes:
+        title: channel and episode.
+        unit: of the vertical axis.
+        t: (T,) [s].
+        measured, before, after: (T,) measured, model as given, model with the effects.
+        floor: noise floor.
+        spans: intervals found [s].
+    """
+
+    title: str
+    unit: str
+    t: np.ndarray
+    measured: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    floor: float
+    spans: tuple[tuple[float, float], ...] = ()
+
+
+INK, GREY, BLUE, RED = "#222222", "#9a9a9a", "#1f6fb4", "#c8452e"
+
+
+def draw(curves: list[Curve], width: float = 7.4) -> str:
+    """The curves as one PNG in a data URI: left measured against model, right what is left."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, 1.55 * len(curves) + 0.35), dpi=150)
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(len(curves), 2, squeeze=False, sharex="row")
+    for (left, right), c in zip(axes, curves, strict=True):
+        thin = slice(None, None, max(1, len(c.t) // 1500))
+        left.plot(c.t[thin], c.measured[thin], color=INK, lw=1.0, label="measured")
+        left.plot(c.t[thin], c.before[thin], color=RED, lw=0.9, label="model as given")
+        left.plot(c.t[thin], c.after[thin], color=BLUE, lw=0.9, ls=(0, (4, 2)), label="with the effects")
+        right.plot(c.t[thin], (c.measured - c.before)[thin], color=RED, lw=0.8)
+        right.plot(c.t[thin], (c.measured - c.after)[thin], color=BLUE, lw=0.8)
+        right.axhspan(-2 * c.floor, 2 * c.floor, color=GREY, alpha=0.3, lw=0)
+        for a, b in c.spans[:40]:
+            right.axvspan(a, b, color="#f2c14e", alpha=0.25, lw=0)
+        left.set_title(c.title, fontsize=7.5, loc="left")
+        left.set_ylabel(f"[{c.unit}]", fontsize=7)
+        for axis in (left, right):
+            axis.tick_params(labelsize=6.5, length=2)
+            axis.spines[["top", "right"]].set_visible(False)
+    axes[0][1].set_title("what is left; grey: noise floor, yellow: places found", fontsize=7.5, loc="left")
+    axes[0][0].legend(fontsize=6, frameon=False, ncol=3, loc="upper right", bbox_to_anchor=(1.0, 1.42))
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", fontsize=7)
+    figure.tight_layout(pad=0.6)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()

@@ -1,0 +1,98 @@
+"""Zero-phase low-pass filters and derivatives for logs, with a bandwidth the log itself decides.
+
+The bandwidth is the highest frequency at which the log still rises above its own noise plateau.  Both sides of
+the force balance go through the same filter, so that what it removes is removed from model and measurement alike.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.fft import irfft, rfft, rfftfreq
+
+ORDER = 4  # of the Butterworth-like gain; squared once, phase zero
+
+
+def lowpass(x: np.ndarray, dt: float, cutoff: float) -> np.ndarray:
+    """Low-pass along the first axis, zero phase, ends mirrored through their end points.
+
+    Args:
+        x: (T, ...) samples.
+        dt: time step [s].
+        cutoff: half-power frequency [Hz]; at or above Nyquist nothing is done.
+    """
+    return _apply(x, dt, cutoff, 0)
+
+
+def derivative(x: np.ndarray, dt: float, cutoff: float, order: int) -> np.ndarray:
+    """Low-passed time derivative of the given order (1 or 2) along the first axis, exact below the cutoff."""
+    return _apply(x, dt, cutoff, order)
+
+
+def _apply(x: np.ndarray, dt: float, cutoff: float, order: int) -> np.ndarray:
+    n = len(x)
+    nyquist = 0.5 / dt
+    if order == 0 and cutoff >= nyquist:
+        return np.array(x, dtype=float)
+    pad = int(min(n - 1, max(16, np.ceil(4.0 / (cutoff * dt)))))
+    head = 2.0 * x[0] - x[pad:0:-1]
+    tail = 2.0 * x[-1] - x[-2:-pad - 2:-1]
+    extended = np.concatenate([head, x, tail])
+    m = len(extended)
+    # a straight line through the ends makes the periodic extension continuous
+    ramp = np.linspace(0.0, 1.0, m).reshape(-1, *([1] * (x.ndim - 1)))
+    line = extended[0] + (extended[-1] - extended[0]) * ramp
+    f = rfftfreq(m, dt).reshape(-1, *([1] * (x.ndim - 1)))
+    gain = 1.0 / (1.0 + (f / cutoff) ** (2 * ORDER)) if cutoff < nyquist else np.ones_like(f)
+    spectrum = rfft(extended - line, axis=0) * gain * (2j * np.pi * f) ** order
+    out = irfft(spectrum, n=m, axis=0)
+    if order == 0:
+        out = out + line
+    elif order == 1:
+        out = out + (extended[-1] - extended[0]) / ((m - 1) * dt)
+    return out[pad:pad + n]
+
+
+def bandwidth(x: np.ndarray, dt: float, margin: float = 6.0) -> tuple[float, float]:
+    """Frequency up to which a log rises above its noise, and the noise's standard deviation.
+
+    Args:
+        x: (T,) samples.
+        dt: time step [s].
+        margin: smoothed power over plateau that still counts as signal.
+
+    Returns:
+        (cutoff [Hz] between 1 % and 40 % of the sampling rate, noise standard deviation of `x`).
+    """
+    n = len(x)
+    taper = np.hanning(n)
+    ramp = np.linspace(x[0], x[-1], n)
+    power = np.abs(rfft((x - ramp) * taper)) ** 2 / np.sum(taper**2)
+    f = rfftfreq(n, dt)
+    width = max(3, n // 400)
+    smooth = np.convolve(power, np.ones(width) / width, mode="same")
+    top = f > 0.6 * f[-1]
+    plateau = float(np.median(power[top])) / np.log(2.0) if top.any() else 0.0
+    above = np.flatnonzero(smooth[1:] > margin * max(plateau, 1e-30)) + 1
+    # the signal band ends at the first stretch of silence, so a lone line far out does not widen it
+    cutoff = f[1]
+    last = 0
+    for i in above:
+        if last and i - last > max(5, n // 50):
+            break
+        last, cutoff = i, f[i]
+    rate = 1.0 / dt
+    return float(np.clip(cutoff, 0.01 * rate, 0.4 * rate)), float(np.sqrt(max(plateau, 0.0)))
+
+
+def resample(t: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Put (T, k) columns on a uniform grid of the median time step.
+
+    Returns:
+        (t (N,), columns (N, k), dt [s]).
+    """
+    dt = float(np.median(np.diff(t)))
+    n = round((t[-1] - t[0]) / dt) + 1
+    grid = t[0] + dt * np.arange(n)
+    if n == len(t) and np.abs(t - grid).max() < 0.02 * dt:
+        return grid, columns, dt
+    return grid, np.stack([np.interp(grid, t, c) for c in columns.T], axis=1), dt

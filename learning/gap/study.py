@@ -1,0 +1,68 @@
+"""One measurement set under study: the four steps, whatever the system."""
+
+from __future__ import annotations
+
+import abc
+from typing import Any
+
+from .findings import EffectFinding, Gap, Placebo, Verdict, VerdictName, Where
+from .measurement import MeasurementSet
+from .pictures import Curve
+
+
+class Study(abc.ABC):
+    """The workflow on one set.  Each step uses the ones before it and remembers what it found."""
+
+    def __init__(self, measured: MeasurementSet, alpha: float = 0.05) -> None:
+        self.measured = measured
+        self.alpha = alpha
+        self.notes: list[str] = []
+
+    @abc.abstractmethod
+    def find(self) -> tuple[float, str, tuple[Where, ...]]:
+        """Whether the model is adequate and where not: (p-value over all tried, floor's source, places)."""
+
+    @abc.abstractmethod
+    def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
+        """What is missing: (verdict, effects, recalibrated parameters, symbolic guess where unknown)."""
+
+    @abc.abstractmethod
+    def patch(self) -> dict[str, Any]:
+        """Content of model.yaml."""
+
+    @abc.abstractmethod
+    def show(self) -> tuple[Gap, Gap | None, tuple[Placebo, ...], dict[str, str]]:
+        """Held-out gap, the same by forward rollouts, placebo controls, smallest detectable size per effect."""
+
+    @abc.abstractmethod
+    def curves(self) -> list[Curve]:
+        """What to draw."""
+
+    def conclude(self, seconds: float = 0.0) -> Verdict:
+        """All four steps as one verdict."""
+        p_value, source, where = self.find()
+        verdict, effects, recalibration, guess = self.name()
+        gap, forward, placebos, detectable = self.show()
+        return Verdict(set=str(self.measured.folder.name), system=self.measured.system, verdict=verdict, where=where,
+                       effects=effects, recalibration=recalibration, gap=gap, alpha=self.alpha, p_value=p_value,
+                       floor_source=source, guess=guess, placebos=placebos, forward=forward, detectable=detectable,
+                       notes=tuple(self.notes), seconds=seconds)
+
+
+def open_study(measured: MeasurementSet, alpha: float = 0.05, cache: Any = None) -> Study:
+    """The study for a set's system.
+
+    Raises:
+        GapError: the set lacks what its system needs.
+    """
+    if measured.system in ("arm", "axis"):
+        from .joints.study import JointStudy
+
+        return JointStudy(measured, alpha)
+    if measured.system == "fall":
+        from .fall.study import FallStudy
+
+        return FallStudy(measured, alpha)
+    from .cloth.study import ClothStudy
+
+    return ClothStudy(measured, alpha, cache=cache)

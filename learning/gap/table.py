@@ -1,0 +1,70 @@
+"""One CSV of a measurement set, read strictly: every complaint names file, column and row."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from .errors import GapError
+
+
+def read_table(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a CSV with a header line, first column `t` [s], every cell a finite number.
+
+    Returns:
+        name -> (T,) float array, in file order.
+
+    Raises:
+        GapError: the file is missing, empty, ragged or not numeric, or time does not increase.
+    """
+    if not path.is_file():
+        raise GapError(f"{path}: no such file")
+    with path.open(newline="", encoding="utf-8", errors="replace") as file:
+        lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+    if not lines:
+        raise GapError(f"{path}: the file is empty, a header line and at least 20 rows are needed")
+    header = [name.strip() for name in lines[0]]
+    if header[0] != "t":
+        raise GapError(f"{path}: the first column is '{header[0]}', it must be 't' (time in seconds)")
+    doubled = {name for name in header if header.count(name) > 1}
+    if doubled:
+        raise GapError(f"{path}: column '{sorted(doubled)[0]}' appears twice in the header (row 1)")
+    rows = lines[1:]
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(header):
+            raise GapError(f"{path}: row {number} has {len(row)} cells, the header has {len(header)} columns "
+                           f"(column '{header[min(len(row), len(header) - 1)]}' is where it ends)")
+    if len(rows) < 20:
+        raise GapError(f"{path}: {len(rows)} rows of data, at least 20 are needed")
+    try:
+        data = np.array(rows, dtype=float)
+    except ValueError:
+        data = np.array([[_number(path, header[j], i, cell) for j, cell in enumerate(row)]
+                         for i, row in enumerate(rows, start=2)])
+    bad = np.argwhere(~np.isfinite(data))
+    if len(bad):
+        i, j = bad[0]
+        raise GapError(f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, "
+                       "a finite number is needed")
+    back = np.flatnonzero(np.diff(data[:, 0]) <= 0)
+    if len(back):
+        raise GapError(f"{path}: column 't', row {back[0] + 3}: time does not increase "
+                       f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})")
+    return {name: data[:, j] for j, name in enumerate(header)}
+
+
+def _number(path: Path, column: str, row: int, cell: str) -> float:
+    try:
+        return float(cell) if cell.strip() else float("nan")
+    except ValueError:
+        raise GapError(f"{path}: column '{column}', row {row} is '{cell}', a number is needed") from None
+
+
+def write_table(path: Path, columns: dict[str, np.ndarray]) -> None:
+    """Write columns of equal length as a CSV that `read_table` reads back to 9 digits."""
+    names = list(columns)
+    data = np.stack([np.asarray(columns[name], dtype=float) for name in names], axis=1)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.savetxt(path, data, delimiter=",", header=",".join(names), comments="", fmt="%.9g")
