@@ -266,7 +266,8 @@ class Run:
         while self.context.now() < ends:
             self.guard.check()  # stops on excess load; dead senses no longer change what has to be done
             if self.context.lease.stuck() is not None:
-                return False
+                self.guard.stop()  # releasing the person matters more than whose turn it is
+                self.context.lease.clear()
             self._tick(safe)
             if safe.status != Status.RUNNING:
                 return safe.status == Status.SUCCESS
@@ -280,7 +281,7 @@ class Run:
         ticks on end.  Errors are kept: nothing may keep the rest from happening.
         """
         ends = self.context.now() + self.limits.stop_patience
-        calm, wanted = 0, CALM_TICKS if release else 1
+        calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
             self._try(self.context.lease.advance)

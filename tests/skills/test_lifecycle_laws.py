@@ -135,3 +135,5 @@ def test_nothing_is_commanded_while_another_holds_the_lease(kind):
     assert bench.world.sent == []
     bench.skill.stop(Status.INVALID)
     assert bench.context.lease.holder is other, "a skill that only waited must not take the other's lease away"
+    assert "cancel" not in bench.phases or not kind.commands, "it has nothing to cancel"
+    assert not bench.context.errors

@@ -48,6 +48,24 @@ def test_steps_yield_once_per_tick_and_return_to_succeed():
     assert (skill.status, context.board.get("n")) == (Status.SUCCESS, 2)
 
 
+def test_outputs_are_unset_on_entry():
+    context, _ = make_context()
+    skill = Count("count", context, ticks=1, counted=Key("n"))
+    while skill.status != Status.SUCCESS:
+        skill.tick_once()
+    assert "n" in context.board
+
+    def late():
+        yield
+        skill.counted = 5
+
+    skill.steps = late
+    skill.tick_once()
+    assert "n" not in context.board, "an earlier round's value must not be read in this one"
+    skill.tick_once()
+    assert context.board.get("n") == 5
+
+
 @pytest.mark.parametrize(("error", "reason"), [
     (SkillFailure(Reason.UNREACHABLE, "0.2 m short"), Reason.UNREACHABLE),
     (SensorLost("the head camera is dead"), Reason.SENSOR_LOST),

@@ -10,7 +10,7 @@ from caretree.sim.scripted import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
 from caretree.skills.reasons import Reason
 from caretree.trees.composers import fallback, sequence, watch
-from caretree.trees.decorators import FailSafe, Stage
+from caretree.trees.decorators import FailSafe, Stage, Timeout
 from caretree.trees.runner import run as run_task
 from caretree.trees.tasks import load_task
 from py_trees.common import Status
@@ -190,6 +190,37 @@ def test_a_motion_that_will_not_stop_is_told():
     result = run.run()
     assert result.outcome == "safe_stop"
     assert Reason.MOTION_BLOCKED.value in result.reason
+
+
+def test_a_skill_that_never_lets_go_of_the_motion_ends_the_run_and_the_safe_branch_still_runs():
+    class Clinging(Plan):
+        def cancel(self):
+            return False
+
+    def build(context):
+        body = fallback("f", Timeout("in time", Clinging("clings", context, outcomes=[True], ticks=100), seconds=1.0),
+                        Plan("next", context, outcomes=[True]))
+        return FailSafe("safe", body, Release("let go", context))
+
+    run = run_of(build)
+    run.world.between_fingers["left"] = 0.02
+    run.world.send(GripperOpening(side="left", opening=0.0))
+    result = run.run()
+    assert (result.outcome, result.reason) == ("safe_stop", f"{Reason.MOTION_BLOCKED.value} [clings] it does not stop")
+    assert run.root.made_safe is True
+    assert result.sim_time_s > 6.0, "it was given its patience"
+    assert_at_rest(run)
+
+
+def test_motion_that_belongs_to_no_skill_is_stopped_too():
+    class Stray(py_trees.behaviour.Behaviour):
+        def update(self):
+            run.world.send(HandTwist(side="left", twist_in_map=np.array((0.05, 0, 0, 0, 0, 0)), duration=1e3))
+            return Status.SUCCESS
+
+    run = run_of(lambda context: Stray("stray"))
+    assert run.run().outcome == "success"
+    assert_at_rest(run, opened=False)
 
 
 def test_the_higher_branch_waits_for_the_lower_ones_motion():
