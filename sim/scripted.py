@@ -82,6 +82,7 @@ class ScriptedWorld(World):
         frames: `(camera, time) -> Frame`; flat grey pictures by default.
         room: map; `scripted_room()` by default.
         kinematics: anything with `pose_hand_in_map` and `jacobian_hand_in_map`; linear arms by default.
+        arm_positions: (2, 7) where the arms are at first [rad]; zeros by default.
         stopping_time: how long arms and base run on after a stop, slowing down evenly [s].
 
     Attributes:
@@ -93,7 +94,8 @@ class ScriptedWorld(World):
     """
 
     def __init__(self, *, seed: int = 0, frames: Callable[[str, float], Frame] | None = None,
-                 room: RoomMap | None = None, kinematics: Any = None, stopping_time: float = 0.15) -> None:
+                 room: RoomMap | None = None, kinematics: Any = None, stopping_time: float = 0.15,
+                 arm_positions: np.ndarray | None = None) -> None:
         self.time = VirtualClock(self._advance_to)
         self.clock = self.time
         self.room = room or scripted_room()
@@ -104,7 +106,8 @@ class ScriptedWorld(World):
         self.sent: list[Command] = []
         self._rng = np.random.default_rng(seed)
         self._frames = frames or self._flat_frame
-        self._q, self._dq = np.zeros((2, 7)), np.zeros((2, 7))
+        self._q = np.zeros((2, 7)) if arm_positions is None else np.array(arm_positions, float).reshape(2, 7)
+        self._dq = np.zeros((2, 7))
         self._head = 0.0
         self._base = np.array(self.room.waypoints.get("start", (0.0, 0.0, 0.0)), float)
         self._base_velocity, self._base_until = np.zeros(3), 0.0

@@ -37,6 +37,7 @@ from .person_zone import PersonZone
 from .watchdog import Watchdog
 
 LIFT_MIN = 0.05  # [m] shorter motions of a held arm are corrections, not lifts
+BOTH_MOVE = 0.7  # [m] further from the person than `near`, an arm may move fast while the base moves too
 OPENED = 0.01  # [m] a command that opens the fingers by this much lets go
 
 
@@ -65,8 +66,8 @@ class GuardedWorld:
         self._over = {side: False for side in SIDES}
         self._fault: Failure | None = None
         self._base_until, self._base_speed = -np.inf, np.zeros(2)
-        self._twist_until = {side: -np.inf for side in SIDES}
-        self._twist_speed = {side: 0.0 for side in SIDES}
+        self._arm_until = {side: -np.inf for side in SIDES}  # what the arm itself was last told to do
+        self._arm_speed = {side: 0.0 for side in SIDES}
         self._last: Observation | None = None
         self._fast_since: dict[Side, float | None] = {side: None for side in SIDES}
 
@@ -163,7 +164,7 @@ class GuardedWorld:
     def stop(self) -> None:
         """End every motion now."""
         self._base_until = -np.inf
-        self._twist_until = {side: -np.inf for side in SIDES}
+        self._arm_until = {side: -np.inf for side in SIDES}
         self._inner.stop()
 
     def close(self) -> None:
@@ -231,17 +232,16 @@ class GuardedWorld:
         carried = self._carried(side, seen)
         speed = float(np.linalg.norm(twist[:3]))
         ahead = hand + np.linspace(0.0, command.duration, 5)[:, None] * twist[:3]
-        near = bool((self._zone.distance(ahead) < self.limits.near_person).any())
+        near = bool((self._zone.distance(ahead) < self.limits.near_person + carried * command.duration).any())
         if near or self._grip[side] == "arm":
             limit = max(self._speed_limit(side) - carried, 0.0)
             if speed > limit:
                 twist *= limit / speed
-        self._twist_until[side] = self.clock.now() + command.duration
-        self._twist_speed[side] = float(np.linalg.norm(twist[:3]))
+        self._arm_moves(side, float(np.linalg.norm(twist[:3])), command.duration)
         return replace(command, twist_in_map=twist)
 
     def _slow_trajectory(self, command: JointTrajectory, seen: Observation, retreat: bool) -> JointTrajectory:
-        factor = 1.0
+        factor, fastest = 1.0, {}
         for side in SIDES:
             index = SIDES.index(side)
             if self._hand_positions is None:
@@ -250,21 +250,31 @@ class GuardedWorld:
                         self._ease(side, -seen.wrench_hand_in_map[index, :3], seen, retreat)
                     speed = near_speed_bound(command, side, seen, self._zone, self.limits.near_person)
                     factor = max(factor, speed / self._speed_limit(side))
+                    fastest[side] = self._speed_limit(side)
                 continue
             walked = hand_path(command, side, seen, self._hand_positions)
             if walked is None:
                 continue
             times, path = walked
             ease = self._ease(side, path[-1] - path[0], seen, retreat)
-            speed = near_speed(times, path, self._zone, self.limits.near_person)
+            carried = self._carried(side, seen)
+            reach = self.limits.near_person + (BOTH_MOVE if carried > 0.0 else 0.0)
+            speed = near_speed(times, path, self._zone, reach)
+            steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+            fastest[side] = float((steps / np.maximum(np.diff(times), 1e-9)).max(initial=0.0))
             if self._grip[side] == "arm":
-                steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
-                speed = max(speed, float((steps / np.maximum(np.diff(times), 1e-9)).max(initial=0.0)))
+                speed = fastest[side]
                 if np.linalg.norm(path - path[0], axis=1).max() > LIFT_MIN:
                     factor = max(factor, self.limits.lift_duration / max(float(times[-1]), 1e-9))
-            limit = max(self._speed_limit(side) - self._carried(side, seen), 1e-3)
+            limit = max(self._speed_limit(side) - carried, 1e-3)
             factor = max(factor, speed / limit, 1.0 / max(ease, 0.05))
+        for side, speed in fastest.items():
+            self._arm_moves(side, speed / factor, float(command.times[-1]) * factor)
         return stretched(command, factor) if factor > 1.0 else command
+
+    def _arm_moves(self, side: Side, speed: float, duration: float) -> None:
+        self._arm_until[side] = self.clock.now() + duration
+        self._arm_speed[side] = speed
 
     def _slow_base(self, command: BaseVelocity, seen: Observation, retreat: bool) -> BaseVelocity:
         velocity, factor = np.array(command.velocity, float), 1.0
@@ -278,9 +288,11 @@ class GuardedWorld:
             factor = min(factor, self._ease(side, motion, seen, retreat))
             speed = float(np.linalg.norm(motion))
             ahead = hands[n] + np.linspace(0.0, command.duration, 5)[:, None] * motion
-            near = bool((self._zone.distance(ahead) < self.limits.near_person).any())
+            own = self._arm_speed[side] if self.clock.now() < self._arm_until[side] else 0.0
+            # an arm on its way was judged with the base at rest: moving both keeps further away
+            reach = self.limits.near_person + (own * command.duration if own <= self._speed_limit(side) else BOTH_MOVE)
+            near = bool((self._zone.distance(ahead) < reach).any())
             if speed > 0 and (near or self._grip[side] == "arm"):
-                own = self._twist_speed[side] if self.clock.now() < self._twist_until[side] else 0.0
                 factor = min(factor, max(self._speed_limit(side) - own, 0.0) / speed)
         velocity *= factor
         self._base_until = self.clock.now() + command.duration

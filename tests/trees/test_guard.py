@@ -325,6 +325,48 @@ def test_the_guard_passes_on_the_contract_and_nothing_else():
                       "check", "observe", "look", "send", "stop", "close"}
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_no_mixture_of_commands_moves_a_hand_too_fast_near_the_person(seed):
+    """Random twists, trajectories and base velocities at all times, watched at every step of the world."""
+    rng = np.random.default_rng(seed)
+    worst = []
+
+    class Watched(World):
+        def _step(self, dt):
+            before = self._hands()
+            super()._step(dt)
+            speed = np.linalg.norm(self._hands() - before, axis=1) / dt
+            worst.extend(speed[zone.distance(before) < DEFAULT.near_person])
+
+        def _hands(self):
+            return np.stack([self.kinematics.pose_hand_in_map(side, self._q[n], self._base)[:3, 3]
+                             for n, side in enumerate(("left", "right"))])
+
+    world = Watched(stopping_time=0.0)
+    guard = GuardedWorld(world)
+    arm = world.observe().pose_hand_in_map[0, :3, 3] + np.array(((-0.6, -0.9, 0), (-0.3, -0.7, 0), (-0.1, -0.8, 0.1)))
+    zone = guard._zone
+    guard.update_person(arm)
+    for _ in range(250):
+        side = ("left", "right")[rng.integers(2)]
+        kind = rng.integers(3)
+        if kind == 0:
+            towards = arm[rng.integers(3)] - world.observe().pose_hand_in_map[("left", "right").index(side), :3, 3]
+            velocity = rng.uniform(0, 0.6) * (towards / np.linalg.norm(towards) + 0.5 * rng.standard_normal(3))
+            guard.send(HandTwist(side=side, twist_in_map=np.append(velocity, np.zeros(3)),
+                                 duration=float(rng.uniform(0.1, 1))))
+        elif kind == 1:
+            here = world.observe().arm_positions[("left", "right").index(side), :3]
+            there = here + rng.uniform(-0.8, 0.8, 3)
+            guard.send(JointTrajectory(joints=tuple(f"{side}_{joint}" for joint in ("s0", "s1", "e0")),
+                                       times=np.array((0.0, rng.uniform(0.3, 2.0))), positions=np.array((here, there))))
+        else:
+            guard.send(BaseVelocity(velocity=rng.uniform(-0.4, 0.4, 3), duration=float(rng.uniform(0.1, 0.5))))
+        world.clock.wait_until(world.clock.now() + rng.uniform(0.02, 0.3))
+    assert len(worst) > 20, "the hands did come near"
+    assert max(worst) <= DEFAULT.hand_speed
+
+
 def test_wrong_places_of_the_person_are_refused():
     _, guard = make()
     with pytest.raises(Exception, match=r"finite points of shape \(n, 3\)"):
