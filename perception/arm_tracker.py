@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..sim.world import Frame, Side
-from .chain import LENGTHS, ChainFit, SkinView, fit_chain
+from .chain import LENGTHS, ChainFit, SkinView, Trunk, fit_chain
 from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture
 from .skin import (
@@ -24,6 +24,7 @@ from .skin import (
     skin_on_bed,
 )
 
+_MARGIN = 0.03  # between the trunk and skin that is taken for the arm [m]
 _POINTS = 350  # skin points per fit
 _GATE = 40.0  # squared Mahalanobis distance of a whole fit, 12 degrees of freedom (99.99 %)
 _FADE = 0.4  # time after which a motion has died out [s]
@@ -174,7 +175,7 @@ class ArmTracker:
         points, skin = skin_on_bed(frame, self.bed)
         side = (points[:, 0] - self.middle) * self._sign
         below_head = points[:, 1] > (self.shoulder_y - 0.10)
-        mine = points[(side > TRUNK_HALF_WIDTH * self.scale) & below_head]
+        mine = points[(side > TRUNK_HALF_WIDTH * self.scale + _MARGIN) & below_head]
         if len(mine) > _POINTS:
             mine = mine[np.linspace(0, len(mine) - 1, _POINTS).astype(int)]
         if skin.any():
@@ -183,7 +184,9 @@ class ArmTracker:
                                  cv2.Sobel(to_skin, cv2.CV_32F, 0, 1, ksize=3, scale=0.125)])
         else:
             to_skin, gradient = np.full(skin.shape, 1e3, np.float32), np.zeros((2, *skin.shape), np.float32)
-        return SkinView(points=mine, depth=frame.depth, to_skin=to_skin, gradient=gradient,
+        trunk = Trunk(middle=self.middle, sign=self._sign, half_width=0.95 * TRUNK_HALF_WIDTH * self.scale,
+                      top=self.bed[1, 2] + 0.20, low=self.shoulder_y - 0.05, high=self.shoulder_y + 0.60)
+        return SkinView(points=mine, trunk=trunk, depth=frame.depth, to_skin=to_skin, gradient=gradient,
                         intrinsics=frame.intrinsics, pose_camera_in_map=frame.pose_camera_in_map)
 
     def _start(self, frame: Frame, view: SkinView) -> None:

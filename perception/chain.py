@@ -18,9 +18,36 @@ RADII = np.array((0.041, 0.036, 0.030))  # of the same [m]
 _POINT_SIGMA = 0.012  # one point to the surface: sensor noise and limbs that are no capsules [m]
 _EFFECTIVE = 30  # that many of the points are independent: neighbours share their error
 _EMPTY_SIGMA = 0.010  # an axis sample beside the skin: two pixels [m]
+_BODY_SIGMA = 0.02  # how firmly the trunk and the elbow's limit hold [m]
+_NEAREST_WRIST = 0.30  # from the shoulder: an elbow at 111 degrees, more than an arm at rest bends [m]
 _SEGMENT = np.repeat(np.arange(3), 6)  # samples along each capsule's axis, and the very end of the fingers
 _SHARE = np.tile(np.linspace(0.1, 1.0, 6), 3)
 _SEGMENT, _SHARE = np.append(_SEGMENT, (2, 2)), np.append(_SHARE, (1.08, 1.15))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trunk:
+    """The half of the trunk that no part of the arm can be in, a box open downwards.
+
+    Attributes:
+        middle: x of the body's midline [m].
+        sign: 1 for the arm on the side of larger x, -1 for the other.
+        half_width: of the trunk [m].
+        top: z up to which it reaches [m].
+        low, high: where it begins and ends along y [m].
+    """
+
+    middle: float
+    sign: float
+    half_width: float
+    top: float
+    low: float
+    high: float
+
+    def depth_inside(self, points: np.ndarray) -> np.ndarray:
+        """How far (n,) points (n, 3) lie inside its flank, 0 outside [m]."""
+        inside = (points[:, 2] < self.top) & (points[:, 1] > self.low) & (points[:, 1] < self.high)
+        return np.where(inside, np.maximum(self.half_width - self.sign * (points[:, 0] - self.middle), 0.0), 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +61,7 @@ class SkinView:
         gradient: (2, H, W) of `to_skin` along u and v.
         intrinsics: (fx, fy, cx, cy) [px].
         pose_camera_in_map: (4, 4).
+        trunk: where the arm cannot be, if it is known.
     """
 
     points: np.ndarray
@@ -42,6 +70,7 @@ class SkinView:
     gradient: np.ndarray
     intrinsics: tuple[float, float, float, float]
     pose_camera_in_map: np.ndarray
+    trunk: Trunk | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +134,7 @@ def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np
                 _add(matrix, vector, rows, signed[mine], w)
                 total += float((w * signed[mine] ** 2).sum())
                 weight += float(w.sum()) * _POINT_SIGMA**2
-        total += _add_empty(matrix, vector, view, q)
+        total += _add_empty(matrix, vector, view, q) + _add_body(matrix, vector, view.trunk, q, scale)
         _add_priors(matrix, vector, q, start if home is None else home, lengths, length_sigma, anchor)
         step = np.linalg.solve(matrix + 1e-6 * np.eye(12), -vector)
         longest = np.linalg.norm(step.reshape(4, 3), axis=1).max()
@@ -158,6 +187,30 @@ def _add_empty(matrix: np.ndarray, vector: np.ndarray, view: SkinView, q: np.nda
     w = np.full(int(count.sum()), 1 / _EMPTY_SIGMA**2)
     _add(matrix, vector, _rows(segment[count], share[count], direction[count]), metres[count], w)
     return float((w * metres[count] ** 2).sum())
+
+
+def _add_body(matrix: np.ndarray, vector: np.ndarray, trunk: Trunk | None, q: np.ndarray, scale: float) -> float:
+    """Add what a body allows: no arm inside the trunk, no elbow folded shut."""
+    total = 0.0
+    if trunk is not None:
+        far = (_SEGMENT > 0) | (_SHARE > 0.5)  # the shoulder itself is at the trunk's edge
+        segment, share = _SEGMENT[far], _SHARE[far]
+        depth = trunk.depth_inside(q[segment] + share[:, None] * (q[segment + 1] - q[segment]))
+        deep = depth > 0
+        if deep.any():
+            outward = np.tile((-trunk.sign, 0.0, 0.0), (int(deep.sum()), 1))
+            w = np.full(len(outward), 1 / _BODY_SIGMA**2)
+            _add(matrix, vector, _rows(segment[deep], share[deep], outward), depth[deep], w)
+            total += float((w * depth[deep] ** 2).sum())
+    reach = q[2] - q[0]
+    size = float(np.linalg.norm(reach))
+    lacking = _NEAREST_WRIST * scale - size
+    if lacking > 0:
+        rows = np.zeros((1, 4, 3))
+        rows[0, 2], rows[0, 0] = -reach / max(size, 1e-6), reach / max(size, 1e-6)
+        _add(matrix, vector, rows.reshape(1, 12), np.array([lacking]), np.array([1 / _BODY_SIGMA**2]))
+        total += (lacking / _BODY_SIGMA) ** 2
+    return total
 
 
 def _add_priors(matrix: np.ndarray, vector: np.ndarray, q: np.ndarray, home: np.ndarray, lengths: np.ndarray,

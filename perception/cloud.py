@@ -6,10 +6,12 @@ import numpy as np
 
 from ..sim.world import Frame
 
+_PAPER_FOCAL = 466.0  # of a 640-wide image with a field of view of 69 degrees [px]
+
 
 def pixel_scale(frame: Frame) -> float:
-    """Pixels of this image per pixel of the 640-wide images in which the paper states its distances."""
-    return frame.rgb.shape[1] / 640
+    """Pixels of this image per pixel of the images in which the paper states its distances."""
+    return frame.intrinsics[0] / _PAPER_FOCAL
 
 
 def points_in_map(frame: Frame) -> np.ndarray:

@@ -153,7 +153,7 @@ def collar_corner(frame: Frame, corner: Side, exclude: np.ndarray | None = None,
 
 
 def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray, rng: np.random.Generator) -> GraspPoint:
-    """Stage D: a random place on the neck binding within 150 px (of a 640-wide image) of the person's shoulder.
+    """Stage D: a random place on the neck binding within 150 px (of the paper's images) of the person's shoulder.
 
     Args:
         frame: a view from above the person.

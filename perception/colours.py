@@ -28,7 +28,7 @@ GOWN_SURFACES = (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR, Surface.ARMHOL
 
 # surface -> hue from, to [degrees], saturation from, to, lowest value; later rows win
 _BANDS: tuple[tuple[Surface, float, float, float, float, float], ...] = (
-    (Surface.INSIDE, 188, 230, 0.10, 0.32, 0.20),
+    (Surface.INSIDE, 188, 230, 0.125, 0.32, 0.26),
     (Surface.OUTSIDE, 188, 230, 0.32, 0.60, 0.08),
     (Surface.COLLAR, 212, 250, 0.60, 1.00, 0.04),
     (Surface.ARMHOLE, 300, 346, 0.50, 1.00, 0.10),

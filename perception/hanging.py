@@ -11,7 +11,7 @@ from .errors import PerceptionFailure, Problem
 from .estimates import GraspPoint
 from .garment import gown_labels
 
-_RING = (70.0, 80.0)  # distance from the hanging point in 640-wide images [px], from the paper
+_RING = (70.0, 80.0)  # distance from the hanging point in the paper's images [px], from the paper
 
 
 def hang_pixel(labels: np.ndarray) -> tuple[float, float]:
@@ -27,7 +27,7 @@ def hang_pixel(labels: np.ndarray) -> tuple[float, float]:
 
 
 def grasp_near_hang(frame: Frame, rng: np.random.Generator) -> GraspPoint:
-    """A random place 70-80 px (of a 640-wide image) from the hanging point, on the neck binding where it is seen.
+    """A random place 70-80 px (of the paper's images) from the hanging point, on the neck binding where it is seen.
 
     The fingers come horizontally from the camera's side and close across the binding's edge, or across the
     vertical folds where there is only fabric.

@@ -13,6 +13,7 @@ from .garment import gown_labels
 
 _HALF_WIDTH = 0.08  # of an adult's armhole laid flat [m]
 _HALF_BINDING = 0.025  # half the width of the neck binding [m]
+_FARTHEST = 0.42  # an armhole from the shoulder it belongs to, laid flat; the other one is 0.5 away [m]
 _REACH = 0.35  # pieces of one ring are not farther than this from its largest piece [m]
 
 
@@ -29,7 +30,7 @@ def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveO
         near_in_map: (3,) roughly where it should be, such as the tracked shoulder [m].
 
     Raises:
-        PerceptionFailure: no armhole binding, or none within 0.6 m of the point.
+        PerceptionFailure: no armhole binding, or none near the point.
     """
     labels = gown_labels(frame)
     cloud = points_in_map(frame)
@@ -41,7 +42,7 @@ def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveO
     pieces = [np.flatnonzero(piece == k) for k in range(piece.max() + 1)]
     pieces = [p for p in pieces if len(p) >= 8]
     distances = [np.linalg.norm(points[p].mean(axis=0) - near_in_map) for p in pieces]
-    if not pieces or min(distances) > 0.6:
+    if not pieces or min(distances) > _FARTHEST:
         raise PerceptionFailure(Problem.OUT_OF_REACH, f"binding of the {side} armhole")
     seed = points[pieces[int(np.argmin(distances))]].mean(axis=0)
     ring = np.concatenate([p for p in pieces if np.linalg.norm(points[p].mean(axis=0) - seed) < _REACH / 2 + 0.05])

@@ -2,7 +2,8 @@
 
 Assumption, written down because perception rests on it: as on many hospital gowns, the binding tapes
 contrast with the fabric (navy around the neck, magenta around the armholes, green at the cuffs; none shares its hue
-with skin, bed or robot) and the fabric is printed outside and plain inside.  Hue, brightness and light vary from run to run.
+with skin, bed or robot) and the fabric is printed outside and plain inside.  Hue, brightness and light vary from
+run to run.
 """
 
 from __future__ import annotations
@@ -49,12 +50,13 @@ class Appearance:
 
 
 def draw_appearance(rng: np.random.Generator) -> Appearance:
-    """Draw hue within 8 degrees, brightness within 8 % (skin 40 %), light intensity in 0.7-1.2 and a lamp on the ceiling."""
+    """Draw hue within 8 degrees, brightness within 8 % (skin 40 %), intensity in 0.7-1.2 and a lamp on the ceiling."""
     colours: dict[str, Colour] = {}
     for name, (hue, saturation, value) in _NOMINAL.items():
         h = (hue + rng.uniform(-8, 8)) % 360 / 360
         darkest = 0.60 if name == "skin" else 0.92  # people differ more than laundry does
-        red, green, blue = colorsys.hsv_to_rgb(h, saturation * rng.uniform(0.92, 1.08), value * rng.uniform(darkest, 1.06))
+        saturation, value = saturation * rng.uniform(0.92, 1.08), value * rng.uniform(darkest, 1.06)
+        red, green, blue = colorsys.hsv_to_rgb(h, saturation, value)
         colours[name] = (255 * red, 255 * green, 255 * blue)
     lamp = np.array((rng.uniform(-0.8, 0.8), rng.uniform(-0.8, 0.8), 1.0))
     return Appearance(colours=colours, light=Light(direction_in_map=lamp / np.linalg.norm(lamp),

@@ -8,10 +8,16 @@ from .errors import CaretreeError
 from .raster import Light, Picture, Triangles, add_sensor_noise, rasterise
 
 CLOTH_ID = 0
-HEAD_SIZE = (320, 240)  # (width, height) [px]
-HAND_SIZE = (320, 240)
-VIDEO_SIZE = (640, 480)
-FIELD_OF_VIEW = np.deg2rad(69.0)  # horizontal, both on the head and on the hands
+FIELD_OF_VIEW = np.deg2rad(69.0)  # horizontal, of the hand cameras and the video
+VIDEO_SIZE = (640, 480)  # (width, height) [px]
+# Camera -> size [px] and horizontal field of view [rad].  The head's is wide: at 69 degrees, pitched 45 degrees down
+# beside the bed, neither the near arm nor the near sleeve is in the picture (half of the seeds tried).
+CAMERA_VIEWS: dict[str, tuple[tuple[int, int], float]] = {
+    "head": ((400, 300), np.deg2rad(90.0)),
+    "left_hand": ((320, 240), FIELD_OF_VIEW),
+    "right_hand": ((320, 240), FIELD_OF_VIEW),
+}
+HEAD_SIZE = CAMERA_VIEWS["head"][0]
 
 
 def intrinsics_of(size: tuple[int, int], field_of_view: float = FIELD_OF_VIEW) -> tuple[float, float, float, float]:
@@ -19,6 +25,11 @@ def intrinsics_of(size: tuple[int, int], field_of_view: float = FIELD_OF_VIEW) -
     width, height = size
     focal = width / 2 / np.tan(field_of_view / 2)
     return float(focal), float(focal), (width - 1) / 2, (height - 1) / 2
+
+
+def camera_intrinsics(camera: str) -> tuple[float, float, float, float]:
+    """Pinhole parameters (fx, fy, cx, cy) [px] of one of the robot's cameras."""
+    return intrinsics_of(*CAMERA_VIEWS[camera])
 
 
 def looking_at(eye: np.ndarray, target: np.ndarray, up: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> np.ndarray:
@@ -118,15 +129,16 @@ class Renderer:
                          ids=np.concatenate([rigid.ids, np.full(len(faces), CLOTH_ID, dtype=np.int32)]),
                          uv=np.vstack([rigid.uv, uv]), printed=np.concatenate([rigid.printed, printed]))
 
-    def render(self, pose_camera_in_map: np.ndarray, size: tuple[int, int] = HEAD_SIZE,
+    def render(self, pose_camera_in_map: np.ndarray, size: tuple[int, int] = VIDEO_SIZE,
                intrinsics: tuple[float, float, float, float] | None = None) -> Picture:
         """Draw a noiseless picture; default intrinsics are `intrinsics_of(size)`."""
         return rasterise(self.triangles(), self.light, intrinsics or intrinsics_of(size), pose_camera_in_map, size)
 
-    def photograph(self, pose_camera_in_map: np.ndarray, rng: np.random.Generator, size: tuple[int, int] = HEAD_SIZE,
-                   intrinsics: tuple[float, float, float, float] | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Rgb (H, W, 3) uint8 and depth (H, W) float32 [m] as the sensor delivers them, with noise and holes."""
-        return add_sensor_noise(self.render(pose_camera_in_map, size, intrinsics), rng)
+    def photograph(self, camera: str, pose_camera_in_map: np.ndarray,
+                   rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """What one of the robot's cameras delivers: rgb (H, W, 3) uint8 and depth (H, W) float32 [m], with noise."""
+        picture = self.render(pose_camera_in_map, CAMERA_VIEWS[camera][0], camera_intrinsics(camera))
+        return add_sensor_noise(picture, rng)
 
     def _assemble(self) -> Triangles:
         if not self._parts:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from caretree.sim.appearance import Appearance, draw_appearance, gown_colours
-from caretree.sim.camera import HEAD_SIZE, Renderer, intrinsics_of, looking_at
+from caretree.sim.camera import HEAD_SIZE, Renderer, camera_intrinsics, looking_at
 from caretree.sim.gown import GOWNS, GownMesh, build_gown
 from caretree.sim.solids import box_mesh, capsule_mesh, cylinder_mesh, join_meshes
 from caretree.sim.world import Frame
@@ -20,7 +20,7 @@ from caretree.sim.world import Frame
 BED = np.array(((-0.45, -1.0, 0.5), (0.45, 1.0, 0.6)))
 GOWN = build_gown(GOWNS["medium"])
 RADII = (0.041, 0.036, 0.030)
-BEDSIDE = looking_at(np.array((0.80, -0.30, 1.60)), np.array((0.15, -0.30, 0.70)))  # head camera beside the bed
+BEDSIDE = looking_at(np.array((0.70, -0.30, 1.66)), np.array((-0.26, -0.30, 0.70)))  # Baxter's head at the bed
 
 
 def turned(angle: float) -> np.ndarray:
@@ -81,8 +81,8 @@ class Scene:
     hand: np.ndarray = field(default_factory=lambda: np.eye(4))
 
     def frame(self, seed: int = 0, stamp: float = 0.0) -> Frame:
-        rgb, depth = self.renderer.photograph(self.camera, np.random.default_rng(seed), HEAD_SIZE)
-        return Frame(camera="head", stamp=stamp, rgb=rgb, depth=depth, intrinsics=intrinsics_of(HEAD_SIZE),
+        rgb, depth = self.renderer.photograph("head", self.camera, np.random.default_rng(seed))
+        return Frame(camera="head", stamp=stamp, rgb=rgb, depth=depth, intrinsics=camera_intrinsics("head"),
                      pose_camera_in_map=self.camera)
 
     def dress(self, vertices: np.ndarray) -> None:
@@ -236,5 +236,5 @@ def black() -> Frame:
     """A camera that works and sees nothing at all."""
     width, height = HEAD_SIZE
     return Frame(camera="head", stamp=1.0, rgb=np.zeros((height, width, 3), np.uint8),
-                 depth=np.zeros((height, width), np.float32), intrinsics=intrinsics_of(HEAD_SIZE),
+                 depth=np.zeros((height, width), np.float32), intrinsics=camera_intrinsics("head"),
                  pose_camera_in_map=BEDSIDE)

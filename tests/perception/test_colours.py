@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from caretree.perception.colours import Surface, surfaces
 from caretree.sim.appearance import draw_appearance
+from caretree.sim.robot.shapes import BLACK, DARK, RED, STEEL
 
 
 @pytest.mark.parametrize(("name", "surface"), [
@@ -23,3 +24,11 @@ def test_flat_patches(name, surface, shade):
         right.append((surfaces(patch) == surface).mean())
     assert np.mean(right) > 0.98
     assert min(right) > 0.85
+
+
+@pytest.mark.parametrize("colour", [BLACK, DARK, RED, STEEL])
+@pytest.mark.parametrize("light", [0.35, 0.6, 1.0])
+def test_the_robot_is_neither_gown_nor_person(colour, light):
+    noise = np.random.default_rng(0).normal(0, 2, (64, 64, 3))
+    patch = np.clip(255 * light * np.array(colour) + noise, 0, 255).astype(np.uint8)
+    assert (surfaces(patch) == Surface.OTHER).mean() > 0.99

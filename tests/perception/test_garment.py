@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.garment import garment_mask, gown_side
-from caretree.sim.camera import CLOTH_ID
+from caretree.sim.camera import CLOTH_ID, HEAD_SIZE, camera_intrinsics
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_mask_is_the_gown(scenes, seed):
     for scene in (scenes.on_rail(seed), scenes.in_hand(seed), scenes.stretched(seed, outside=seed % 2 == 0)):
-        drawn = scene.renderer.render(scene.camera).ids == CLOTH_ID
+        drawn = scene.renderer.render(scene.camera, HEAD_SIZE, camera_intrinsics("head")).ids == CLOTH_ID
         found = garment_mask(scene.frame(seed))
         overlap = (drawn & found.mask).sum() / (drawn | found.mask).sum()
         assert overlap > 0.93

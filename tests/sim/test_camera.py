@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from caretree.sim.appearance import draw_appearance, gown_colours
-from caretree.sim.camera import CLOTH_ID, Renderer, intrinsics_of, looking_at
+from caretree.sim.camera import CAMERA_VIEWS, CLOTH_ID, Renderer, intrinsics_of, looking_at
 from caretree.sim.errors import CaretreeError
 from caretree.sim.gown import GOWNS, build_gown
 from caretree.sim.solids import box_mesh, capsule_mesh, cylinder_mesh, join_meshes, sphere_mesh
@@ -48,8 +48,8 @@ def test_bodies_move_and_names_are_checked():
     pose[:3, 3] = (0, 0, 1)
     renderer.set_pose("ball", pose)
     picture = renderer.render(camera)
-    assert picture.ids[120, 160] == renderer.ids["ball"]
-    assert picture.depth[120, 160] == pytest.approx(1.4, abs=0.01)
+    assert picture.ids[240, 320] == renderer.ids["ball"]
+    assert picture.depth[240, 320] == pytest.approx(1.4, abs=0.01)
     with pytest.raises(CaretreeError, match="no body 'cube', only ball"):
         renderer.set_pose("cube", pose)
     with pytest.raises(CaretreeError, match="already"):
@@ -76,6 +76,19 @@ def test_look_is_seeded_and_varies():
     assert a.colours == b.colours
     assert a.colours["collar"] != c.colours["collar"]
     assert 0.7 <= c.light.intensity <= 1.2
+
+
+def test_robot_cameras_deliver_their_size():
+    look = draw_appearance(np.random.default_rng(0))
+    renderer = Renderer(look.light)
+    renderer.add_rigid("ball", *sphere_mesh((0, 0, 1), 0.2), (255, 0, 0))
+    pose = looking_at((1.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+    for camera, ((width, height), _) in CAMERA_VIEWS.items():
+        rgb, depth = renderer.photograph(camera, pose, np.random.default_rng(0))
+        assert rgb.shape == (height, width, 3)
+        assert depth.shape == (height, width)
+        assert depth.dtype == np.float32
+        assert depth[height // 2, width // 2] == pytest.approx(0.8, abs=0.01)
 
 
 def test_field_of_view():
