@@ -165,13 +165,13 @@ class Skill(py_trees.behaviour.Behaviour):
         if phase == "idle":
             return
         self._close()
-        if phase == "waiting" or not self.commands:
-            return  # nothing was commanded; an earlier round that is still stopping goes on by itself
+        if phase == "waiting":
+            return  # nothing was begun; an earlier round that is still stopping goes on by itself
         if new_status != Status.SUCCESS:
-            self.context.notify(self.name, "cancel")
-            stopped = self._cancelled
-        else:
-            stopped = self._settled
+            self._tell_cancel()
+        if not self.commands:
+            return
+        stopped = self._settled if new_status == Status.SUCCESS else self._cancelled
         if stopped():
             self.context.lease.release(self)
         else:
@@ -213,6 +213,12 @@ class Skill(py_trees.behaviour.Behaviour):
             if self._generator is not None:
                 self._generator.close()
         except Exception as error:  # a generator's own clean-up must not stop the sweep over the tree
+            self.context.report(error)
+
+    def _tell_cancel(self) -> None:
+        try:
+            self.context.notify(self.name, "cancel")
+        except Exception as error:  # an observer's error must not stop the sweep either
             self.context.report(error)
 
     def _settled(self) -> bool:

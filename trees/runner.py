@@ -106,6 +106,7 @@ class Run:
                 node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions
         self.trace = Trace(self.root, self.context.now, recorder.event if recorder else None)
         self._period = 1.0 / rate_hz
+        self._ticked = float("-inf")
         self._tell = on_progress or (lambda progress: None)
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
@@ -143,7 +144,11 @@ class Run:
         except BaseException:
             self._last_resort()
             raise
-        return self._end(failure)
+        try:
+            return self._end(failure)
+        except BaseException:  # interrupted once more, or the record cannot be written
+            self._last_resort()
+            raise
 
     # -- ticking -----------------------------------------------------------------------------------------
 
@@ -165,6 +170,7 @@ class Run:
 
     def _tick(self, node: Behaviour) -> None:
         began = time.perf_counter()
+        self._ticked = self.context.now()
         self.context.lease.advance()
         for visited in node.tick():
             self.trace.visit(visited)
@@ -173,10 +179,13 @@ class Run:
         self._timing["tree"] += time.perf_counter() - began
 
     def _pass_time(self) -> None:
+        """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
         began = time.perf_counter()
-        now = self.context.now()
+        now, due = self.context.now(), self._ticked + self._period
+        if now >= due:
+            return
         for _ in range(DEAD_CLOCK_TICKS):
-            self.world.clock.wait_until(now + self._period)
+            self.world.clock.wait_until(due)
             if self.context.now() > now:
                 break
         else:
@@ -284,6 +293,7 @@ class Run:
         calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
+            self._ticked = self.context.now()
             self._try(self.context.lease.advance)
             self._try(self.guard.stop)
             if release:

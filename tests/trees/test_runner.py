@@ -298,6 +298,22 @@ def test_a_run_has_a_longest_time():
     assert result.sim_time_s < 5.0
 
 
+def test_a_world_whose_time_does_not_wait_is_ticked_on_time():
+    """On hardware a tick takes time itself: the next is due one period after its start, or at once if it is late."""
+    ticks = []
+
+    class Slow(Plan):
+        def steps(self):
+            for took in (0.03, 0.2, 0.0, 0.0):
+                ticks.append(self.now())
+                run.world.clock.wait_until(self.now() + took)
+                yield
+
+    run = run_of(lambda context: Slow("slow", context, outcomes=[True]), rate_hz=10.0)
+    assert run.run().outcome == "success"
+    assert ticks == pytest.approx([0.0, 0.1, 0.3, 0.4])
+
+
 def test_skills_and_trees_run_where_truth_cannot_be_read():
     class Secretive(ScriptedWorld):
         @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import signal
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -52,9 +53,11 @@ def main(options: argparse.Namespace) -> int:
     parameters = {key: value for key, value in parameters.items() if value not in (None, [])}
     inner, perception = make_world(options.world, task, seed=options.seed, gown=options.gown, person=options.person,
                                    model=options.model, view=options.view)
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # being told to end is being interrupted
     try:
         return _run(options, task, inner, perception, faults, parameters)
     finally:
+        signal.signal(signal.SIGTERM, before)
         inner.close()
 
 
