@@ -136,3 +136,16 @@ class PreGrasp(Estimate):
     approach_in_map: np.ndarray
     sweep_in_map: np.ndarray
     corner_in_map: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Head(Estimate):
+    """The person's head.
+
+    Attributes:
+        crown_in_map: (3,) far end of the head, away from the feet [m].
+        middle: x of the body's midline at the head [m].
+    """
+
+    crown_in_map: np.ndarray
+    middle: float

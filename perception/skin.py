@@ -2,36 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..sim.world import Frame
 from .cloud import points_in_map
 from .colours import Surface, surfaces
 from .errors import PerceptionFailure, Problem
+from .estimates import Head
 
-# Adult of 174 cm, lying on the back (Winter, Biomechanics of Human Movement, fig. 4.1, and hand calipers) [m].
+# Adult of 174 cm, lying on the back (Winter, Biomechanics of Human Movement, fig. 4.1: shares of body height) [m].
 CROWN_TO_SHOULDER = 0.31
 SHOULDER_HALF_WIDTH = 0.20
 SHOULDER_ABOVE_BED = 0.10
 TRUNK_HALF_WIDTH = 0.20
-HEAD_LENGTH = 0.24
-
-
-@dataclass(frozen=True, kw_only=True)
-class Head:
-    """The person's head.
-
-    Attributes:
-        crown_in_map: (3,) topmost point of the head, away from the feet [m].
-        middle: x of the body's midline at the head [m].
-        confidence: 0 to 1.
-    """
-
-    crown_in_map: np.ndarray
-    middle: float
-    confidence: float
 
 
 def skin_on_bed(frame: Frame, bed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -76,12 +59,11 @@ def head_seen(frame: Frame, bed: np.ndarray) -> Head:
     if not (0.08 < width < 0.30 and 0.10 < height < 0.35 and len(blob) >= 30):
         raise PerceptionFailure(Problem.NOTHING_SEEN, "head")
     cut = skin[0].any() or skin[:, 0].any() or skin[:, -1].any()
-    border = np.array((*frame.depth.shape[::-1], 0))
-    confidence = min(1.0, len(blob) / 150) * (0.8 if cut and border.any() else 1.0)
+    confidence = min(1.0, len(blob) / 150) * (0.8 if cut else 1.0)
     middle = _centre_of_round(blob[blob[:, 1] > crown + 0.05])
     crown = _end_of_round(blob[blob[:, 1] < crown + 0.08], crown)
-    return Head(crown_in_map=np.array((middle, crown, float(np.median(blob[:, 2])))), middle=middle,
-                confidence=float(confidence))
+    return Head(stamp=frame.stamp, confidence=float(confidence), middle=middle,
+                crown_in_map=np.array((middle, crown, float(np.median(blob[:, 2])))))
 
 
 def _centre_of_round(points: np.ndarray) -> float:

@@ -1,0 +1,83 @@
+"""All estimators by name, with one way to call them: `function(frame, **details) -> Estimate`.
+
+| name | details | estimate |
+|---|---|---|
+| garment_mask | | GarmentMask |
+| gown_side | | GownSide |
+| hang_point | | GraspPoint `near_hang` |
+| collar_line | | CollarLine |
+| collar_corner | side, exclude, below | GraspPoint `collar_corner_*` |
+| pre_grasp | frames, poses_hand_in_map, exclude | PreGrasp |
+| layers | side, pose_hand_in_map, frames, poses_cloth_in_map | LayerCount |
+| gripped_cloth | pose_hand_in_map | Estimate: confidence that cloth is held |
+| sleeve_opening | side, near_in_map | SleeveOpening |
+| collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
+| head | | Head |
+| arm | side, grip_in_map, fraction | ArmPosture |
+
+`frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
+guessing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..sim.world import SIDES, Frame, RoomMap, Side
+from .arm_tracker import ArmTracker
+from .collar import collar_corner, collar_line, collar_near_shoulder
+from .estimates import ArmPosture, Estimate, GraspPoint, LayerCount, PreGrasp
+from .garment import garment_mask, gown_side
+from .grip import gripped_cloth, layers
+from .hanging import grasp_near_hang
+from .pregrasp import pregrasp_proposal
+from .skin import head_seen
+from .sleeve import sleeve_opening
+
+Estimator = Callable[..., Estimate]
+
+
+def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
+    """The estimators of this package for one run; the arms are tracked from call to call.
+
+    Args:
+        room: for the place of the bed.
+        seed: of the random choices among equally good grasps.
+    """
+    rng = np.random.default_rng(seed)
+    trackers = {side: ArmTracker(side, room.bed) for side in SIDES}
+
+    def hang_point(frame: Frame) -> GraspPoint:
+        return grasp_near_hang(frame, rng)
+
+    def corner(frame: Frame, side: Side, **details: Any) -> GraspPoint:
+        return collar_corner(frame, side, **details)
+
+    def pre_grasp(frame: Frame, poses_hand_in_map: Sequence[np.ndarray], frames: Sequence[Frame] = (),
+                  exclude: Sequence[np.ndarray] = ()) -> PreGrasp:
+        return pregrasp_proposal([*frames, frame], poses_hand_in_map, exclude)
+
+    def count(frame: Frame, side: Side, pose_hand_in_map: np.ndarray, frames: Sequence[Frame] = (),
+              poses_cloth_in_map: Sequence[np.ndarray] | None = None) -> LayerCount:
+        return layers([*frames, frame], side, pose_hand_in_map, poses_cloth_in_map)
+
+    def near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
+        return collar_near_shoulder(frame, side, shoulder_in_map, rng)
+
+    def head(frame: Frame) -> Estimate:
+        return head_seen(frame, room.bed)
+
+    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0) -> ArmPosture:
+        """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip."""
+        tracker = trackers[side]
+        tracker.update(frame)
+        if grip_in_map is not None:
+            tracker.update_grip(frame.stamp, grip_in_map, fraction)
+        return tracker.estimate(frame.stamp)
+
+    return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
+            "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
+            "sleeve_opening": sleeve_opening, "collar_near_shoulder": near_shoulder, "head": head, "arm": arm}
