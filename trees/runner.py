@@ -175,7 +175,7 @@ class Run:
         for visited in node.tick():
             self.trace.visit(visited)
             self._progress(visited)
-        self.trace.sweep()
+        self._sweep()
         self._timing["tree"] += time.perf_counter() - began
 
     def _pass_time(self) -> None:
@@ -202,6 +202,13 @@ class Run:
         for stage in reversed(above):  # py_trees yields children first, an operator reads the stage first
             self._announce(stage, Status.RUNNING)
         self._announce(node, node.status)
+
+    def _sweep(self) -> None:
+        """Note and tell what was stopped without being visited."""
+        self.trace.sweep()
+        for node in [node for node, told in self._told.items() if told == Status.RUNNING]:
+            if node.status == Status.INVALID and isinstance(node, (Skill, Stage)):
+                self._announce(node, Status.INVALID)
 
     def _announce(self, node: Skill | Stage, status: Status) -> None:
         if self._told.get(node) == status:
@@ -253,7 +260,7 @@ class Run:
             except Exception as error:
                 self.context.report(error)
                 each.status = Status.INVALID
-        self.trace.sweep()
+        self._sweep()
 
     def _run_safe_branches(self) -> None:
         """Tick the safe branch of every fail-safe that was entered, innermost first."""

@@ -266,6 +266,17 @@ def test_progress_tells_stages_before_their_skills():
     assert [each.time for each in told] == sorted(each.time for each in told)
 
 
+def test_progress_tells_what_was_stopped():
+    told = []
+    run = run_of(lambda context: guarded_task(context, True, ticks=50), on_progress=told.append)
+    run.context.observers.append(lambda name, phase: phase == "step" and run.request_stop())
+    run.run()
+    lines = [(each.name, each.status) for each in told]
+    assert ("p", "stopped") in lines
+    assert ("A", "stopped") in lines
+    assert lines.index(("p", "stopped")) < lines.index(("let go", "success"))
+
+
 def test_the_recorder_gets_every_event_and_the_hash(tmp_path: Path):
     recorder = Recorder(tmp_path / "run", task="wave", seed=0, world="scripted")
     result = run_task(load_task("wave"), ScriptedWorld(), recorder=recorder)
