@@ -55,6 +55,13 @@ def test_a_users_own_file_runs(tmp_path):
     assert 2.0 < result.sim_time_s < 2.5
 
 
+def test_a_task_may_keep_its_skills_beside_it(tmp_path):
+    (tmp_path / "skills_beside_it.py").write_text(GOOD.split("def build")[0])
+    (tmp_path / "mine.py").write_text(
+        "from skills_beside_it import Wait\n\n\ndef build(context):\n    return Wait('wait', context)\n")
+    assert run(load_task(str(tmp_path / "mine.py")), ScriptedWorld()).outcome == "success"
+
+
 @pytest.mark.parametrize(("change", "line", "said"), [
     (lambda text: text.replace("def build(", "def make("), 1, "a task needs a function build(context)"),
     (lambda text: text.replace("    return FailSafe(", "    return FailSafe(("), 24, "was never closed"),

@@ -116,6 +116,9 @@ def _load_file(path: Path) -> Task:
         code = compile(path.read_text(encoding="utf-8"), str(path), "exec")
         module = ModuleType(f"caretree_task_{path.stem}")
         module.__file__ = str(path)
+        folder = str(path.resolve().parent)
+        if folder not in sys.path:
+            sys.path.append(folder)  # a task may keep its skills in a file beside it
         sys.modules[module.__name__] = module  # dataclasses look their module up there
         exec(code, module.__dict__)  # running the user's own file is the point
     except Exception as error:
