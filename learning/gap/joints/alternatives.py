@@ -118,11 +118,13 @@ def best_experiment(block: Block, theta: np.ndarray, other: Alternative, model: 
     Returns:
         (sentence, predicted difference in units of the noise floor).
     """
+    shared = [c for c in block.channels if all(c in b.channels for b in other.blocks)] or list(block.channels)
+    first = block.build(logs[0])
+    c = max(shared, key=lambda j: float(np.abs(first[:, block.channels.index(j)] @ theta).max() / floor[j]))
+
     def columns(blocks: tuple[Block, ...], log: JointLog) -> np.ndarray:
-        channel = block.channels[0] if len(block.channels) == 1 else int(np.argmax(
-            [np.abs(block.build(logs[0])[:, k] @ theta).max() / floor[c] for k, c in enumerate(block.channels)]))
-        c = block.channels[channel] if len(block.channels) > 1 else block.channels[0]
-        return np.concatenate([b.build(log)[:, b.channels.index(c), :] for b in blocks if c in b.channels], axis=1) / floor[c]
+        parts = [b.build(log)[:, b.channels.index(c), :] for b in blocks if c in b.channels]
+        return np.concatenate(parts, axis=1) / floor[c] if parts else np.zeros((len(log.t[log.inner]), 1))
 
     old = np.concatenate([columns(other.blocks, log) for log in logs])
     target = np.concatenate([columns((block,), log) @ theta for log in logs])

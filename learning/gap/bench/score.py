@@ -1,0 +1,107 @@
+"""Score verdicts against the truth, with exact 95 % intervals."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.stats import beta
+
+Row = dict[str, Any]
+
+
+def interval(hits: int, n: int) -> tuple[float, float]:
+    """Clopper-Pearson 95 % interval of a proportion."""
+    low = float(beta.ppf(0.025, hits, n - hits + 1)) if hits else 0.0
+    high = float(beta.ppf(0.975, hits + 1, n - hits)) if hits < n else 1.0
+    return low, high
+
+
+def judge_case(truth: Row, verdict: Row) -> Row:
+    """One case: what was hidden, what was said, and which of the benchmark's questions it answers right."""
+    hidden = {(e["name"], e["target"]) for e in truth["effects"] if truth["kind"] in ("single", "two")}
+    said = {(e["name"], e["target"]) for e in verdict["effects"]}
+    sizes = [e["size"] for e in truth["effects"]]
+    return {"system": truth["system"], "seed": truth["seed"], "kind": truth["kind"], "verdict": verdict["verdict"],
+            "hidden": sorted(map(list, hidden)) if hidden else [[e["name"], e["target"]] for e in truth["effects"]],
+            "said": sorted(map(list, said)), "size": min(sizes) if sizes else 0.0,
+            "exact": verdict["verdict"] != "unknown" and said == hidden,
+            "up_to_equivalents": verdict["verdict"] != "unknown" and _equivalent(hidden, verdict["effects"]),
+            "joint": hidden <= said or {t for _, t in hidden} == {t for _, t in said},
+            "false_alarm": truth["kind"] in ("none", "recalibration") and bool(said or verdict["verdict"] == "unknown"),
+            "overlap": _overlap(truth, verdict), "closed": verdict["gap"].get("closed"),
+            "seconds": verdict.get("seconds", 0.0)}
+
+
+def _equivalent(hidden: set[tuple[str, str]], effects: list[Row]) -> bool:
+    """Whether swapping effects for their reported equivalents gives the hidden set."""
+    options = [[frozenset({(e["name"], e["target"])}),
+                *(frozenset((part.split(" of ")[0], part.split(" of ")[1] if " of " in part else e["target"])
+                            for part in q.split(" + ")) for q in e.get("equivalent", []))] for e in effects]
+    reached = {frozenset()}
+    for choices in options[:6]:
+        reached = {r | c for r in reached for c in choices}
+    return frozenset(hidden) in reached
+
+
+def _overlap(truth: Row, verdict: Row) -> float | None:
+    """Intersection over union of the hidden intervals and those found on the hidden target; None where nothing is local."""
+    if not truth["intervals"]:
+        return None
+    target = next((e["target"] for e in truth["effects"] if e["name"] in ("contact", "snag")), None)
+    total = both = 0.0
+    for episode in {i[0] for i in truth["intervals"]}:
+        grid = np.linspace(0.0, 40.0, 20001)
+        real, found = np.zeros(len(grid), bool), np.zeros(len(grid), bool)
+        for e, a, b in truth["intervals"]:
+            if e == episode:
+                real |= (grid >= a) & (grid <= b)
+        for w in verdict["where"]:
+            if w["episode"] == episode and w["target"] == target and w["effect"] in ("contact", "snag"):
+                found |= (grid >= w["t0"]) & (grid <= w["t1"])
+        both += (real & found).sum()
+        total += (real | found).sum()
+    return float(both / total) if total else 0.0
+
+
+def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float]]:
+    """(question, system, right, asked, rate, low, high) for every system."""
+    out = []
+    for system in sorted({r["system"] for r in rows}):
+        mine = [r for r in rows if r["system"] == system]
+        big = [r for r in mine if r["kind"] == "single" and r["size"] >= 2.0]
+        small = [r for r in mine if r["kind"] == "single" and r["size"] < 2.0]
+        two = [r for r in mine if r["kind"] == "two"]
+        none = [r for r in mine if r["kind"] in ("none", "recalibration")]
+        outside = [r for r in mine if r["kind"] == "outside"]
+        local = [r for r in mine if r["overlap"] is not None and r["size"] >= 2.0]
+        for question, asked, key in (("single effect, size >= 2, exact set", big, "exact"),
+                                     ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
+                                     ("single effect, size < 2, exact set", small, "exact"),
+                                     ("two effects, exact set", two, "exact"),
+                                     ("two effects, up to stated equivalents", two, "up_to_equivalents"),
+                                     ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
+                                     ("false alarm where nothing is missing", none, "false_alarm"),
+                                     ("right joint, single effect, size >= 2", big, "joint")):
+            if asked:
+                hits = sum(bool(r[key]) for r in asked)
+                out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
+        recalibrated = [r for r in mine if r["kind"] == "recalibration"]
+        for question, asked, good in (("recalibration named as such", recalibrated, "recalibration"),
+                                      ("unknown on effects outside the bank", outside, "unknown")):
+            if asked:
+                hits = sum(r["verdict"] == good for r in asked)
+                out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
+        if local:
+            hits = sum(r["overlap"] >= 0.7 for r in local)
+            out.append(("interval overlap at least 0.7, size >= 2", system, hits, len(local), hits / len(local),
+                        *interval(hits, len(local))))
+        closed = np.array([r["closed"] for r in big if r["closed"] is not None])
+        if len(closed):
+            draws = np.median(np.random.default_rng(0).choice(closed, (500, len(closed))), axis=1)
+            out.append(("median part of the gap closed, size >= 2", system, len(closed), len(closed),
+                        float(np.median(closed)), *(float(x) for x in np.quantile(draws, [0.025, 0.975]))))
+        seconds = np.array([r["seconds"] for r in mine])
+        out.append(("seconds per set, median and range", system, len(mine), len(mine), float(np.median(seconds)),
+                    float(seconds.min()), float(seconds.max())))
+    return out

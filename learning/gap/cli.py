@@ -1,0 +1,103 @@
+"""`caretree gap`: find, name, add, show, run, fetch and bench."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from .errors import GapError
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = argparse.ArgumentParser(prog="caretree gap", description="Find where simulation and measurement disagree, name the "
+                                  "missing effect, add it to the model and show that the gap shrinks.")
+    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|fetch|bench")
+    for command, text in (("run", "the whole workflow: report.html, verdict.json, model.yaml"),
+                          ("find", "first step: where model and measurement disagree beyond noise")):
+        p = sub.add_parser(command, help=text)
+        p.add_argument("set", help="folder with measurement.yaml")
+        p.add_argument("--out", required=True, help="folder for the results")
+        p.add_argument("--alpha", type=float, default=0.05, help="level of the tests (default 0.05)")
+    for command, text in (("name", "second step: which effect is missing"), ("add", "third step: write model.yaml"),
+                          ("show", "fourth step: held-out gap before and after, report")):
+        sub.add_parser(command, help=text).add_argument("out", help="folder the step before wrote to")
+    p = sub.add_parser("fetch", help="turn a published data set into a measurement set")
+    p.add_argument("name", help="data set, or `list`")
+    p.add_argument("--out", help="folder for the measurement set")
+    p.add_argument("--data", help="folder that already holds the data sets (else they are downloaded)")
+    p = sub.add_parser("bench", help="the blind benchmark, scored")
+    p.add_argument("--system", default="axis,arm,fall", help="comma-separated (default axis,arm,fall)")
+    p.add_argument("--seeds", default="0:200", help="first:last (default 0:200)")
+    p.add_argument("--half", choices=("tune", "report", "both"), default="report",
+                   help="even seeds were used to choose thresholds, odd ones are reported (default report)")
+    p.add_argument("--out", default="runs/gap-bench", help="folder for sets, truth and results; finished seeds are kept")
+    p.add_argument("--ablations", action="store_true", help="also score one-shot least squares, STLSQ and the all-terms fit")
+    p.add_argument("--jobs", type=int, default=1, help="processes")
+    return top
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run one command.  Returns 0, or 2 where the user's input cannot be used (one sentence on stderr)."""
+    args = parser().parse_args(argv)
+    try:
+        return _dispatch(args)
+    except KeyboardInterrupt:
+        print("caretree gap: interrupted; what is finished is kept", file=sys.stderr)
+        return 130
+    except ValueError as error:
+        from ...sim.effects.effect import EffectError
+
+        if not isinstance(error, GapError | EffectError):
+            raise
+        print(f"caretree gap: {error}", file=sys.stderr)
+        return 2
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _dispatch(args: argparse.Namespace) -> int:
+    if args.command == "fetch":
+        from .catalogue import fetch
+
+        return fetch(args.name, args.out, args.data, print)
+    if args.command == "bench":
+        from .bench.run import run
+
+        return run(args.system.split(","), args.seeds, args.half, Path(args.out), args.ablations, args.jobs, print)
+    from . import steps
+
+    if args.command in ("find", "run") and not 0.0 < args.alpha < 0.5:
+        raise GapError(f"--alpha is {args.alpha:g}, it must lie between 0 and 0.5")
+    out = Path(args.out)
+    if args.command == "find":
+        study = steps.find(Path(args.set), out, args.alpha, _say)
+        p = study.find()[0]
+        print(f"{'adequate' if p >= args.alpha else 'not adequate'}: p = {p:.3g} ({out / 'find.json'})")
+    elif args.command == "name":
+        steps.name(out, _say)
+        print(f"{out / 'name.json'}")
+    elif args.command == "add":
+        steps.add(out, _say)
+        print(f"{out / 'model.yaml'}")
+    else:
+        started = time.monotonic()
+        if args.command == "run":
+            study = steps.find(Path(args.set), out, args.alpha, _say)
+            steps.name(out, _say, study)
+            steps.add(out, _say, study)
+            verdict = steps.show(out, _say, study, started)
+        else:
+            verdict = steps.show(out, _say)
+        named = ", ".join(f"{f.name} on {f.target}" for f in verdict.effects) or "none"
+        print(f"{verdict.verdict}: effects {named}; held-out gap {verdict.gap.before:.4g} -> {verdict.gap.after:.4g} "
+              f"{verdict.gap.unit} (floor {verdict.gap.floor:.4g}); {out / 'report.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Cloth: predicted by the PyBullet world, screened by sensitivities, verified by simulation."""

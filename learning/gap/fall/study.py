@@ -1,0 +1,298 @@
+"""The four steps for a dropped body."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.stats import chi2
+from scipy.stats import t as student
+
+from ....sim.effects.body_bank import BODY_EFFECTS
+from ..errors import GapError
+from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
+from ..measurement import Episode, require_columns
+from ..pictures import Curve
+from ..regions import phase_of
+from ..study import Study
+from .fit import Drop, DropFit, fit_drops
+from .leftover import repeating
+from .search import DropSearch, equals, search
+
+REMAINDER = 0.12
+CONFIDENCE = 0.8
+
+
+def drop_of(episode: Episode) -> Drop:
+    """One episode as a drop, cut where it stops falling.
+
+    Raises:
+        GapError: no heights, or heights no fall could make.
+    """
+    require_columns(episode, ["h"])
+    t, h = episode.t - episode.t[0], episode.columns["h"]
+    step = float(np.median(np.diff(t)))
+    if step > 0.5:
+        raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
+    jump = np.abs(np.diff(h))
+    row = int(np.argmax(jump))
+    if jump[row] > 50.0 * max(step, 0.02) * 5.0:
+        raise GapError(f"{episode.file}: column 'h', row {row + 3} jumps by {jump[row]:g} in {step:g} s, "
+                       "it must be a height in metres")
+    lowest = int(np.argmin(h))
+    if lowest < len(h) - 2 and h[-1] - h[lowest] > 0.03 * np.ptp(h):  # it bounced: only the fall is modelled
+        t, h = t[:lowest], h[:lowest]
+    if len(t) < 12 or h[0] - h[-1] < 0.05:
+        raise GapError(f"{episode.file}: column 'h' does not fall (rows 2 to {len(episode.t) + 1})")
+    return Drop(name=episode.name, t=t, h=h)
+
+
+class FallStudy(Study):
+    """A dropped body: every small set of effects by forward simulation."""
+
+    @cached_property
+    def drops(self) -> dict[str, Drop]:
+        """All episodes."""
+        self.mass, self.diameter = self.measured.number("mass"), self.measured.number("diameter")
+        return {e.name: drop_of(e) for e in self.measured.episodes}
+
+    @property
+    def fitted(self) -> list[Drop]:
+        """Drops parameters may be fitted to."""
+        return [self.drops[e.name] for e in self.measured.fitted]
+
+    @property
+    def heldout(self) -> list[Drop]:
+        """Drops kept for the comparison."""
+        return [self.drops[e.name] for e in self.measured.heldout]
+
+    @cached_property
+    def found(self) -> DropSearch:
+        """All candidate sets, ranked."""
+        return search(self.fitted, self.mass, self.diameter)
+
+    @cached_property
+    def chosen(self) -> DropFit:
+        """The best set, without effects the bootstrap over drops does not keep."""
+        best = self.found.best
+        if not best.names:
+            return best
+        kept = self._kept(best)
+        names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
+        return best if names == best.names else fit_drops(self.fitted, names)
+
+    def _kept(self, fit: DropFit) -> dict[str, float]:
+        """Part of resampled stretches in which each effect keeps paying its price."""
+        rng = np.random.default_rng(0)
+        out = {}
+        for name in fit.names:
+            without = fit_drops(self.fitted, tuple(n for n in fit.names if n != name))
+            parts = [(np.sum(a**2), np.sum(b**2)) for x, y in zip(without.residuals, fit.residuals, strict=True)
+                     for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)]
+            table = np.array(parts)
+            size = len(BODY_EFFECTS[name].parameters)
+            worth = self.found.rows / self.found.widening
+            wins = 0
+            for _ in range(200):
+                s = table[rng.integers(len(table), size=len(table))].sum(axis=0)
+                wins += worth * np.log(s[0] / max(s[1], 1e-12)) > self.found.price * size
+            out[name] = wins / 200
+        return out
+
+    @cached_property
+    def late(self) -> tuple[float, float, float] | None:
+        """A delay common to all drops: (seconds, low, high), where release instants agree better than by chance."""
+        instants = self.chosen.releases[:, 1]
+        if len(instants) < 3:
+            return None
+        J = self.chosen.jacobian
+        step = float(np.median(np.diff(self.fitted[0].t)))
+        cov = np.linalg.pinv(J.T @ J) * self.found.floor**2 * self.found.widening
+        k = len(self.chosen.theta)
+        own = np.sqrt(np.maximum(np.diag(cov)[k + 1::2], 1e-12))
+        mean = float(instants.mean())
+        # systematic part of the error is shared by all drops through the effects: no division by sqrt(n) for it
+        error = float(np.sqrt(instants.var(ddof=1) / len(instants) + own.mean() ** 2))
+        p = 2.0 * float(student.sf(abs(mean) / (error + 1e-12), len(instants) - 1))
+        if p > 0.01 or abs(mean) < 0.25 * step or abs(mean) < 3.0 * error:
+            return None
+        spread = float(student.isf(0.025, len(instants) - 1)) * error
+        return mean, mean - spread, mean + spread
+
+    @cached_property
+    def leftover(self) -> tuple[float, float, float]:
+        """What repeats from drop to drop after the effects."""
+        return repeating(self.chosen, [d.t for d in self.fitted])
+
+    @cached_property
+    def verdict(self) -> VerdictName:
+        """One of the four."""
+        energy, p, _ = self.leftover
+        none = next(c.fit for c in self.found.candidates if not c.fit.names)
+        explained = max(none.rss - self.chosen.rss, 0.0) / self.found.rows
+        noise = self.chosen.rss / self.found.rows - max(energy, 0.0)
+        if p < 0.005 and energy > 0.08 * noise and energy / (energy + explained) > REMAINDER:
+            return "unknown"
+        return "effects" if self.chosen.names or self.late else "adequate"
+
+    def find(self) -> tuple[float, str, tuple[Where, ...]]:
+        """See `Study.find`."""
+        none = next(c.fit for c in self.found.candidates if not c.fit.names)
+        worth = self.found.rows / self.found.widening
+        p = min(1.0, min(15.0 * float(chi2.sf(worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
+                         for c in self.found.candidates if c.fit.names))
+        if self.verdict == "adequate":
+            p = max(p, self.alpha)
+        elif self.verdict == "unknown":
+            p = min(p, self.leftover[1])
+        places = []
+        if self.verdict != "adequate":
+            phases = {e.name: e.phases for e in self.measured.episodes}
+            for d, r, (_, start) in zip(self.fitted, none.residuals, none.releases, strict=True):
+                late = d.t >= max(start, 0.0)
+                places.append(Where(channel="h", target="body", episode=d.name, t0=float(max(start, 0.0)),
+                                    t1=float(d.t[-1]), state_region="high speed", p_value=p,
+                                    phase=phase_of(phases[d.name], float(start), float(d.t[-1])),
+                                    size=float(np.sqrt(np.mean(r[late] ** 2)) / self.found.floor),
+                                    effect=self.chosen.names[0] if self.chosen.names else ""))
+        return p, "residual", tuple(places)
+
+    def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
+        """See `Study.name`."""
+        J, k = self.chosen.jacobian, len(self.chosen.theta)
+        cov = np.linalg.pinv(J.T @ J) * self.found.floor**2 * self.found.widening
+        half = 1.96 * np.sqrt(np.maximum(np.diag(cov)[:k], 0.0))
+        kept = self._kept(self.chosen)
+        out, at = [], 0
+        for name in self.chosen.names:
+            effect = BODY_EFFECTS[name]
+            values = []
+            for p in effect.parameters:
+                x, h = float(self.chosen.theta[at]), float(half[at])
+                values.append(Value(name=p.name, unit=p.unit, value=x, low=x - h, high=x + h))
+                at += 1
+            if self.mass and effect.per_mass:
+                first = values[0]
+                values.append(Value(name="coefficient_with_mass", unit=effect.usual_unit, value=first.value * self.mass,
+                                    low=first.low * self.mass, high=first.high * self.mass))
+            others = equals(self.found, name)
+            without = fit_drops(self.fitted, tuple(n for n in self.chosen.names if n != name))
+            own = np.sqrt(max(without.rss - self.chosen.rss, 0.0) / self.found.rows)
+            first_value = values[0].value
+            smallest = np.sqrt(self.found.price * self.found.widening / max(
+                self.found.rows * np.log(without.rss / self.chosen.rss), 1e-9))
+            out.append(EffectFinding(name=name, target="body", parameters=tuple(values), confidence=kept[name],
+                                     equivalent=tuple(n for n, _ in others), size=float(own / self.found.floor),
+                                     smallest=float(smallest) if first_value else float("nan"),
+                                     experiment=self._experiment(self.chosen, others[0]) if others else ""))
+        if self.late:
+            mean, low, high = self.late
+            out.append(EffectFinding(name="delay", target="body", size=float("nan"),
+                                     parameters=(Value(name="time", unit="s", value=mean, low=low, high=high),)))
+        names = {f.name for f in out}
+        if names & {"linear_drag", "quadratic_drag"} and any("drag" in n for f in out for n in f.equivalent):
+            self.notes.append("Over one range of speeds linear and quadratic drag look alike; which fits better here says "
+                              "little about which acts.")
+        energy, _, when = self.leftover
+        guess = (f"a force that repeats from drop to drop, largest about {when:.2f} s after release, "
+                 f"{np.sqrt(max(energy, 0.0)):.3g} m root mean square") if self.verdict == "unknown" else ""
+        return self.verdict, tuple(out), (), guess
+
+    def _experiment(self, fit: DropFit, other: tuple[str, DropFit]) -> str:
+        """Drop height at which two explanations part most, and by how much."""
+        from .drop import height
+        from .fit import table_of
+
+        top = max(float(d.h.max()) for d in self.fitted)
+        best = ("", 0.0)
+        for factor in (0.25, 0.5, 2.0, 4.0):
+            duration = 2.5 * np.sqrt(2 * top * factor / 9.81) + 1.0
+            t = np.linspace(0.0, duration, 120)
+            pair = []
+            for f in (fit, other[1]):
+                table, scale = table_of(f.values, duration + 1.0)
+                h, _ = height(t, table, 0.0, 0.0)
+                pair.append(scale * h)
+            inside = np.minimum(*pair) > -top * factor
+            if inside.sum() > 10:
+                gap = (pair[0] - pair[1])[inside]
+                apart = float(np.sqrt(np.mean((gap - gap.mean()) ** 2)) / self.found.floor)
+                if apart > best[1]:
+                    best = (f"drop from {top * factor:.3g} m", apart)
+        names = " + ".join(fit.names)
+        return f"{best[0]}: {names} and {other[0]} would then differ by {best[1]:.2g} times the noise floor"
+
+    def patch(self) -> dict[str, Any]:
+        """See `Study.patch`."""
+        effects = [{"name": n, "target": "body", "parameters": dict(v)} for n, v in self.chosen.values.items()]
+        if self.late:
+            effects.append({"name": "delay", "target": "body", "parameters": {"time": self.late[0]}})
+        return {"system": "fall", "mass": self.mass, "recalibration": [], "effects": effects}
+
+    def show(self) -> tuple[Gap, Gap | None, tuple[Placebo, ...], dict[str, str]]:
+        """See `Study.show`."""
+        before = fit_drops(self.heldout, ())
+        after = fit_drops(self.heldout, self.chosen.names, start=self.chosen.theta, fixed=True)
+        b, a = np.concatenate(before.residuals), np.concatenate(after.residuals)
+        rows = [(np.sum(x**2), np.sum(y**2)) for p, q in zip(before.residuals, after.residuals, strict=True)
+                for x, y in zip(np.array_split(p, 5), np.array_split(q, 5), strict=True)]
+        table, rng = np.array(rows), np.random.default_rng(0)
+        ratio = [np.sqrt(s[1] / max(s[0], 1e-30)) for s in
+                 (table[rng.integers(len(table), size=len(table))].sum(axis=0) for _ in range(300))]
+        low, high = np.quantile(ratio, [0.025, 0.975])
+        rms = lambda x: float(np.sqrt(np.mean(x**2)))  # noqa: E731
+        floor = float(min(self.found.floor, rms(a)))
+        gap = Gap(unit="m", floor=floor, before=rms(b), after=rms(a), low=float(low), high=float(high),
+                  channels={"h": {"floor": floor, "before": rms(b), "after": rms(a)}})
+        controls = []
+        if self.chosen.names:
+            wrong = np.array([-0.5 * x for x in self.chosen.theta])
+            turned = fit_drops(self.heldout, self.chosen.names, start=wrong, fixed=True)
+            controls.append(Placebo(what=f"{' + '.join(self.chosen.names)} with half the size and the wrong sign, against the model as given",
+                                    ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12)))
+        return gap, None, tuple(controls), self._detectable()
+
+    def _detectable(self) -> dict[str, str]:
+        """Smallest drag these drops could have shown: put into the user's own residuals, then searched for."""
+        out = {}
+        base = self.chosen
+        for name, unit in (("linear_drag", 0.05), ("quadratic_drag", 0.005)):
+            if name in base.names or "wind" in base.names:
+                continue
+            names = (*base.names, name)
+            values = np.concatenate([base.theta, [0.0]])
+            for factor in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
+                given = np.concatenate([base.theta, [unit * factor]])
+                drops = []
+                for d in self.fitted:
+                    shifted = fit_drops([d], names, start=given, fixed=True)
+                    plain = fit_drops([d], names, start=values, fixed=True)
+                    drops.append(Drop(name=d.name, t=d.t, h=d.h + _between(shifted, plain, d)))
+                with_it = fit_drops(drops, names)
+                without = fit_drops(drops, base.names)
+                worth = self.found.rows / self.found.widening
+                if worth * np.log(without.rss / max(with_it.rss, 1e-12)) > self.found.price:
+                    out[name] = f"{unit * factor:.3g} {BODY_EFFECTS[name].parameters[0].unit}"
+                    break
+        return out
+
+    def curves(self) -> list[Curve]:
+        """Held-out drops."""
+        before = fit_drops(self.heldout, ())
+        after = fit_drops(self.heldout, self.chosen.names, start=self.chosen.theta, fixed=True)
+        return [Curve(title=f"height, held-out {d.name}", unit="m", t=d.t, measured=d.h, before=d.h - x, after=d.h - y,
+                      floor=self.found.floor)
+                for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]]
+
+
+def _between(shifted: DropFit, plain: DropFit, drop: Drop) -> np.ndarray:
+    """Height change an injected effect makes in one drop, release unchanged."""
+    from .drop import height
+    from .fit import table_of
+
+    duration = float(drop.t[-1]) + 1.0
+    release = plain.releases[0]
+    with_it, scale = table_of(shifted.values, duration)
+    without, _ = table_of(plain.values, duration)
+    return scale * (height(drop.t, with_it, *release)[0] - height(drop.t, without, *release)[0])

@@ -1,0 +1,120 @@
+"""model.yaml: the effects a model was found to lack, checked before anything loads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from .body_bank import BODY_EFFECTS
+from .effect import EffectError
+from .joint_bank import JOINT_EFFECTS
+from .link_inertia import BODY_PARAMETERS, BODY_TERMS
+
+FORMAT = "caretree-model-1"
+SYSTEMS = ("arm", "axis", "fall", "cloth")
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffectEntry:
+    """One effect of a model file: name, what it acts on, parameter values in SI."""
+
+    name: str
+    target: str
+    parameters: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffectModel:
+    """A checked model file.
+
+    Attributes:
+        system: what the effects act on.
+        base: what the file says of the model underneath (robot, mass, physics).
+        recalibration: changes of the model's own parameters.
+        effects: effects to add.
+    """
+
+    system: str
+    base: dict[str, Any]
+    recalibration: tuple[EffectEntry, ...]
+    effects: tuple[EffectEntry, ...]
+
+    def require(self, system: str) -> None:
+        """Refuse a file made for another system.
+
+        Raises:
+            EffectError: it was.
+        """
+        if self.system != system:
+            raise EffectError(f"the model file is for system '{self.system}', it cannot be loaded into '{system}'")
+
+
+def load_model(path: Path | str) -> EffectModel:
+    """Read and check a model file.
+
+    Raises:
+        EffectError: it is missing, malformed, or names an effect or a parameter that does not fit.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise EffectError(f"{path}: no such file")
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except yaml.YAMLError:
+        raise EffectError(f"{path}: not YAML") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise EffectError(f"{path}: `format` must be {FORMAT}")
+    system = content.get("system")
+    if system not in SYSTEMS:
+        raise EffectError(f"{path}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
+    try:
+        effects = tuple(_entry(e) for e in content.get("effects") or ())
+        recalibration = tuple(_entry(e) for e in content.get("recalibration") or ())
+        for e in effects:
+            check_effect(system, e)
+    except EffectError as error:
+        raise EffectError(f"{path}: {error}") from None
+    base = {k: v for k, v in content.items() if k not in ("format", "system", "effects", "recalibration")}
+    return EffectModel(system=system, base=base, recalibration=recalibration, effects=effects)
+
+
+def save_model(path: Path, content: dict[str, Any]) -> None:
+    """Write a model file from plain values (`system`, `effects`, `recalibration`, base)."""
+    path.write_text(yaml.safe_dump({"format": FORMAT, **content}, sort_keys=False), encoding="utf-8")
+
+
+def _entry(e: Any) -> EffectEntry:
+    if not isinstance(e, dict) or not isinstance(e.get("name"), str) or not isinstance(e.get("parameters"), dict):
+        raise EffectError(f"an effect needs name, target and parameters, this one is {e!r}")
+    try:
+        values = {str(k): float(v) for k, v in e["parameters"].items()}
+    except (TypeError, ValueError):
+        raise EffectError(f"effect {e['name']}: parameters must be numbers, they are {e['parameters']!r}") from None
+    return EffectEntry(name=e["name"], target=str(e.get("target", "")), parameters=values)
+
+
+def check_effect(system: str, e: EffectEntry) -> None:
+    """Refuse an effect that does not exist for a system or has values it cannot have.
+
+    Raises:
+        EffectError: one sentence.
+    """
+    if system in ("arm", "axis"):
+        if e.name in BODY_TERMS:
+            wanted = {p.name for p in BODY_PARAMETERS}
+            if set(e.parameters) != wanted:
+                raise EffectError(f"effect {e.name} has parameters {sorted(e.parameters)}, it takes {sorted(wanted)}")
+            return
+        bank: dict[str, Any] = dict(JOINT_EFFECTS)
+    elif system == "fall":
+        bank = dict(BODY_EFFECTS)
+    else:
+        from .cloth_bank import CLOTH_EFFECTS
+
+        bank = dict(CLOTH_EFFECTS)
+    if e.name not in bank:
+        raise EffectError(f"effect '{e.name}' does not exist for system {system}, it must be one of {', '.join(bank)}")
+    bank[e.name].check(e.parameters)
