@@ -29,15 +29,24 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
     size = {n: float(np.exp(rng.uniform(np.log(0.5), np.log(8.0)))) for n in names}
     if kind == "outside":
         size = {n: float(np.exp(rng.uniform(np.log(2.0), np.log(10.0)))) for n in names}
-    values, plain = {}, _fly({}, top, rate)
+    air = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(2.0, 6.0))} if "wind" in names else {}
+    values, plain = dict(air), _fly({}, top, rate)
     for n in names:  # size: root mean square change of the drop over the noise
         low, high = 0.0, {"linear_drag": 3.0, "quadratic_drag": 1.0, "buoyancy": 0.9, "wind": 1.0, "gain_error": 0.5,
                           "delay": 0.5, "gust": 9.0, "cubic_drag": 0.2, "swing": 3.0}[n]
         for _ in range(30):
             middle = 0.5 * (low + high)
-            change = np.sqrt(np.mean((_fly({n: middle}, top, rate)[: len(plain)] - plain) ** 2))
+            change = np.sqrt(np.mean((_fly({**air, n: middle}, top, rate)[: len(plain)] - plain) ** 2))
             low, high = (middle, high) if change < size[n] * noise else (low, middle)
         values[n] = high
+    header: dict = {"system": "fall"}
+    if "buoyancy" in values or rng.random() < 0.5:  # a ball whose lift is what its size and mass make it
+        diameter = rng.uniform(0.05, 0.4)
+        lift = values.get("buoyancy", 1.2 / rng.uniform(2000.0, 8000.0))
+        header |= {"diameter": round(float(diameter), 4), "mass": round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)}
+        if "buoyancy" not in values:
+            values["buoyancy"] = lift  # too small to see, and not missing from a model that knows both
+            header["mass"] = round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)
     entries = []
     for e in range(episodes):
         h0 = top * rng.uniform(0.85, 1.0)
@@ -47,7 +56,7 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
         file = folder / f"drop_{e + 1}.csv"
         np.savetxt(file, np.stack([t, h], axis=1), delimiter=",", header="t,h", comments="", fmt="%.7g")
         entries.append({"file": file.name, "role": "heldout" if e >= episodes - max(1, episodes // 3) else "fit"})
-    (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "fall", "episodes": entries}, sort_keys=False))
+    (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
     truth.effects = [{"name": n, "target": "body", "size": size[n]} for n in names]
     return truth
 
@@ -61,12 +70,12 @@ def _fly(values: dict[str, float], h0: float, rate: float) -> np.ndarray:
             out.append(h)
         if t >= wait:
             s = t - wait
-            rel = v - (2.0 if "wind" in values else 0.0)
+            rel = v - values.get("updraft", 0.0)
             a = -g - values.get("linear_drag", 0.0) * v - values.get("quadratic_drag", 0.0) * abs(v) * v
             a -= values.get("wind", 0.0) * abs(rel) * rel + values.get("cubic_drag", 0.0) * v**3
             a += values.get("gust", 0.0) * np.exp(-((s - 1.0) / 0.15) ** 2) + values.get("swing", 0.0) * np.sin(9.0 * s)
+            h += dt * (v + 0.5 * dt * a)
             v += dt * a
-            h += dt * v
         t += dt
     heights = np.array(out)
     gain = 1.0 + values.get("gain_error", 0.0)

@@ -11,6 +11,7 @@ from ....sim.effects.body_bank import BODY_EFFECTS
 from .drop import GRAVITY, fallen, height
 
 RELEASE = 0.6  # [s] the release may lie this far before or after the first sample
+MODES = ("together", "late", "free")  # released at the first sample; all equally late; each at its own instant
 START = {"rate": 0.1, "coefficient": 0.02, "fraction": 0.0, "speed": 0.0}
 
 
@@ -29,6 +30,7 @@ class DropFit:
 
     Attributes:
         names: effects, in order.
+        mode: one of `MODES`.
         values: effect -> parameter -> value.
         theta: the same, flat.
         releases: (E, 2) release height [m] and instant [s] of each drop.
@@ -38,6 +40,7 @@ class DropFit:
     """
 
     names: tuple[str, ...]
+    mode: str
     values: dict[str, dict[str, float]]
     theta: np.ndarray
     releases: np.ndarray
@@ -65,63 +68,65 @@ def table_of(values: dict[str, dict[str, float]], duration: float) -> tuple[np.n
     return table, 1.0 + values.get("gain_error", {"fraction": 0.0})["fraction"]
 
 
-def fit_drops(drops: list[Drop], names: tuple[str, ...], start: np.ndarray | None = None,
-              fixed: bool = False) -> DropFit:
+def fit_drops(drops: list[Drop], names: tuple[str, ...], mode: str = "free", start: np.ndarray | None = None,
+              late: float | None = None) -> DropFit:
     """Least squares over effects and releases.
 
     Args:
         drops: the drops.
         names: effects to include (those of the body and `gain_error`).
-        start: first guess of the flat parameters.
-        fixed: keep the parameters at `start` and fit the releases alone.
+        mode: what is assumed of the release instants, one of `MODES`.
+        start: keep the effects' parameters at these values and fit the releases alone.
+        late: keep the common lateness at this value [s].
     """
     parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
-    k = len(parameters)
     theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
-    moving = 0 if fixed else k
+    k, moving, e = len(parameters), 0 if start is not None else len(parameters), len(drops)
+    instants = {"together": 0, "late": 0 if late is not None else 1, "free": e}[mode]
     duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
-    first = np.concatenate([theta[:moving], *([[d.h[:3].mean(), 0.0] for d in drops])])
-    low = np.concatenate([[p.lower for p in parameters][:moving], *([[-np.inf, -RELEASE]] * len(drops))])
-    high = np.concatenate([[p.upper for p in parameters][:moving], *([[np.inf, RELEASE]] * len(drops))])
+    first = np.concatenate([theta[:moving], [d.h[:3].mean() for d in drops], np.zeros(instants)])
+    low = np.concatenate([[p.lower for p in parameters][:moving], [-np.inf] * e, [-RELEASE] * instants])
+    high = np.concatenate([[p.upper for p in parameters][:moving], [np.inf] * e, [RELEASE] * instants])
 
-    def model(x: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray], float]:
-        table, scale = table_of(unpack(names, np.concatenate([x[:moving], theta[moving:]])), duration)
-        h, v = zip(*(height(d.t, table, *x[moving + 2 * i:moving + 2 * i + 2]) for i, d in enumerate(drops)), strict=True)
-        return list(h), list(v), scale
+    def split(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        tail = x[moving + e:]
+        release = tail if mode == "free" else np.full(e, tail[0] if instants else (late or 0.0))
+        return np.concatenate([x[:moving], theta[moving:]]), x[moving:moving + e], release
+
+    def model(x: np.ndarray) -> tuple[np.ndarray, list[np.ndarray], float]:
+        values, tops, release = split(x)
+        table, scale = table_of(unpack(names, values), duration)
+        pairs = [height(d.t, table, top, when) for d, top, when in zip(drops, tops, release, strict=True)]
+        read = np.concatenate([top + scale * (h - top) for (h, _), top in zip(pairs, tops, strict=True)])
+        return read, [v for _, v in pairs], scale
+
+    measured = np.concatenate([d.h for d in drops])
 
     def residual(x: np.ndarray) -> np.ndarray:
-        h, _, scale = model(x)
-        return np.concatenate([_read(a, scale, x[moving + 2 * i]) - d.h for i, (a, d) in enumerate(zip(h, drops, strict=True))])
+        return model(x)[0] - measured
 
     def jacobian(x: np.ndarray) -> np.ndarray:
-        h, v, scale = model(x)
-        J = np.zeros((sum(len(d.t) for d in drops), len(x)))
-        base = np.concatenate([_read(a, scale, x[moving + 2 * i]) for i, a in enumerate(h)])
+        base, speeds, scale = model(x)
+        J = np.zeros((len(base), len(x)))
         for j in range(moving):
             step = 1e-5 * max(1.0, abs(x[j]))
-            step = -step if x[j] + step > high[j] else step
             y = x.copy()
-            y[j] += step
-            moved, _, s = model(y)
-            J[:, j] = (np.concatenate([_read(a, s, y[moving + 2 * i]) for i, a in enumerate(moved)]) - base) / step
+            y[j] += -step if x[j] + step > high[j] else step
+            J[:, j] = (model(y)[0] - base) / (y[j] - x[j])
         at = 0
         for i, d in enumerate(drops):
             rows = slice(at, at + len(d.t))
-            J[rows, moving + 2 * i] = 1.0
-            J[rows, moving + 2 * i + 1] = scale * v[i]
+            J[rows, moving + i] = 1.0
+            if instants:
+                J[rows, moving + e + (i if mode == "free" else 0)] = scale * speeds[i]
             at += len(d.t)
         return J
 
     first[:moving] = np.clip(first[:moving], low[:moving] + 1e-9, high[:moving] - 1e-9)
     solved = least_squares(residual, first, jac=jacobian, bounds=(low, high), x_scale="jac", max_nfev=60)
     r = residual(solved.x)
+    values, tops, release = split(solved.x)
     ends = np.cumsum([len(d.t) for d in drops])[:-1]
-    full = np.concatenate([solved.x[:moving], theta[moving:]])
-    return DropFit(names=names, values=unpack(names, full), theta=full,
-                   releases=solved.x[moving:].reshape(-1, 2), residuals=np.split(-r, ends), jacobian=jacobian(solved.x),
-                   rss=float(r @ r))
-
-
-def _read(h: np.ndarray, scale: float, release_height: float) -> np.ndarray:
-    """Reading scaled about the release height, which each drop fits anyway."""
-    return release_height + scale * (h - release_height)
+    return DropFit(names=names, mode=mode, values=unpack(names, values), theta=values,
+                   releases=np.stack([tops, release], axis=1), residuals=np.split(-r, ends),
+                   jacobian=jacobian(solved.x), rss=float(r @ r))

@@ -15,7 +15,7 @@ from scipy.stats import chi2
 
 from ....sim.effects.body_bank import BODY_EFFECTS
 from ....sim.effects.buoyancy import AIR_DENSITY
-from .fit import Drop, DropFit, fit_drops
+from .fit import MODES, Drop, DropFit, fit_drops
 
 SEARCHED = ("linear_drag", "quadratic_drag", "buoyancy", "gain_error", "wind")
 IMPOSSIBLE = ({"quadratic_drag", "wind"}, {"buoyancy", "gain_error"})
@@ -51,6 +51,11 @@ class DropSearch:
     rows: int
 
     @property
+    def given(self) -> DropFit:
+        """The model as given, with the release instants it needs."""
+        return min((c for c in self.candidates if not c.fit.names), key=lambda c: c.score).fit
+
+    @property
     def best(self) -> DropFit:
         """The chosen fit."""
         return self.candidates[0].fit
@@ -73,7 +78,8 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     """Fit every plausible set and rank them."""
     sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
     sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
-    fits = [fit_drops(drops, names) for names in sets]
+    fits = [fit_drops(drops, names, mode) for mode in MODES for names in sets
+            if mode != "late" or len(drops) >= 3]  # one or two drops cannot tell late from each at its own instant
     rows = sum(len(d.t) for d in drops)
     cleanest = min(fits, key=lambda f: f.rss)
     spent = len(cleanest.theta) + 2 * len(drops)
@@ -83,7 +89,8 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     price = max(float(chi2.isf(ALPHA / (2.0 * len(SEARCHED)), 1)), worth * MATERIAL**2)
     candidates = []
     for fit in fits:
-        score = worth * np.log(max(fit.rss, 1e-12) / rows) + price * len(fit.theta)
+        instants = {"together": 0, "late": 1, "free": len(drops)}[fit.mode]
+        score = worth * np.log(max(fit.rss, 1e-12) / rows) + price * (len(fit.theta) + instants)
         score += implausibility(fit, mass, diameter)
         candidates.append(Candidate(fit=fit, score=float(score)))
     candidates.sort(key=lambda c: c.score)
@@ -112,6 +119,6 @@ def equals(found: DropSearch, name: str) -> list[tuple[str, DropFit]]:
         other = set(c.fit.names) - rest
         if rest <= set(c.fit.names) and len(c.fit.names) == len(best.fit.names) and c.score - best.score < 6.0:
             new = next(iter(other))
-            if name not in BODY_EFFECTS[new].contains:
+            if name not in BODY_EFFECTS[new].contains and new not in [n for n, _ in out]:
                 out.append((new, c.fit))
     return out

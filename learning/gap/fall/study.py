@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
-from scipy.stats import t as student
 
 from ....sim.effects.body_bank import BODY_EFFECTS
 from ..errors import GapError
@@ -18,9 +17,9 @@ from ..regions import phase_of
 from ..study import Study
 from .fit import Drop, DropFit, fit_drops
 from .leftover import repeating
-from .search import DropSearch, equals, search
+from .search import DropSearch, equals, search, widening_of
 
-REMAINDER = 0.12
+REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 CONFIDENCE = 0.8
 
 
@@ -80,14 +79,14 @@ class FallStudy(Study):
             return best
         kept = self._kept(best)
         names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
-        return best if names == best.names else fit_drops(self.fitted, names)
+        return best if names == best.names else fit_drops(self.fitted, names, best.mode)
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
         """Part of resampled stretches in which each effect keeps paying its price."""
         rng = np.random.default_rng(0)
         out = {}
         for name in fit.names:
-            without = fit_drops(self.fitted, tuple(n for n in fit.names if n != name))
+            without = fit_drops(self.fitted, tuple(n for n in fit.names if n != name), fit.mode)
             parts = [(np.sum(a**2), np.sum(b**2)) for x, y in zip(without.residuals, fit.residuals, strict=True)
                      for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)]
             table = np.array(parts)
@@ -104,41 +103,40 @@ class FallStudy(Study):
     def late(self) -> tuple[float, float, float] | None:
         """A delay common to all drops: (seconds, low, high), where release instants agree better than by chance."""
         instants = self.chosen.releases[:, 1]
-        if len(instants) < 3:
+        if self.chosen.mode == "together" or len(instants) < 3:
             return None
         J = self.chosen.jacobian
         step = float(np.median(np.diff(self.fitted[0].t)))
-        cov = np.linalg.pinv(J.T @ J) * self.found.floor**2 * self.found.widening
-        k = len(self.chosen.theta)
-        own = np.sqrt(np.maximum(np.diag(cov)[k + 1::2], 1e-12))
+        own = np.sqrt(np.maximum(np.diag(np.linalg.pinv(J.T @ J)), 0.0) * self.found.widening) * self.found.floor
+        own = own[len(self.chosen.theta) + len(instants):]
         mean = float(instants.mean())
-        # systematic part of the error is shared by all drops through the effects: no division by sqrt(n) for it
-        error = float(np.sqrt(instants.var(ddof=1) / len(instants) + own.mean() ** 2))
-        p = 2.0 * float(student.sf(abs(mean) / (error + 1e-12), len(instants) - 1))
-        if p > 0.01 or abs(mean) < 0.25 * step or abs(mean) < 3.0 * error:
+        # each drop's own error is shared through the effects, so it does not shrink with the number of drops
+        scatter = float(instants.var(ddof=1)) / len(instants) if self.chosen.mode == "free" else 0.0
+        error = float(np.sqrt(scatter + own.mean() ** 2))
+        if abs(mean) < 0.05 * step or abs(mean) < 3.0 * error:
             return None
-        spread = float(student.isf(0.025, len(instants) - 1)) * error
-        return mean, mean - spread, mean + spread
+        return mean, mean - 2.0 * error, mean + 2.0 * error
 
     @cached_property
     def leftover(self) -> tuple[float, float, float]:
         """What repeats from drop to drop after the effects."""
-        return repeating(self.chosen, [d.t for d in self.fitted])
+        return repeating(self.chosen, [d.t for d in self.fitted], widening_of)
 
     @cached_property
     def verdict(self) -> VerdictName:
         """One of the four."""
         energy, p, _ = self.leftover
-        none = next(c.fit for c in self.found.candidates if not c.fit.names)
+        none = self.found.given
         explained = max(none.rss - self.chosen.rss, 0.0) / self.found.rows
         noise = self.chosen.rss / self.found.rows - max(energy, 0.0)
-        if p < 0.005 and energy > 0.08 * noise and energy / (energy + explained) > REMAINDER:
+        if p < 0.001 and energy > 0.1 * noise and energy / (energy + explained) > REMAINDER:
             return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
-        none = next(c.fit for c in self.found.candidates if not c.fit.names)
+        none = min((c for c in self.found.candidates if not c.fit.names and c.fit.mode == "together"),
+                   key=lambda c: c.score).fit if self.late else self.found.given
         worth = self.found.rows / self.found.widening
         p = min(1.0, min(15.0 * float(chi2.sf(worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
                          for c in self.found.candidates if c.fit.names))
@@ -177,7 +175,7 @@ class FallStudy(Study):
                 values.append(Value(name="coefficient_with_mass", unit=effect.usual_unit, value=first.value * self.mass,
                                     low=first.low * self.mass, high=first.high * self.mass))
             others = equals(self.found, name)
-            without = fit_drops(self.fitted, tuple(n for n in self.chosen.names if n != name))
+            without = fit_drops(self.fitted, tuple(n for n in self.chosen.names if n != name), self.chosen.mode)
             own = np.sqrt(max(without.rss - self.chosen.rss, 0.0) / self.found.rows)
             first_value = values[0].value
             smallest = np.sqrt(self.found.price * self.found.widening / max(
@@ -232,8 +230,7 @@ class FallStudy(Study):
 
     def show(self) -> tuple[Gap, Gap | None, tuple[Placebo, ...], dict[str, str]]:
         """See `Study.show`."""
-        before = fit_drops(self.heldout, ())
-        after = fit_drops(self.heldout, self.chosen.names, start=self.chosen.theta, fixed=True)
+        before, after = self._compared()
         b, a = np.concatenate(before.residuals), np.concatenate(after.residuals)
         rows = [(np.sum(x**2), np.sum(y**2)) for p, q in zip(before.residuals, after.residuals, strict=True)
                 for x, y in zip(np.array_split(p, 5), np.array_split(q, 5), strict=True)]
@@ -248,7 +245,7 @@ class FallStudy(Study):
         controls = []
         if self.chosen.names:
             wrong = np.array([-0.5 * x for x in self.chosen.theta])
-            turned = fit_drops(self.heldout, self.chosen.names, start=wrong, fixed=True)
+            turned = fit_drops(self.heldout, self.chosen.names, after.mode, start=wrong, late=self.late[0] if self.late else None)
             controls.append(Placebo(what=f"{' + '.join(self.chosen.names)} with half the size and the wrong sign, against the model as given",
                                     ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12)))
         return gap, None, tuple(controls), self._detectable()
@@ -266,21 +263,28 @@ class FallStudy(Study):
                 given = np.concatenate([base.theta, [unit * factor]])
                 drops = []
                 for d in self.fitted:
-                    shifted = fit_drops([d], names, start=given, fixed=True)
-                    plain = fit_drops([d], names, start=values, fixed=True)
+                    shifted = fit_drops([d], names, base.mode if base.mode != "late" else "free", start=given)
+                    plain = fit_drops([d], names, shifted.mode, start=values)
                     drops.append(Drop(name=d.name, t=d.t, h=d.h + _between(shifted, plain, d)))
-                with_it = fit_drops(drops, names)
-                without = fit_drops(drops, base.names)
+                with_it = fit_drops(drops, names, base.mode)
+                without = fit_drops(drops, base.names, base.mode)
                 worth = self.found.rows / self.found.widening
                 if worth * np.log(without.rss / max(with_it.rss, 1e-12)) > self.found.price:
                     out[name] = f"{unit * factor:.3g} {BODY_EFFECTS[name].parameters[0].unit}"
                     break
         return out
 
+    def _compared(self) -> tuple[DropFit, DropFit]:
+        """Held-out drops under the model as given and with the effects; heights of release are each drop's own."""
+        late = self.late[0] if self.late else None
+        mode = "late" if late is not None else self.chosen.mode
+        given = self.found.given.mode if late is None else "together"
+        return (fit_drops(self.heldout, (), given),
+                fit_drops(self.heldout, self.chosen.names, mode, start=self.chosen.theta, late=late))
+
     def curves(self) -> list[Curve]:
         """Held-out drops."""
-        before = fit_drops(self.heldout, ())
-        after = fit_drops(self.heldout, self.chosen.names, start=self.chosen.theta, fixed=True)
+        before, after = self._compared()
         return [Curve(title=f"height, held-out {d.name}", unit="m", t=d.t, measured=d.h, before=d.h - x, after=d.h - y,
                       floor=self.found.floor)
                 for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]]
