@@ -40,13 +40,13 @@ class GownSpec:
 
     name: str
     spacing: float = 0.055
-    front: int = 14
+    front: int = 15
     back: int = 3
     hole: tuple[int, int] = (3, 4)
     strap: int = 1
     length: int = 18
-    sleeve: int = 4
-    mass: float = 0.32
+    sleeve: int = 3
+    mass: float = 0.45
     elastic: float = 60.0
     bending: float = 0.1
     damping: float = 0.006
@@ -69,8 +69,8 @@ GOWNS: dict[str, GownSpec] = {
     spec.name: spec
     for spec in (
         GownSpec(name="medium"),
-        GownSpec(name="large", spacing=0.058, mass=0.38, elastic=65.0, bending=0.12, friction=0.35),
-        GownSpec(name="light", spacing=0.053, mass=0.27, elastic=50.0, bending=0.06, damping=0.005, friction=0.45),
+        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=70.0, bending=0.12, friction=0.35),
+        GownSpec(name="light", spacing=0.054, mass=0.40, elastic=50.0, bending=0.06, damping=0.005, friction=0.45),
     )
 }
 

@@ -46,7 +46,7 @@ class PersonSpec:
     name: str = "average"
     scale: float = 1.0
     mass: float = 18.0
-    radii: tuple[float, float, float] = (0.041, 0.036, 0.030)
+    radii: tuple[float, float, float] = (0.036, 0.033, 0.027)
     lengths: tuple[float, float, float] = (0.28, 0.25, 0.17)
     pose: dict[str, tuple[float, float, float, float]] = field(default_factory=lambda: {
         "left": (0.75, -0.12, -1.3, 0.5), "right": (0.75, -0.12, -1.3, 0.5)})
@@ -133,6 +133,12 @@ class Person:
                 self.client.setJointMotorControl2(self.body, j, self.client.VELOCITY_CONTROL, targetVelocity=0.0,
                                                   force=elbow if k == 3 else shoulder)
                 self.client.changeDynamics(self.body, j, jointDamping=self.spec.viscous)
+
+    def swing(self, speed: float) -> None:
+        """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
+        for side in SIDES:
+            self.client.setJointMotorControl2(self.body, self.joints[side][0], self.client.VELOCITY_CONTROL,
+                                              targetVelocity=speed, force=(3.0 if speed else 1.0) * self.spec.dry_friction[0])
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""

@@ -1,0 +1,339 @@
+"""The simulated room: PyBullet soft-body gown, passive person, robot, cameras, behind the World contract.
+
+Two PyBullet clients run side by side.  The room (deformable) holds gown, bed and person; the robot has a rigid
+client of its own, because a deformable world makes each of its steps several times dearer.  They meet at the
+hands: a `Handle` in the room follows each hand, holds what the fingers took, and its load is put on the robot's
+wrist.  Apart from what is between the fingers the robot's links do not push the cloth or the person; the guard
+and the planner keep them away from the person (an assumption named in docs/assumptions.md).
+
+Nothing outside `sim` may read `truth_frame`: skills see only `observe` and `look`.
+"""
+
+from __future__ import annotations
+
+import time as wall
+from collections import defaultdict
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pybullet
+from pybullet_utils.bullet_client import BulletClient
+
+from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
+from .camera import CAMERA_VIEWS, camera_intrinsics
+from .cloth import Cloth
+from .errors import CaretreeError
+from .grip import CLOSED, REOPENED, Grip
+from .handle import Handle
+from .hook import Hook
+from .person import PERSON_PARTS, Person
+from .person_force import ForceBalance
+from .recorder import FRAME_PERIOD, Recorder
+from .robot.body import RobotBody
+from .robot.kinematics import default_kinematics
+from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
+from .truth import TruthFrame, TruthStatic
+from .world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
+
+TIME_STEP = 0.002  # of the room [s]
+ROBOT_STEPS = 2  # room steps per robot step
+CONTROL_STEPS = 5  # room steps between two looks at the fingers
+SETTLE = 2.0  # the gown hangs still before the clock starts [s]
+PICTURE_PERIOD = 2 * FRAME_PERIOD  # of the video [s]
+WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
+SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
+SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
+
+
+class _SteppedClock:
+    """Simulated time: waiting is what makes it pass."""
+
+    def __init__(self, advance: Callable[[float], None]) -> None:
+        self.time = 0.0
+        self._advance = advance
+
+    def now(self) -> float:
+        """Seconds since the world started."""
+        return self.time
+
+    def wait_until(self, time: float) -> None:
+        """Simulate up to `time` [s]."""
+        self._advance(time)
+
+
+class BulletWorld(World):
+    """One seeded run of the dressing scene.
+
+    Args:
+        seed: of everything that varies.
+        gown: name of the gown; drawn from the seed when omitted.
+        person: name of the person; drawn from the seed when omitted.
+        model: model file of the gap workflow whose effects act on the gown.
+        view: open PyBullet's window on the room.
+
+    Attributes:
+        scene: what was drawn; truth, not for skills.
+        kinematics: the robot's own model, which the planner and the guard may use.
+        timing: wall time by activity [s].
+
+    Raises:
+        CaretreeError: an unknown gown or person, a negative seed, an unusable model file.
+    """
+
+    def __init__(self, *, seed: int = 0, gown: str | None = None, person: str | None = None, model: str | None = None,
+                 view: bool = False) -> None:
+        if model is not None:
+            raise CaretreeError(f"--model {model}: the bullet world takes no model file yet")
+        self.scene = draw_scene(seed, gown, person)
+        self.room = room_map()
+        self.clock = _SteppedClock(self._advance_to)
+        self.kinematics = default_kinematics()
+        self.timing: dict[str, float] = defaultdict(float)
+        self._noise = np.random.default_rng([seed, 2])
+        self._recorder: Recorder | None = None
+        self._steps = 0
+        self._next_frame = self._next_picture = 0.0
+        self._still_since = 0.0
+        self._asleep = False
+        self._moving_person: list[float] = []
+        self._client: Any = BulletClient(pybullet.GUI if view else pybullet.DIRECT)
+        self._build()
+        start = np.array(self.room.waypoints["start"])
+        self._robot_client: Any = BulletClient(pybullet.DIRECT)
+        self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
+        self._robot_client.setGravity(0, 0, -9.81)
+        self._robot = RobotBody(self._robot_client, start, kinematics=self.kinematics)
+        self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
+        self._grips = [Grip(self._client, side, self._handles[n], self._cloth, self._person)
+                       for n, side in enumerate(SIDES)]
+        self._force_limit = np.full(2, 30.0)
+        self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
+        self._balance = ForceBalance(self._person, self.scene.gown.mass, BED_TOP)
+        self._settle(SETTLE)
+
+    def _build(self) -> None:
+        c, scene = self._client, self.scene
+        c.resetSimulation(c.RESET_USE_DEFORMABLE_WORLD)
+        c.setGravity(0, 0, -9.81)
+        c.setPhysicsEngineParameter(numSubSteps=0)  # resetSimulation keeps the old value
+        c.setTimeStep(TIME_STEP)
+        turn = np.array(((np.cos(scene.hang_yaw), -np.sin(scene.hang_yaw), 0.0),
+                         (np.sin(scene.hang_yaw), np.cos(scene.hang_yaw), 0.0), (0.0, 0.0, 1.0)))
+        hung = scene.mesh.vertices @ turn.T
+        hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
+        self._cloth = Cloth(c, scene.mesh, hung - hung[scene.hang_vertex] + hook, TIME_STEP)
+        size = (*BED_HALF, BED_THICKNESS / 2)
+        bed = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=size), useMaximalCoordinates=1,
+                                basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2))
+        c.changeDynamics(bed, -1, lateralFriction=0.5)
+        floor = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)), useMaximalCoordinates=1,
+                                  basePosition=(0, 0, -0.05))
+        c.changeDynamics(floor, -1, lateralFriction=0.5)
+        self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
+        self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
+        self._vertices = self._cloth.vertices()
+
+    # -- senses --------------------------------------------------------------------------------------------
+
+    def observe(self) -> Observation:
+        """Joint sensors exact, wrist wrenches with noise."""
+        reading = self._robot.read()
+        wrench = np.zeros((2, 6))
+        for n in range(2):
+            wrench[n, :3] = self._load(n)
+        wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
+        opening, force = reading.gripper_opening.copy(), reading.gripper_force.copy()
+        for n, grip in enumerate(self._grips):
+            if grip.kind == "arm":
+                force[n] = self._force_limit[n]
+        return Observation(
+            time=self.clock.now(), arm_positions=reading.arm_positions, arm_velocities=reading.arm_velocities,
+            arm_efforts=reading.arm_efforts, head_pan=reading.head_pan, pose_base_in_map=reading.pose_base_in_map,
+            twist_base=reading.twist_base, gripper_opening=opening, gripper_force=force, wrench_hand_in_map=wrench,
+            pose_hand_in_map=np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES]))
+
+    def look(self, camera: str) -> Frame:
+        """Draw what a camera sees now, with the sensor's noise.
+
+        Raises:
+            SensorLost: there is no such camera.
+        """
+        if camera not in CAMERAS:
+            raise SensorLost(f"there is no camera '{camera}'; there are {', '.join(CAMERAS)}")
+        begin = wall.perf_counter()
+        reading = self._robot.read()
+        pose = self.kinematics.pose_camera_in_map(camera, reading.pose_base_in_map, reading.arm_positions, reading.head_pan)
+        renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration(reading))
+        rgb, depth = renderer.photograph(camera, pose, self._noise)
+        self.timing["cameras"] += wall.perf_counter() - begin
+        assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]
+        return Frame(camera=camera, stamp=self.clock.now(), rgb=rgb, depth=depth, intrinsics=camera_intrinsics(camera),
+                     pose_camera_in_map=pose)
+
+    # -- commands ------------------------------------------------------------------------------------------
+
+    def send(self, command: Command) -> Command:
+        """Start a command; fingers stop at what is between them."""
+        if not isinstance(command, GripperOpening):
+            return self._robot.command(command)
+        n = SIDES.index(command.side)
+        grip = self._grips[n]
+        self._force_limit[n] = command.force_limit
+        grip.on_command(command.opening, float(self._robot.read().gripper_opening[n]))
+        if grip.kind == "arm" and command.opening > grip.thickness + 0.004:
+            grip.release()
+        return self._robot.command(self._blocked(command, grip))
+
+    def stop(self) -> None:
+        """Brake arms and base; the grippers keep their opening."""
+        self._robot.stop()
+
+    def close(self) -> None:
+        """End both physics clients."""
+        self._client.disconnect()
+        self._robot_client.disconnect()
+
+    def _blocked(self, command: GripperOpening, grip: Grip) -> GripperOpening:
+        if grip.kind != "arm" or command.opening >= grip.thickness:
+            return command
+        return GripperOpening(side=command.side, opening=grip.thickness, force_limit=command.force_limit)
+
+    # -- time ----------------------------------------------------------------------------------------------
+
+    def _advance_to(self, time: float) -> None:
+        begin = wall.perf_counter()
+        others = self.timing["cameras"] + self.timing["record"]
+        while self.clock.time < time - 1e-9:
+            self._step()
+            if self.clock.time >= self._next_frame - 1e-9:
+                self._record()
+        self.timing["physics"] += wall.perf_counter() - begin - (self.timing["cameras"] + self.timing["record"] - others)
+
+    def _step(self) -> None:
+        if self._steps % ROBOT_STEPS == 0:
+            for n, side in enumerate(SIDES):
+                if self._grips[n].kind != "nothing":
+                    self._robot.apply_hand_force(side, self._load(n))
+            self._robot.update(self.clock.time)
+            self._robot_client.stepSimulation()
+            reading = self._robot.read()
+            self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+        if self._steps % CONTROL_STEPS == 0:
+            self._fingers()
+            self._rest()
+        if not self._asleep:
+            self._step_room()
+        self._steps += 1
+        self.clock.time = self._steps * TIME_STEP
+
+    def _step_room(self) -> None:
+        held = [grip.kind != "nothing" for grip in self._grips]
+        for n in np.flatnonzero(held):
+            self._handles[n].follow(self._hands[n])
+        self._hook.before_step()
+        self._move_person()
+        self._client.stepSimulation()
+        for n in np.flatnonzero(held):
+            self._handles[n].feel()
+            self._grips[n].slip(float(self._force_limit[n]), patience=25)
+        self._hook.after_step(TIME_STEP, taken=any(grip.kind == "cloth" for grip in self._grips))
+
+    def _fingers(self) -> None:
+        """Let closed fingers take, opened fingers release."""
+        reading = self._robot.read()
+        for n, grip in enumerate(self._grips):
+            opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
+            if grip.kind == "cloth" and opening > REOPENED:
+                grip.release()
+            elif grip.kind == "nothing" and grip.catch_arm(self._hands[n], opening, force):
+                self._robot.command(GripperOpening(side=SIDES[n], opening=grip.thickness, force_limit=force))
+                self._wake()
+            elif grip.kind == "nothing" and opening < CLOSED:
+                grip.take_cloth(self._cloth.vertices(), self._hands[n])
+                if grip.kind == "cloth":
+                    self._wake()
+
+    def _rest(self) -> None:
+        """Let a gown that lies still and that nobody holds rest, as rigid bodies are put to sleep."""
+        if self._asleep or self._steps % int(SLEEP_TIME / TIME_STEP):
+            return
+        vertices = self._cloth.vertices()
+        moved = float(np.abs(vertices - self._vertices).max())
+        self._vertices = vertices
+        busy = self._moving_person or any(grip.kind != "nothing" for grip in self._grips)
+        self._asleep = not busy and moved < SLEEP_MOVE and self._steps > 0
+
+    def _wake(self) -> None:
+        self._asleep = False
+
+    def _settle(self, duration: float) -> None:
+        """Pass room time before the run: the gown comes to rest."""
+        for _ in range(round(duration / TIME_STEP)):
+            self._hook.before_step()
+            self._client.stepSimulation()
+        self._vertices = self._cloth.vertices()
+
+    # -- truth: for the recorder only ----------------------------------------------------------------------
+
+    def attach_recorder(self, recorder: Recorder) -> None:
+        """Give every frame from now on to `recorder`."""
+        mesh = self.scene.mesh
+        recorder.begin(TruthStatic(faces=mesh.faces, rest_vertices=mesh.vertices, loops=mesh.loops,
+                                   arm_radii=self._person.radii(), person_parts=PERSON_PARTS))
+        self._recorder = recorder
+
+    def truth_frame(self) -> TruthFrame:
+        """Everything that is known about this instant."""
+        vertices = self._vertices_now()
+        reading = self._robot.read()
+        closed = np.array([grip.kind == "cloth" for grip in self._grips])
+        loads = np.stack([self._load(n) if closed[n] else np.zeros(3) for n in range(2)])
+        on_arm = {grip.part: self._load(n) for n, grip in enumerate(self._grips) if grip.part is not None}
+        force = self._balance.parts(self.clock.time, vertices, -loads.sum(axis=0) - self._hook.load(), on_arm)
+        poses = [self._robot.pose_hand_in_map(side, reading) for side in SIDES]
+        return TruthFrame(t=self.clock.time, vertices=vertices, arms=self._person.arms(),
+                          torso_front=self._person.torso_front(), gripper_pose=np.stack([_pose7(pose) for pose in poses]),
+                          gripper_closed=closed, gripper_load=loads, person_force=force)
+
+    def _record(self) -> None:
+        begin = wall.perf_counter()
+        self._next_frame += FRAME_PERIOD
+        if self._recorder is not None:
+            self._recorder.frame(self.truth_frame())
+            if self.clock.time >= self._next_picture - 1e-9:
+                self._next_picture += PICTURE_PERIOD
+                renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
+                self._recorder.picture(self.clock.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
+        self.timing["record"] += wall.perf_counter() - begin
+
+    def _vertices_now(self) -> np.ndarray:
+        return self._vertices if self._asleep else self._cloth.vertices()
+
+    def _load(self, n: int) -> np.ndarray:
+        return self._handles[n].load if self._grips[n].kind != "nothing" else np.zeros(3)
+
+    # -- faults that need physics --------------------------------------------------------------------------
+
+    def fault_grip_slip(self, side: str) -> None:
+        """What a hand holds slides out of it."""
+        self._grips[SIDES.index(side)].release()  # pyright: ignore[reportArgumentType] a Side by contract
+
+    def fault_move_person(self) -> None:
+        """The person stirs: both arms swing outwards by about 15 degrees within 0.6 s."""
+        self._wake()
+        self._moving_person = [self.clock.time + 0.6]
+
+    def _move_person(self) -> None:
+        if self._moving_person:
+            stirring = self.clock.time < self._moving_person[0]
+            self._person.swing(0.45 if stirring else 0.0)
+            if not stirring:
+                self._moving_person = []
+
+
+def _pose7(pose: np.ndarray) -> np.ndarray:
+    from scipy.spatial.transform import Rotation
+
+    return np.concatenate([pose[:3, 3], Rotation.from_matrix(pose[:3, :3]).as_quat()])

@@ -1,0 +1,56 @@
+"""The hook on the rail: holds the gown by its neckline until a hand takes the weight off it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .cloth import Cloth
+from .handle import Handle
+
+FREE_LOAD = 0.5  # a loop of cloth that pulls down less than this slips off an open hook [N]
+FREE_TIME = 0.10  # ... after this long [s]
+
+
+class Hook:
+    """An open hook.  What hangs on it is pinned; when it no longer pulls down, it comes off."""
+
+    def __init__(self, client: Any, cloth: Cloth, position: np.ndarray, vertex: int) -> None:
+        pose = np.eye(4)
+        pose[:3, 3] = position
+        self.cloth = cloth
+        self.handle = Handle(client, pose)
+        self._pose = pose
+        vertices = cloth.vertices()
+        near = np.argsort(np.linalg.norm(vertices - vertices[vertex], axis=1))[:3]
+        self._pins = cloth.pin(near, self.handle.body, self.handle.link)
+        self._light = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether the gown hangs on it."""
+        return bool(self._pins)
+
+    def load(self) -> np.ndarray:
+        """(3,) force of the cloth on the hook [N]."""
+        return self.handle.load if self.holds else np.zeros(3)
+
+    def before_step(self) -> None:
+        """Keep still."""
+        if self.holds:
+            self.handle.follow(self._pose)
+
+    def after_step(self, duration: float, taken: bool) -> None:
+        """Let go when a hand holds the gown (`taken`) and nothing pulls down any more."""
+        if not self.holds:
+            return
+        self.handle.feel()
+        self._light = self._light + duration if taken and -self.handle.load[2] < FREE_LOAD else 0.0
+        if self._light > FREE_TIME:
+            self.release()
+
+    def release(self) -> None:
+        """Take the gown off."""
+        self.cloth.unpin(self._pins)
+        self._pins = []
