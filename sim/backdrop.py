@@ -13,7 +13,7 @@ from .robot.visual import visual_meshes
 from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
 from .solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
 
-SPECTATOR = looking_at(np.array((3.3, -1.7, 2.6)), np.array((0.7, 0.55, 0.75)))  # the video's camera
+SPECTATOR = looking_at(np.array((0.2, -2.85, 2.7)), np.array((0.75, 0.6, 0.65)))  # the video's camera
 SPECTATOR_SIZE = (480, 360)
 
 

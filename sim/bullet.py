@@ -33,6 +33,7 @@ from .recorder import FRAME_PERIOD, Recorder
 from .robot.body import RobotBody
 from .robot.kinematics import default_kinematics
 from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
+from .stage_start import lay_by_hand
 from .truth import TruthFrame, TruthStatic
 from .world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
 
@@ -99,11 +100,8 @@ class BulletWorld(World):
         self._moving_person: list[float] = []
         self._client: Any = BulletClient(pybullet.GUI if view else pybullet.DIRECT)
         self._build()
-        start = np.array(self.room.waypoints["start"])
         self._robot_client: Any = BulletClient(pybullet.DIRECT)
-        self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
-        self._robot_client.setGravity(0, 0, -9.81)
-        self._robot = RobotBody(self._robot_client, start, kinematics=self.kinematics)
+        self._robot = self._stand(self.room.waypoints["start"])
         self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
         self._grips = [Grip(self._client, side, self._handles[n], self._cloth, self._person)
@@ -134,6 +132,30 @@ class BulletWorld(World):
         self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
         self._vertices = self._cloth.vertices()
+
+    def _stand(self, pose_base_in_map: tuple[float, float, float]) -> RobotBody:
+        """Put the robot somewhere, arms ready."""
+        self._robot_client.resetSimulation()
+        self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
+        self._robot_client.setGravity(0, 0, -9.81)
+        return RobotBody(self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.clock.time)
+
+    def prepare_stage(self, stage: str) -> None:
+        """Start at a later stage, the earlier ones done by hand: A (nothing to do) or C (gown laid, robot at the bed).
+
+        Raises:
+            CaretreeError: another stage, or the run has begun.
+        """
+        if stage not in ("A", "C"):
+            raise CaretreeError(f"stage {stage!r} cannot be started on its own in the bullet world; A and C can")
+        if self._steps:
+            raise CaretreeError("a stage can only be prepared before the run begins")
+        if stage == "C":
+            self._hook.release()
+            lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
+            self._vertices = self._cloth.vertices()
+            self._robot = self._stand(self.room.waypoints["bed_right"])
+            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
 
     # -- senses --------------------------------------------------------------------------------------------
 

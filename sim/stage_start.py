@@ -1,0 +1,60 @@
+"""Starting a run at a later stage, as the paper's independent trials do: somebody lays the gown by hand first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .cloth import Cloth
+from .handle import Handle
+
+LAID_COLLAR_Y = 0.12  # where the neckline comes to lie, just beyond the fingertips [m]
+LAID_CENTRE_X = 0.05  # [m]
+_HANG_Y, _HANG_Z = 1.25, 1.28  # where the gown is held before it is laid [m]
+_PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # (y, z) of the neckline [m]
+_SPEED = 0.25  # [m/s]
+
+
+def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
+    """Hang the gown by its collar corners over the foot of the bed and lay it on the person's legs.
+
+    The outside faces up, the neckline lies across the body just beyond the fingertips of arms at rest, as
+    after stage B.  The gown is carried by two handles, under the same physics as in a run.
+
+    Args:
+        cloth: the gown, held by nothing.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+    """
+    mesh = cloth.mesh
+    cloth.place(mesh.vertices + (LAID_CENTRE_X, _HANG_Y, _HANG_Z))
+    vertices = cloth.vertices()
+    poses, pins = [], []
+    for handle, corner in zip(handles, mesh.corners, strict=True):
+        pose = np.eye(4)
+        pose[:3, 3] = vertices[corner]
+        near = np.argsort(np.linalg.norm(vertices - vertices[corner], axis=1))[:3]
+        handle.reset(pose)
+        pins.append(cloth.pin(near, handle.body, handle.link))
+        poses.append(pose)
+
+    def carry(y: float, z: float, duration: float) -> None:
+        starts = [pose[1:3, 3].copy() for pose in poses]
+        count = round(duration / time_step)
+        for k in range(1, count + 1):
+            for handle, pose, start in zip(handles, poses, starts, strict=True):
+                pose[1:3, 3] = start + (np.array((y, z)) - start) * k / count
+                handle.follow(pose)
+            step()
+
+    carry(_HANG_Y, _HANG_Z, 1.0)
+    y0 = _HANG_Y
+    for y, z in _PATH:
+        carry(y, z, abs(y - y0) / _SPEED + 0.1)
+        y0 = y
+    for group in pins:
+        cloth.unpin(group)
+    for _ in range(round(0.8 / time_step)):
+        step()
