@@ -164,7 +164,7 @@ class BulletWorld(World):
         reading = self._robot.read()
         wrench = np.zeros((2, 6))
         for n in range(2):
-            wrench[n, :3] = self._load(n)
+            wrench[n, :3] = self._grips[n].load
         wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
         opening, force = reading.gripper_opening.copy(), reading.gripper_force.copy()
         for n, grip in enumerate(self._grips):
@@ -237,7 +237,7 @@ class BulletWorld(World):
         if self._steps % ROBOT_STEPS == 0:
             for n, side in enumerate(SIDES):
                 if self._grips[n].kind != "nothing":
-                    self._robot.apply_hand_force(side, self._load(n))
+                    self._robot.apply_hand_force(side, self._grips[n].load)
             self._robot.update(self.clock.time)
             self._robot_client.stepSimulation()
             reading = self._robot.read()
@@ -258,13 +258,17 @@ class BulletWorld(World):
         self._move_person()
         self._client.stepSimulation()
         for n in np.flatnonzero(held):
-            self._handles[n].feel()
-            self._grips[n].slip(float(self._force_limit[n]), patience=25)
-        self._hook.after_step(TIME_STEP, taken=any(grip.kind == "cloth" for grip in self._grips))
+            if self._grips[n].kind == "arm":
+                self._handles[n].feel()
 
     def _fingers(self) -> None:
-        """Let closed fingers take, opened fingers release."""
+        """Let closed fingers take, opened fingers release, loads be felt."""
         reading = self._robot.read()
+        if any(grip.kind != "nothing" for grip in self._grips):
+            vertices = self._cloth.vertices()
+            for grip, limit in zip(self._grips, self._force_limit, strict=True):
+                grip.watch(vertices, float(limit))
+            self._hook.watch(CONTROL_STEPS * TIME_STEP, any(grip.kind == "cloth" for grip in self._grips), vertices)
         for n, grip in enumerate(self._grips):
             opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
             if grip.kind == "cloth" and opening > REOPENED:
@@ -311,9 +315,9 @@ class BulletWorld(World):
         vertices = self._vertices_now()
         reading = self._robot.read()
         closed = np.array([grip.kind == "cloth" for grip in self._grips])
-        loads = np.stack([self._load(n) if closed[n] else np.zeros(3) for n in range(2)])
-        on_arm = {grip.part: self._load(n) for n, grip in enumerate(self._grips) if grip.part is not None}
-        force = self._balance.parts(self.clock.time, vertices, -loads.sum(axis=0) - self._hook.load(), on_arm)
+        loads = np.stack([self._grips[n].load if closed[n] else np.zeros(3) for n in range(2)])
+        on_arm = {grip.part: self._grips[n].load for n, grip in enumerate(self._grips) if grip.part is not None}
+        force = self._balance.parts(self.clock.time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
         poses = [self._robot.pose_hand_in_map(side, reading) for side in SIDES]
         return TruthFrame(t=self.clock.time, vertices=vertices, arms=self._person.arms(),
                           torso_front=self._person.torso_front(), gripper_pose=np.stack([_pose7(pose) for pose in poses]),
@@ -332,9 +336,6 @@ class BulletWorld(World):
 
     def _vertices_now(self) -> np.ndarray:
         return self._vertices if self._asleep else self._cloth.vertices()
-
-    def _load(self, n: int) -> np.ndarray:
-        return self._handles[n].load if self._grips[n].kind != "nothing" else np.zeros(3)
 
     # -- faults that need physics --------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from .gown import GownMesh, edge_counts
 
 STABILITY_MAX = 0.7  # elastic * dt^2 / vertex mass: above it the explicit springs explode (measured, FACTS)
 MARGIN = 0.006  # collision margin [m]
+GRAVITY = 9.81  # [m/s^2]
 
 
 class Cloth:
@@ -66,6 +67,25 @@ class Cloth:
         """Let pinned vertices go."""
         for constraint in constraints:
             self.client.removeConstraint(constraint)
+
+    def load(self, held: Collection[int], vertices: np.ndarray) -> np.ndarray:
+        """(3,) force that the cloth exerts on whatever holds the vertices `held` [N].
+
+        The springs between held and free vertices are the cut through which all of the load passes; add the
+        held vertices' own weight.  Motor forces behind an anchored link are no load cell as soon as that link
+        can turn: known weights were read 8 to 30 % wrong (`tests/sim/test_handle.py` checks this one).
+        """
+        mine = np.zeros(len(vertices), dtype=bool)
+        mine[list(held)] = True
+        cut = mine[self.edges[:, 0]] != mine[self.edges[:, 1]]
+        inner, outer = self.edges[cut].T
+        swap = mine[outer]
+        inner, outer = np.where(swap, outer, inner), np.where(swap, inner, outer)
+        along = vertices[outer] - vertices[inner]
+        length = np.linalg.norm(along, axis=1)
+        tension = self.mesh.spec.elastic * (length - self.rest_lengths[cut])
+        weight = self.mesh.spec.mass * len(held) / len(vertices) * GRAVITY
+        return (along * (tension / length)[:, None]).sum(axis=0) - (0.0, 0.0, weight)
 
     def stretch(self, vertices: np.ndarray) -> np.ndarray:
         """(E,) edge length over rest length."""

@@ -24,6 +24,7 @@ CLOSED = 0.010  # opening at which cloth is held [m]
 REOPENED = 0.020  # opening at which it is let go [m]
 FRICTION_CLOTH = 0.6  # rubber pads on cotton
 FRICTION_SKIN = 0.6  # rubber pads on vinyl skin
+SMOOTHING = 0.3  # share of a new load reading, taken every 10 ms
 CATCH = 0.020  # an arm whose axis is this near to the grip is centred by the closing fingers [m]
 ARM_SLIP = 0.03  # an arm that has moved this far in the grip is lost [m]
 ARM_PARTS = ("upper_arm", "forearm", "hand")
@@ -91,12 +92,13 @@ class Grip:
         self.part: int | None = None
         self.thickness = 0.0
         self._pins: list[int] = []
+        self._held: tuple[int, ...] = ()
+        self._cloth_load = np.zeros(3)
         self._constraint: int | None = None
         self._arm_link = -1
         self._arm_local = np.zeros(3)
         self._open_before = 0.085
         self._armed = True
-        self._overload_steps = 0
 
     def on_command(self, opening: float, now_open: float) -> None:
         """A new opening is commanded; remember how far the fingers were apart before they close."""
@@ -135,7 +137,9 @@ class Grip:
         if not pinched.vertices:
             return
         self.handle.reset(pose_hand_in_map)
-        self._pins = self.cloth.pin(pinched.vertices, self.handle.body, self.handle.link)
+        self._held = pinched.vertices
+        self._pins = self.cloth.pin(self._held, self.handle.body, self.handle.link)
+        self._cloth_load = self.cloth.load(self._held, vertices)
         self.kind, self.layers, self.thickness = "cloth", pinched.layers, 0.0
 
     def release(self) -> None:
@@ -146,14 +150,19 @@ class Grip:
             self.client.removeConstraint(self._constraint)
             self._constraint = None
         self.kind, self.layers, self.part, self.thickness = "nothing", 0, None, 0.0
-        self._overload_steps = 0
 
-    def slip(self, force: float, patience: int) -> None:
-        """Lose the hold when the load passes the pads' friction for `patience` calls, or the arm has slid out."""
+    @property
+    def load(self) -> np.ndarray:
+        """(3,) force of what is held on the hand, map frame [N]."""
+        if self.kind == "arm":
+            return self.handle.load
+        return self._cloth_load.copy() if self.kind == "cloth" else np.zeros(3)
+
+    def watch(self, vertices: np.ndarray, force: float) -> None:
+        """Feel the load, and lose the hold when it passes the pads' friction or the arm has slid out; every control step."""
         if self.kind == "cloth":
-            over = float(np.linalg.norm(self.handle.load)) > 2 * FRICTION_CLOTH * force
-            self._overload_steps = self._overload_steps + 1 if over else 0
-            if self._overload_steps > patience:
+            self._cloth_load += SMOOTHING * (self.cloth.load(self._held, vertices) - self._cloth_load)
+            if float(np.linalg.norm(self._cloth_load)) > 2 * FRICTION_CLOTH * force:
                 self.release()
         elif self.kind == "arm":
             state = self.client.getLinkState(self.person.body, self._arm_link)

@@ -1,8 +1,8 @@
-"""What a hand holds things with: a light body on six stiff motors that follows the hand and feels the load.
+"""What a hand holds things with: a light body on six stiff motors that follows the hand.
 
-PyBullet's joint force sensors ignore what cloth anchors pull, and anchors on kinematic bodies can explode
-(FACTS).  A dynamic link behind three prismatic and three revolute motors does neither: the prismatic motors'
-force is the load to within 1 % (`tests/sim/test_handle.py` hangs known weights on it).
+Cloth anchored to kinematic bodies can explode (FACTS); a dynamic link behind three prismatic and three
+revolute motors does not, and turns what it holds.  Its motors feel an arm that hangs on it; cloth loads are
+read in the cloth itself (`Cloth.load`).
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-MASS = 0.04  # of the last link; the five before it are 10 g each [kg]
-GRAVITY = 9.81  # [m/s^2]
+from .cloth import GRAVITY
+
+MASS, LINK_MASS = 0.3, 0.1  # of the last link and of the five before it [kg]; lighter ones shake what they hold
 _LINK = 5
 _AXES = (("prismatic", "1 0 0"), ("prismatic", "0 1 0"), ("prismatic", "0 0 1"),
          ("revolute", "0 0 1"), ("revolute", "0 1 0"), ("revolute", "1 0 0"))
-_LIFTED = MASS + 3 * 0.01  # what the z motor carries: its own link and the turning ones [kg]
+_LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
 _SMOOTHING = 0.05  # share of a new reading: about 40 ms at a 2 ms step
 
 
@@ -70,7 +71,7 @@ class Handle:
 
     @property
     def load(self) -> np.ndarray:
-        """(3,) force that what is held exerts on the hand, map frame, own weight removed [N]."""
+        """(3,) force that an arm held by a constraint exerts on the hand, map frame, own weight removed [N]."""
         return self._load.copy()
 
     def position(self) -> np.ndarray:
@@ -79,11 +80,12 @@ class Handle:
 
 
 def _urdf() -> str:
-    inertia = '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/>'
+    # below 1e-3 kg m^2 the turning motors do not hold against the anchors
+    inertia = '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/>'
     parts = [f'<link name="room"><inertial><mass value="0"/>{inertia}</inertial></link>']
     parent = "room"
     for k, (kind, axis) in enumerate(_AXES):
-        mass = MASS if k == _LINK else 0.01
+        mass = MASS if k == _LINK else LINK_MASS
         parts.append(f'<link name="l{k}"><inertial><mass value="{mass}"/>{inertia}</inertial></link>')
         # lower > upper: no limit, hence no limit constraint to solve for
         parts.append(f'<joint name="j{k}" type="{kind}"><parent link="{parent}"/><child link="l{k}"/><axis xyz="{axis}"/>'

@@ -24,6 +24,7 @@ class Hook:
         self._pose = pose
         vertices = cloth.vertices()
         near = np.argsort(np.linalg.norm(vertices - vertices[vertex], axis=1))[:3]
+        self._held = [int(k) for k in near]
         self._pins = cloth.pin(near, self.handle.body, self.handle.link)
         self._light = 0.0
 
@@ -32,21 +33,20 @@ class Hook:
         """Whether the gown hangs on it."""
         return bool(self._pins)
 
-    def load(self) -> np.ndarray:
-        """(3,) force of the cloth on the hook [N]."""
-        return self.handle.load if self.holds else np.zeros(3)
+    def load(self, vertices: np.ndarray) -> np.ndarray:
+        """(3,) force of the cloth, whose vertices are given, on the hook [N]."""
+        return self.cloth.load(self._held, vertices) if self.holds else np.zeros(3)
 
     def before_step(self) -> None:
         """Keep still."""
         if self.holds:
             self.handle.follow(self._pose)
 
-    def after_step(self, duration: float, taken: bool) -> None:
-        """Let go when a hand holds the gown (`taken`) and nothing pulls down any more."""
+    def watch(self, duration: float, taken: bool, vertices: np.ndarray) -> None:
+        """Let go when a hand holds the gown (`taken`) and nothing has pulled down for a while; every `duration` [s]."""
         if not self.holds:
             return
-        self.handle.feel()
-        self._light = self._light + duration if taken and -self.handle.load[2] < FREE_LOAD else 0.0
+        self._light = self._light + duration if taken and -self.load(vertices)[2] < FREE_LOAD else 0.0
         if self._light > FREE_TIME:
             self.release()
 

@@ -11,7 +11,7 @@ class GainError(JointEffect):
     """Load `fraction * load_model`: the reading is (1 + fraction) times the load."""
 
     name = "gain_error"
-    linear = (Parameter(name="fraction", unit="1", lower=-0.9, upper=5.0),)
+    linear = (Parameter(name="fraction", unit="1", lower=-0.95, upper=20.0),)
     sentence = "a wrong scale of the measured load"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

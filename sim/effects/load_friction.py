@@ -11,7 +11,7 @@ class LoadFriction(JointEffect):
     """Load `ratio * |load_model| * sign(dq)`."""
 
     name = "load_friction"
-    linear = (Parameter(name="ratio", unit="1", lower=0.0, upper=1.0),)
+    linear = (Parameter(name="ratio", unit="1", lower=0.0, upper=10.0),)
     sentence = "friction that grows with the load carried"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:
