@@ -40,7 +40,8 @@ class ForceBalance:
             held: (3,) force that hands and hook exert on the cloth [N].
             arm_loads: index of a part -> (3,) force that a hand exerts on it directly [N].
         """
-        self._centres = [*self._centres[-2:], (time, vertices.mean(axis=0))]
+        if not self._centres or time > self._centres[-1][0]:
+            self._centres = [*self._centres[-2:], (time, vertices.mean(axis=0))]
         rest = self.mass * (self._acceleration() + (0.0, 0.0, GRAVITY)) - held
         counts, on_bed = self._touching(vertices)
         total = counts.sum() + on_bed
