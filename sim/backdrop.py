@@ -57,15 +57,16 @@ class Backdrop:
         add("wall_side", *box_mesh(np.array((-3.05, -3.0, 0.0)), np.array((-3.0, 3.5, 2.6))), colour["wall"])
         middle = np.array((*scene.bed_xy, 0.0))
         half = np.array((*BED_HALF, 0.0))
-        add("mattress", *box_mesh(middle - half + (0, 0, BED_TOP - 0.09), middle + half + (0, 0, BED_TOP)), colour["sheet"])
-        add("bed_frame", *box_mesh(middle - half + (0, 0, BED_TOP - BED_THICKNESS), middle + half + (0, 0, BED_TOP - 0.09)),
-            colour["bed_frame"])
+        for name, low, high, tint in (("mattress", BED_TOP - 0.09, BED_TOP, "sheet"),
+                                      ("bed_frame", BED_TOP - BED_THICKNESS, BED_TOP - 0.09, "bed_frame")):
+            add(name, *box_mesh(middle - half + (0, 0, low), middle + half + (0, 0, high)), colour[tint])
         for k, (x, y) in enumerate(((-0.3, -0.9), (0.3, -0.9), (-0.3, 0.9), (0.3, 0.9))):
             foot = middle + (x, y, 0.0)
             add(f"bed_leg{k}", *cylinder_mesh(foot, foot + (0, 0, BED_TOP - BED_THICKNESS), 0.03), colour["bed_frame"])
         x, y = scene.rail_xy
         bar = RAIL_HEIGHT + 0.05
-        add("rail_bar", *cylinder_mesh(np.array((x - 0.8, y + 0.03, bar)), np.array((x + 0.8, y + 0.03, bar)), 0.015), colour["rail"])
+        ends = np.array(((x - 0.8, y + 0.03, bar), (x + 0.8, y + 0.03, bar)))
+        add("rail_bar", *cylinder_mesh(*ends, 0.015), colour["rail"])
         for k, end in enumerate((-0.8, 0.8)):
             foot = np.array((x + end, y + 0.03, 0.0))
             add(f"rail_post{k}", *cylinder_mesh(foot, foot + (0, 0, bar), 0.02), colour["rail"])
@@ -82,13 +83,14 @@ class Backdrop:
             knee = a + 0.45 * (b - a)
             add(f"{name}_thigh", *capsule_mesh(a, knee, radius * 1.01), self._colours["shorts"])
             add(f"{name}_shin", *capsule_mesh(knee, b, radius), skin)
-        add("pillow", *box_mesh(np.array((scene.bed_xy[0] - 0.25, scene.bed_xy[1] - 0.98, BED_TOP)),
-                                np.array((scene.bed_xy[0] + 0.25, scene.bed_xy[1] - 0.66, BED_TOP + 0.03))), self._colours["sheet"])
+        bed = np.array((*scene.bed_xy, BED_TOP))
+        add("pillow", *box_mesh(bed + (-0.25, -0.98, 0.0), bed + (0.25, -0.66, 0.03)), self._colours["sheet"])
         lengths = np.array(spec.lengths) * spec.scale
         for arm in range(2):
             radii = self.person.radii()[arm]
             for part in range(3):
-                add(f"arm{arm}{part}", *capsule_mesh(np.zeros(3), np.array((0.0, 0.0, lengths[part])), radii[part]), skin)
+                tip = np.array((0.0, 0.0, lengths[part]))
+                add(f"arm{arm}{part}", *capsule_mesh(np.zeros(3), tip, radii[part]), skin)
             add(f"shoulder{arm}", *sphere_mesh(self.person.arms()[arm, 0], radii[0] * 1.15), skin)
 
 

@@ -88,7 +88,8 @@ class BulletWorld(World):
             raise CaretreeError(f"--model {model}: the bullet world takes no model file yet")
         self.scene = draw_scene(seed, gown, person)
         self.room = room_map()
-        self.clock = _SteppedClock(self._advance_to)
+        self.time = _SteppedClock(self._advance_to)
+        self.clock = self.time
         self.kinematics = default_kinematics()
         self.timing: dict[str, float] = defaultdict(float)
         self._noise = np.random.default_rng([seed, 2])
@@ -126,8 +127,8 @@ class BulletWorld(World):
         bed = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=size), useMaximalCoordinates=1,
                                 basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2))
         c.changeDynamics(bed, -1, lateralFriction=0.5)
-        floor = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)), useMaximalCoordinates=1,
-                                  basePosition=(0, 0, -0.05))
+        floor = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)),
+                                  useMaximalCoordinates=1, basePosition=(0, 0, -0.05))
         c.changeDynamics(floor, -1, lateralFriction=0.5)
         self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
@@ -138,7 +139,8 @@ class BulletWorld(World):
         self._robot_client.resetSimulation()
         self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
         self._robot_client.setGravity(0, 0, -9.81)
-        return RobotBody(self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.clock.time)
+        return RobotBody(self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics,
+                         time=self.time.time)
 
     def prepare_stage(self, stage: str) -> None:
         """Start at a later stage, the earlier ones done by hand: A (nothing to do) or C (gown laid, robot at the bed).
@@ -186,7 +188,8 @@ class BulletWorld(World):
             raise SensorLost(f"there is no camera '{camera}'; there are {', '.join(CAMERAS)}")
         begin = wall.perf_counter()
         reading = self._robot.read()
-        pose = self.kinematics.pose_camera_in_map(camera, reading.pose_base_in_map, reading.arm_positions, reading.head_pan)
+        pose = self.kinematics.pose_camera_in_map(camera, reading.pose_base_in_map, reading.arm_positions,
+                                                  reading.head_pan)
         renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration(reading))
         rgb, depth = renderer.photograph(camera, pose, self._noise)
         self.timing["cameras"] += wall.perf_counter() - begin
@@ -226,19 +229,19 @@ class BulletWorld(World):
 
     def _advance_to(self, time: float) -> None:
         begin = wall.perf_counter()
-        others = self.timing["cameras"] + self.timing["record"]
-        while self.clock.time < time - 1e-9:
+        recorded = self.timing["record"]
+        while self.time.time < time - 1e-9:
             self._step()
-            if self.clock.time >= self._next_frame - 1e-9:
+            if self.time.time >= self._next_frame - 1e-9:
                 self._record()
-        self.timing["physics"] += wall.perf_counter() - begin - (self.timing["cameras"] + self.timing["record"] - others)
+        self.timing["physics"] += wall.perf_counter() - begin - (self.timing["record"] - recorded)
 
     def _step(self) -> None:
         if self._steps % ROBOT_STEPS == 0:
             for n, side in enumerate(SIDES):
                 if self._grips[n].kind != "nothing":
                     self._robot.apply_hand_force(side, self._grips[n].load)
-            self._robot.update(self.clock.time)
+            self._robot.update(self.time.time)
             self._robot_client.stepSimulation()
             reading = self._robot.read()
             self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
@@ -248,7 +251,7 @@ class BulletWorld(World):
         if not self._asleep:
             self._step_room()
         self._steps += 1
-        self.clock.time = self._steps * TIME_STEP
+        self.time.time = self._steps * TIME_STEP
 
     def _step_room(self) -> None:
         held = [grip.kind != "nothing" for grip in self._grips]
@@ -317,21 +320,21 @@ class BulletWorld(World):
         closed = np.array([grip.kind == "cloth" for grip in self._grips])
         loads = np.stack([self._grips[n].load if closed[n] else np.zeros(3) for n in range(2)])
         on_arm = {grip.part: self._grips[n].load for n, grip in enumerate(self._grips) if grip.part is not None}
-        force = self._balance.parts(self.clock.time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
-        poses = [self._robot.pose_hand_in_map(side, reading) for side in SIDES]
-        return TruthFrame(t=self.clock.time, vertices=vertices, arms=self._person.arms(),
-                          torso_front=self._person.torso_front(), gripper_pose=np.stack([_pose7(pose) for pose in poses]),
-                          gripper_closed=closed, gripper_load=loads, person_force=force)
+        force = self._balance.parts(self.time.time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
+        poses = np.stack([_pose7(self._robot.pose_hand_in_map(side, reading)) for side in SIDES])
+        return TruthFrame(t=self.time.time, vertices=vertices, arms=self._person.arms(),
+                          torso_front=self._person.torso_front(), gripper_pose=poses, gripper_closed=closed,
+                          gripper_load=loads, person_force=force)
 
     def _record(self) -> None:
         begin = wall.perf_counter()
         self._next_frame += FRAME_PERIOD
         if self._recorder is not None:
             self._recorder.frame(self.truth_frame())
-            if self.clock.time >= self._next_picture - 1e-9:
+            if self.time.time >= self._next_picture - 1e-9:
                 self._next_picture += PICTURE_PERIOD
                 renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
-                self._recorder.picture(self.clock.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
+                self._recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
         self.timing["record"] += wall.perf_counter() - begin
 
     def _vertices_now(self) -> np.ndarray:
@@ -346,11 +349,11 @@ class BulletWorld(World):
     def fault_move_person(self) -> None:
         """The person stirs: both arms swing outwards by about 15 degrees within 0.6 s."""
         self._wake()
-        self._moving_person = [self.clock.time + 0.6]
+        self._moving_person = [self.time.time + 0.6]
 
     def _move_person(self) -> None:
         if self._moving_person:
-            stirring = self.clock.time < self._moving_person[0]
+            stirring = self.time.time < self._moving_person[0]
             self._person.swing(0.45 if stirring else 0.0)
             if not stirring:
                 self._moving_person = []

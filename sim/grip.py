@@ -159,7 +159,7 @@ class Grip:
         return self._cloth_load.copy() if self.kind == "cloth" else np.zeros(3)
 
     def watch(self, vertices: np.ndarray, force: float) -> None:
-        """Feel the load, and lose the hold when it passes the pads' friction or the arm has slid out; every control step."""
+        """Feel the load; lose the hold when it passes the pads' friction or the arm has slid out; every control step."""
         if self.kind == "cloth":
             self._cloth_load += SMOOTHING * (self.cloth.load(self._held, vertices) - self._cloth_load)
             if float(np.linalg.norm(self._cloth_load)) > 2 * FRICTION_CLOTH * force:
@@ -184,7 +184,7 @@ class Grip:
                 point = a + f * (b - a)
                 local = (point - origin) @ turn
                 axis = (b - a) / np.linalg.norm(b - a)
-                # across the fingers the arm must lie within their stroke; along the approach a grip is as deep as its pads
+                # across the fingers the arm must lie within their stroke, along the approach within the pads' depth
                 fits = abs(local[1]) <= CATCH and abs(local[2]) <= 0.03 and abs(axis @ turn[:, 1]) < 0.5
                 if fits and 2 * radii[arm, part] < self._open_before:
                     distance = float(np.linalg.norm(local))

@@ -88,7 +88,7 @@ def _urdf() -> str:
         mass = MASS if k == _LINK else LINK_MASS
         parts.append(f'<link name="l{k}"><inertial><mass value="{mass}"/>{inertia}</inertial></link>')
         # lower > upper: no limit, hence no limit constraint to solve for
-        parts.append(f'<joint name="j{k}" type="{kind}"><parent link="{parent}"/><child link="l{k}"/><axis xyz="{axis}"/>'
-                     '<limit lower="1" upper="-1" effort="1000" velocity="10"/></joint>')
+        parts.append(f'<joint name="j{k}" type="{kind}"><parent link="{parent}"/><child link="l{k}"/>'
+                     f'<axis xyz="{axis}"/><limit lower="1" upper="-1" effort="1000" velocity="10"/></joint>')
         parent = f"l{k}"
     return f'<robot name="handle">{"".join(parts)}</robot>'

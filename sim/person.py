@@ -111,7 +111,7 @@ class Person:
         self.client, self.spec = client, spec
         self.bed_top, self.bed_xy = bed_top, bed_xy
         self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
-        self.trunk = [self._trunk_capsule(*ends, radius) for *ends, radius in trunk_capsules(spec, bed_top, bed_xy)]
+        self.trunk = [self._trunk_capsule(a, b, radius) for a, b, radius in trunk_capsules(spec, bed_top, bed_xy)]
         self.body = self._load()
         names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
         self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
@@ -136,9 +136,10 @@ class Person:
 
     def swing(self, speed: float) -> None:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
+        torque = (3.0 if speed else 1.0) * self.spec.dry_friction[0]
         for side in SIDES:
             self.client.setJointMotorControl2(self.body, self.joints[side][0], self.client.VELOCITY_CONTROL,
-                                              targetVelocity=speed, force=(3.0 if speed else 1.0) * self.spec.dry_friction[0])
+                                              targetVelocity=speed, force=torque)
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""
@@ -167,7 +168,7 @@ class Person:
         return np.tile(np.array(self.spec.radii) * self.spec.scale, (2, 1))
 
     def joint_angles(self) -> dict[str, np.ndarray]:
-        """side -> (4,) angles in the order of `ARM_AXES` [rad]."""
+        """Side -> (4,) angles in the order of `ARM_AXES` [rad]."""
         return {side: np.array([s[0] for s in self.client.getJointStates(self.body, self.joints[side])])
                 for side in SIDES}
 

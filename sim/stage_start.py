@@ -12,7 +12,7 @@ from .handle import Handle
 LAID_COLLAR_Y = 0.12  # where the neckline comes to lie, just beyond the fingertips [m]
 LAID_CENTRE_X = 0.05  # [m]
 _HANG_Y, _HANG_Z = 1.25, 1.28  # where the gown is held before it is laid [m]
-_PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # (y, z) of the neckline [m]
+_PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # neckline's y, z [m]
 _SPEED = 0.25  # [m/s]
 
 

@@ -26,7 +26,7 @@ class WorldError(CaretreeError):
     """A world could not do what was asked; the message is one sentence for the operator."""
 
 
-class SensorLost(WorldError):
+class SensorLost(WorldError):  # noqa: N818 it names a state of the robot, as operators say it
     """A sensor gave nothing: no frame, no joint state, no wrench."""
 
 
@@ -194,5 +194,5 @@ class World(abc.ABC):
     def stop(self) -> None:
         """End every motion now.  Grippers keep their opening.  Safe to call at any time, twice too."""
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 most worlds hold nothing
         """Release what the world holds (processes, files, connections)."""

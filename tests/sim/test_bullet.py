@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from caretree.sim.bullet import BulletWorld
 from caretree.sim.cloth import GRAVITY
 from caretree.sim.errors import CaretreeError

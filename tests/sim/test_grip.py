@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from caretree.sim.gown import GOWNS, build_gown
 from caretree.sim.grip import cloth_between
 

@@ -7,11 +7,10 @@ import dataclasses
 import numpy as np
 import pybullet
 import pytest
-from pybullet_utils.bullet_client import BulletClient
-
 from caretree.sim.cloth import GRAVITY, Cloth
 from caretree.sim.gown import GOWNS, build_gown
 from caretree.sim.handle import Handle
+from pybullet_utils.bullet_client import BulletClient
 
 STEP = 0.002
 
@@ -57,5 +56,5 @@ def test_a_hanging_gown_weighs_what_it_weighs(client, mass):
 
 def test_an_unstable_gown_is_refused(client):
     mesh = build_gown(dataclasses.replace(GOWNS["medium"], elastic=400.0))
-    with pytest.raises(ValueError, match="at most 0.7 is stable"):
+    with pytest.raises(ValueError, match=r"at most 0\.7 is stable"):
         Cloth(client, mesh, mesh.vertices, STEP)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pybullet
 import pytest
-from pybullet_utils.bullet_client import BulletClient
-
 from caretree.sim.cloth import GRAVITY
 from caretree.sim.person import PERSON_PARTS, PERSONS, Person
 from caretree.sim.person_force import ForceBalance
+from pybullet_utils.bullet_client import BulletClient
 
 
 @pytest.fixture(scope="module")
@@ -51,5 +50,6 @@ def test_free_fall_presses_on_nobody(person):
 def test_a_held_arm_feels_the_hand(person):
     balance = ForceBalance(person, 0.45, 0.6)
     part = PERSON_PARTS.index("right_upper_arm")
-    force = balance.parts(0.0, on_chest() + (0, 0, 2.0), np.array((0.0, 0.0, 0.45 * GRAVITY)), {part: np.array((0.0, 0.0, 12.0))})
+    carried = np.array((0.0, 0.0, 0.45 * GRAVITY))
+    force = balance.parts(0.0, on_chest() + (0, 0, 2.0), carried, {part: np.array((0.0, 0.0, 12.0))})
     assert force[part] == pytest.approx(12.0)
