@@ -66,7 +66,7 @@ class Backdrop:
         x, y = scene.rail_xy
         bar = RAIL_HEIGHT + 0.05
         ends = np.array(((x - 0.8, y + 0.03, bar), (x + 0.8, y + 0.03, bar)))
-        add("rail_bar", *cylinder_mesh(*ends, 0.015), colour["rail"])
+        add("rail_bar", *cylinder_mesh(ends[0], ends[1], 0.015), colour["rail"])
         for k, end in enumerate((-0.8, 0.8)):
             foot = np.array((x + end, y + 0.03, 0.0))
             add(f"rail_post{k}", *cylinder_mesh(foot, foot + (0, 0, bar), 0.02), colour["rail"])

@@ -20,9 +20,10 @@ import numpy as np
 import pybullet
 from pybullet_utils.bullet_client import BulletClient
 
+from . import units
 from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
 from .camera import CAMERA_VIEWS, camera_intrinsics
-from .cloth import Cloth
+from .cloth import GRAVITY, Cloth
 from .errors import CaretreeError
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
@@ -115,9 +116,9 @@ class BulletWorld(World):
     def _build(self) -> None:
         c, scene = self._client, self.scene
         c.resetSimulation(c.RESET_USE_DEFORMABLE_WORLD)
-        c.setGravity(0, 0, -9.81)
+        c.setGravity(0, 0, units.force(-GRAVITY))
         c.setPhysicsEngineParameter(numSubSteps=0)  # resetSimulation keeps the old value
-        c.setTimeStep(TIME_STEP)
+        c.setTimeStep(units.time(TIME_STEP))
         turn = np.array(((np.cos(scene.hang_yaw), -np.sin(scene.hang_yaw), 0.0),
                          (np.sin(scene.hang_yaw), np.cos(scene.hang_yaw), 0.0), (0.0, 0.0, 1.0)))
         hung = scene.mesh.vertices @ turn.T
@@ -138,7 +139,7 @@ class BulletWorld(World):
         """Put the robot somewhere, arms ready."""
         self._robot_client.resetSimulation()
         self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
-        self._robot_client.setGravity(0, 0, -9.81)
+        self._robot_client.setGravity(0, 0, -GRAVITY)
         return RobotBody(self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics,
                          time=self.time.time)
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from . import units
 from .gown import GownMesh, edge_counts
 
 STABILITY_MAX = 0.7  # elastic * dt^2 / vertex mass: above it the explicit springs explode (measured, FACTS)
@@ -20,7 +21,7 @@ class Cloth:
     """One gown in a deformable world.
 
     Args:
-        client: BulletClient reset with RESET_USE_DEFORMABLE_WORLD.
+        client: BulletClient reset with RESET_USE_DEFORMABLE_WORLD, in the units of `units`.
         mesh: rest shape; its spec holds mass and stiffness.
         vertices: (V, 3) where it starts, at rest, map frame [m].
         time_step: of the physics [s].
@@ -42,9 +43,10 @@ class Cloth:
                             + "".join("f {} {} {}\n".format(*(face + 1)) for face in mesh.faces))
             self.body: int = client.loadSoftBody(
                 str(path), mass=spec.mass, useMassSpring=1, useBendingSprings=1, useNeoHookean=0,
-                springElasticStiffness=spec.elastic, springDampingStiffness=spec.damping, springDampingAllDirections=1,
-                springBendingStiffness=spec.bending, useSelfCollision=0, frictionCoeff=spec.friction,
-                collisionMargin=MARGIN)
+                springElasticStiffness=units.force(spec.elastic), springDampingStiffness=units.rate(spec.damping),
+                springDampingAllDirections=1, springBendingStiffness=units.force(spec.bending), useSelfCollision=0,
+                frictionCoeff=spec.friction, collisionMargin=MARGIN)
+        client.changeDynamics(self.body, -1, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
         self.edges = np.array(list(edge_counts(mesh.faces)))
         self.rest_lengths = np.linalg.norm(mesh.vertices[self.edges[:, 0]] - mesh.vertices[self.edges[:, 1]], axis=1)
         self.place(vertices)

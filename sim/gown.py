@@ -48,7 +48,7 @@ class GownSpec:
     sleeve: int = 3
     mass: float = 0.45
     elastic: float = 60.0
-    bending: float = 0.1
+    bending: float = 0.0
     damping: float = 0.006
     friction: float = 0.4
 
@@ -69,8 +69,8 @@ GOWNS: dict[str, GownSpec] = {
     spec.name: spec
     for spec in (
         GownSpec(name="medium"),
-        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=70.0, bending=0.12, friction=0.35),
-        GownSpec(name="light", spacing=0.054, mass=0.40, elastic=50.0, bending=0.06, damping=0.005, friction=0.45),
+        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=70.0, friction=0.35),
+        GownSpec(name="light", spacing=0.054, mass=0.40, elastic=50.0, damping=0.005, friction=0.45),
     )
 }
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from . import units
 from .cloth import Cloth
 from .handle import Handle
 from .person import Person
@@ -122,7 +123,7 @@ class Grip:
         self._constraint = self.client.createConstraint(
             self.handle.body, self.handle.link, self.person.body, link, self.client.JOINT_POINT2POINT, (0, 0, 0),
             offset.tolist(), local)
-        self.client.changeConstraint(self._constraint, maxForce=2 * FRICTION_SKIN * force)
+        self.client.changeConstraint(self._constraint, maxForce=units.force(2 * FRICTION_SKIN * force))
         self.kind, self.thickness, self._armed = "arm", 2 * radius, False
         self.part = 1 + 3 * arm + part
         self._arm_link, self._arm_local, self._arm_offset = link, np.array(local), offset
@@ -159,7 +160,7 @@ class Grip:
         return self._cloth_load.copy() if self.kind == "cloth" else np.zeros(3)
 
     def watch(self, vertices: np.ndarray, force: float) -> None:
-        """Feel the load; lose the hold when it passes the pads' friction or the arm has slid out; every control step."""
+        """Feel the load; lose the hold when it passes the pads' friction or the arm has slid out: each control step."""
         if self.kind == "cloth":
             self._cloth_load += SMOOTHING * (self.cloth.load(self._held, vertices) - self._cloth_load)
             if float(np.linalg.norm(self._cloth_load)) > 2 * FRICTION_CLOTH * force:

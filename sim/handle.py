@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from . import units
 from .cloth import GRAVITY
 
-MASS, LINK_MASS = 0.3, 0.1  # of the last link and of the five before it [kg]; lighter ones shake what they hold
+MASS, LINK_MASS = 3.0, 1.0  # of the last link and of the five before it [kg]; lighter ones shake what they hold
 _LINK = 5
 _AXES = (("prismatic", "1 0 0"), ("prismatic", "0 1 0"), ("prismatic", "0 0 1"),
          ("revolute", "0 0 1"), ("revolute", "0 1 0"), ("revolute", "1 0 0"))
@@ -61,11 +62,11 @@ class Handle:
         self._target = np.concatenate([pose_in_map[:3, 3], angles])
         self.client.setJointMotorControlArray(
             self.body, range(6), self.client.POSITION_CONTROL, targetPositions=self._target.tolist(),
-            positionGains=[0.3] * 6, velocityGains=[1.0] * 6, forces=[100.0] * 3 + [5.0] * 3)
+            positionGains=[0.3] * 6, velocityGains=[1.0] * 6, forces=[units.force(300.0)] * 3 + [units.force(20.0)] * 3)
 
     def feel(self) -> None:
         """Take a load reading; once per physics step, after it."""
-        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))])
+        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))]) / units.force(1.0)
         motor[2] -= _LIFTED * GRAVITY
         self._load += _SMOOTHING * (-motor - self._load)
 

@@ -19,6 +19,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from . import units
 from .errors import CaretreeError
 from .world import SIDES, Side
 
@@ -131,15 +132,15 @@ class Person:
             for k, j in enumerate(self.joints[side]):
                 # a velocity motor with target zero and a bounded force is dry friction
                 self.client.setJointMotorControl2(self.body, j, self.client.VELOCITY_CONTROL, targetVelocity=0.0,
-                                                  force=elbow if k == 3 else shoulder)
-                self.client.changeDynamics(self.body, j, jointDamping=self.spec.viscous)
+                                                  force=units.force(elbow if k == 3 else shoulder))
+                self.client.changeDynamics(self.body, j, jointDamping=units.rate(self.spec.viscous))
 
     def swing(self, speed: float) -> None:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
         torque = (3.0 if speed else 1.0) * self.spec.dry_friction[0]
         for side in SIDES:
             self.client.setJointMotorControl2(self.body, self.joints[side][0], self.client.VELOCITY_CONTROL,
-                                              targetVelocity=speed, force=torque)
+                                              targetVelocity=units.rate(speed), force=units.force(torque))
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""

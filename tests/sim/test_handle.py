@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pybullet
 import pytest
+from caretree.sim import units
 from caretree.sim.cloth import GRAVITY, Cloth
 from caretree.sim.gown import GOWNS, build_gown
 from caretree.sim.handle import Handle
@@ -20,9 +21,9 @@ def client():
     """A deformable world."""
     client = BulletClient(pybullet.DIRECT)
     client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
-    client.setGravity(0, 0, -GRAVITY)
+    client.setGravity(0, 0, units.force(-GRAVITY))
     client.setPhysicsEngineParameter(numSubSteps=0)
-    client.setTimeStep(STEP)
+    client.setTimeStep(units.time(STEP))
     yield client
     client.disconnect()
 
