@@ -58,7 +58,7 @@ class Handle:
     def follow(self, pose_in_map: np.ndarray) -> None:
         """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
         turn = pose_in_map[:3, :3] @ self._turn_at_reset.T
-        angles = Rotation.from_matrix(turn).as_euler("ZYX")
+        angles = _nearest(Rotation.from_matrix(turn).as_euler("ZYX"), self._target[3:])
         self._target = np.concatenate([pose_in_map[:3, 3], angles])
         self.client.setJointMotorControlArray(
             self.body, range(6), self.client.POSITION_CONTROL, targetPositions=self._target.tolist(),
@@ -78,6 +78,13 @@ class Handle:
     def position(self) -> np.ndarray:
         """(3,) where it really is [m]."""
         return np.array(self.client.getLinkState(self.body, self.link)[4])
+
+
+def _nearest(angles: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """The turn of `angles` (3,) about z, y, x without a jump from `last`: the motors would spin the cloth round."""
+    ways = [angles, np.array((angles[0] + np.pi, np.pi - angles[1], angles[2] + np.pi))]
+    ways = [way + 2 * np.pi * np.round((last - way) / (2 * np.pi)) for way in ways]
+    return min(ways, key=lambda way: float(np.abs(way - last).max()))
 
 
 def _urdf() -> str:
