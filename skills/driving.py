@@ -3,6 +3,7 @@
     yield from drive_to(self, "bed_right")                     # a waypoint of the map, round what is in the way
     yield from drive_to(self, np.array((0.8, 0.3, -1.57)))     # x, y [m], yaw [rad] in the map
     yield from drive_to(self, pose, straight=True, speed=0.2)  # the straight line, whatever the map says
+    yield from stand_for(self, "right", point)                 # a step to where that hand reaches `point` with ease
 
 Loads on the hands still count: the guard stops the base when the cloth pulls too hard.
 """
@@ -14,6 +15,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..sim.robot import model
+from ..sim.robot.kinematics import planar_pose
+from ..sim.world import Side
 from .motion.drive import PathFollower
 from .motion.errors import PathBlocked
 from .motion.path import path_length, plan_path
@@ -21,6 +24,8 @@ from .reasons import Reason, SkillFailure
 from .skill import Skill
 
 SPEED = float(model.BASE_VELOCITY[0])
+EASE = {"left": np.array((0.95, 0.22)), "right": np.array((0.95, -0.22))}  # in base, where a hand turns freely [m]
+_NEAR_ENOUGH = 0.06  # of a place to stand [m]
 _STUCK = 2.0  # a base that was told to drive and has not moved for so long does not obey [s]
 _MOVED = 0.01  # [m or rad]
 
@@ -71,3 +76,17 @@ def drive_to(skill: Skill, goal: str | np.ndarray, *, speed: float = SPEED, stra
         skill.world.send(follower.command(pose), retreat=retreat)
         yield
     yield from skill.wait(0.2)  # the last command runs out
+
+
+def stand_for(skill: Skill, side: Side, position_in_map: np.ndarray) -> Iterator[None]:
+    """Step without turning to where the hand on `side` reaches a position (3,) with ease.
+
+    Raises:
+        PathBlocked: the base cannot stand there.
+        SkillFailure: COMMAND_LOST when the base does not move.
+    """
+    pose = skill.world.observe().pose_base_in_map
+    offset = planar_pose(pose)[:2, :2] @ EASE[side]
+    goal = np.append(np.asarray(position_in_map)[:2] - offset, pose[2])
+    if np.linalg.norm(goal[:2] - pose[:2]) > _NEAR_ENOUGH:
+        yield from drive_to(skill, goal)

@@ -1,0 +1,49 @@
+"""Stage A: segment the gown on its rail and take it near the hook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..perception.estimates import GraspPoint
+from ..sim.world import Side
+from .context import Context
+from .driving import stand_for
+from .hands import pan_head
+from .pinch import back_off, pinch, reach_in
+from .ports import Input, Output
+from .reasons import Reason, SkillFailure
+from .skill import Skill
+
+
+class SegmentAndGrasp(Skill):
+    """Looks with the head, picks a place near the hanging point and closes the fingers of one hand there.
+
+    Inputs: `side`, the hand; `force`, squeezing [N].  Output: `grasp`, the place it took.  A miss ends with the hand open and drawn back.
+    """
+
+    side = Input(Side)
+    force = Input(float, default=30.0)
+    grasp = Output(GraspPoint)
+    reasons = (Reason.NOTHING_SEEN, Reason.PATH_BLOCKED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED,
+               Reason.GRASP_MISSED, Reason.COMMAND_LOST)
+
+    def steps(self) -> Iterator[None]:
+        """Look, step to where the hand reaches it, reach in, pinch."""
+        self.note("looks for the gown's hanging point")
+        yield from pan_head(self, 0.0)
+        point = self.context.perceive("hang_point", self.world.look("head"))
+        self.note("reaches for the gown")
+        yield from stand_for(self, self.side, point.position_in_map)
+        yield from reach_in(self, self.side, point.position_in_map, point.approach_in_map, point.closing_in_map)
+        try:
+            yield from pinch(self, self.side, force=self.force)
+        except SkillFailure as miss:
+            if miss.reason == Reason.GRASP_MISSED:
+                yield from back_off(self, self.side)
+            raise
+        self.grasp = point
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        return cls("segment and grasp", context, side="right")
