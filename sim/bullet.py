@@ -249,6 +249,8 @@ class BulletWorld(World):
         if self._steps % CONTROL_STEPS == 0:
             self._fingers()
             self._rest()
+            if not self._asleep:
+                self._person.resist()
         if not self._asleep:
             self._step_room()
         self._steps += 1

@@ -48,7 +48,7 @@ class GownSpec:
     sleeve: int = 3
     mass: float = 0.45
     elastic: float = 60.0
-    bending: float = 0.0
+    bending: float = 0.1
     damping: float = 0.006
     friction: float = 0.4
 

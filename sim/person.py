@@ -51,8 +51,8 @@ class PersonSpec:
     lengths: tuple[float, float, float] = (0.28, 0.25, 0.17)
     pose: dict[str, tuple[float, float, float, float]] = field(default_factory=lambda: {
         "left": (0.75, -0.12, -1.3, 0.5), "right": (0.75, -0.12, -1.3, 0.5)})
-    dry_friction: tuple[float, float] = (2.6, 1.2)
-    viscous: float = 1.5
+    dry_friction: tuple[float, float] = (1.4, 1.1)
+    viscous: float = 10.0
 
     def __post_init__(self) -> None:
         """Reject bodies outside the range the scene was built for.
@@ -70,8 +70,8 @@ PERSONS: dict[str, PersonSpec] = {
     spec.name: spec
     for spec in (
         PersonSpec(),
-        PersonSpec(name="small", scale=0.93, mass=15.5, dry_friction=(2.2, 1.0)),
-        PersonSpec(name="stiff", scale=1.03, mass=19.5, dry_friction=(3.6, 1.8), viscous=2.5),
+        PersonSpec(name="small", scale=0.93, mass=15.5, dry_friction=(1.1, 0.9), viscous=8.0),
+        PersonSpec(name="stiff", scale=1.03, mass=19.5, dry_friction=(2.4, 1.8), viscous=12.0),
     )
 }
 
@@ -124,23 +124,30 @@ class Person:
         for link in range(-1, client.getNumJoints(self.body)):
             client.changeDynamics(self.body, link, lateralFriction=0.5, linearDamping=0.0, angularDamping=0.0)
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
-        self._friction()
+            client.changeDynamics(self.body, link, jointDamping=0.0)
+        self._swing = 0.0
+        self.resist()
 
-    def _friction(self) -> None:
-        shoulder, elbow = self.spec.dry_friction
-        for side in SIDES:
-            for k, j in enumerate(self.joints[side]):
-                # a velocity motor with target zero and a bounded force is dry friction
-                self.client.setJointMotorControl2(self.body, j, self.client.VELOCITY_CONTROL, targetVelocity=0.0,
-                                                  force=units.force(elbow if k == 3 else shoulder))
-                self.client.changeDynamics(self.body, j, jointDamping=units.rate(self.spec.viscous))
+    def resist(self) -> None:
+        """Set the joints' friction for their present speeds; every 10 ms or so.
+
+        A velocity motor with target zero and a bounded torque is dry friction; a bound that grows with the speed
+        adds the viscous part.  (Bullet's own joint damping is explicit and shakes these light arms apart.)
+        """
+        dry = [self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)]
+        joints = [j for side in SIDES for j in self.joints[side]]
+        speeds = [abs(state[1]) / units.rate(1.0) for state in self.client.getJointStates(self.body, joints)]
+        torques = [units.force(d + self.spec.viscous * v) for d, v in zip(dry, speeds, strict=True)]
+        targets = [units.rate(self._swing) if k == 0 else 0.0 for _ in SIDES for k in range(4)]
+        if self._swing:
+            torques = [3.0 * torque for torque in torques]
+        self.client.setJointMotorControlArray(self.body, joints, self.client.VELOCITY_CONTROL, targetVelocities=targets,
+                                              forces=torques)
 
     def swing(self, speed: float) -> None:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
-        torque = (3.0 if speed else 1.0) * self.spec.dry_friction[0]
-        for side in SIDES:
-            self.client.setJointMotorControl2(self.body, self.joints[side][0], self.client.VELOCITY_CONTROL,
-                                              targetVelocity=units.rate(speed), force=units.force(torque))
+        self._swing = speed
+        self.resist()
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""
