@@ -52,29 +52,107 @@ _SAGE = ("isaac-sim2real/sage", "4ffd2627df9d23e279b35712a67e629ce0c0dfa7")
 _SYSID = "data/experiment_records/design_C.1/sys_id/20230629/"
 _PARAMETERS = "data/system_identification/identified_parameters/design_C.1/model_1.0/"
 
-CATALOGUE: dict[str, DataSet] = {d.name: d for d in (
-    DataSet(name="emps", what="electro-mechanical axis, 1 kHz, two records", licence="MIT; cite Janot, Gautier, Brunot 2019",
-            files=_github("wmkouw/NSI-EMPS", "d1137b8cc8a5ec3d75fe69c5d531075f7f6f616a", [
-                ("DATA_EMPS.mat", "data/DATA_EMPS.mat", "6cf6814ae1461879"),
-                ("DATA_EMPS_PULSES.mat", "data/DATA_EMPS_PULSES.mat", "0eab75bb1f6b1622")])),
-    DataSet(name="unisa_ur10", what="UR10 joint state, 125 Hz, one run", licence="BSD-3-Clause", files=_github(*_UNISA, [
-        ("ur10_exciting_trajectory.db3", "ur10_inverse_dynamics_solver/bagfiles/ur10_exciting_trajectory.db3",
-         "14244fc39e9b4204")])),
-    DataSet(name="unisa_panda", what="Panda joint state, 30 Hz, one run", licence="BSD-3-Clause", files=_github(*_UNISA, [
-        ("panda_exciting_trajectory.db3", "franka_inria_inverse_dynamics_solver/bagfiles/panda_exciting_trajectory.db3",
-         "6794c9dc89628d77")])),
-    DataSet(name="falling_balls", what="11 balls dropped twice from a bridge, 15 Hz", licence="MIT", files=_github(
-        "briandesilva/discovery-of-physics-from-data", "b79c34317f049c9b47aaf2cc4c54c5ec7219f3d7", [
-            ("Ball_drops_data.xls", "data/Ball_drops_data.xls", "942b2d68abfff382"),
-            ("balls.txt", "data/balls.txt", "7cc282a6559ef636")])),
-    DataSet(name="dfki_double_pendulum", what="two-joint pendulum, 500 Hz, two runs", licence="BSD-3-Clause", files=_github(
-        *_DFKI, [("design_C.1/sys_id_20230629-143339.csv", _SYSID + "20230629-143339/trajectory.csv", "94f17287b53187df"),
-                 ("design_C.1/sys_id_20230629-143601.csv", _SYSID + "20230629-143601/trajectory.csv", "e028c1d7a6a45cfe"),
-                 ("design_C.1/model_1.0_pendubot.urdf", "data/urdfs/design_C.1/model_1.0/pendubot.urdf",
-                  "fc82a76ea04be985")])),
-    DataSet(name="so101_sage", what="SO-101 arm, 50 Hz, commanded and measured", licence="Apache-2.0", files=_github(*_SAGE, [
-        ("static_holding/state_motor.csv", "output/real/so101/custom/static_holding/state_motor.csv", "85e7f6bbdb0f17a9")])),
-)}
+CATALOGUE: dict[str, DataSet] = {
+    d.name: d
+    for d in (
+        DataSet(
+            name="emps",
+            what="electro-mechanical axis, 1 kHz, two records",
+            licence="MIT; cite Janot, Gautier, Brunot 2019",
+            files=_github(
+                "wmkouw/NSI-EMPS",
+                "d1137b8cc8a5ec3d75fe69c5d531075f7f6f616a",
+                [
+                    ("DATA_EMPS.mat", "data/DATA_EMPS.mat", "6cf6814ae1461879"),
+                    ("DATA_EMPS_PULSES.mat", "data/DATA_EMPS_PULSES.mat", "0eab75bb1f6b1622"),
+                ],
+            ),
+        ),
+        DataSet(
+            name="unisa_ur10",
+            what="UR10 joint state, 125 Hz, one run",
+            licence="BSD-3-Clause",
+            files=_github(
+                *_UNISA,
+                [
+                    (
+                        "ur10_exciting_trajectory.db3",
+                        "ur10_inverse_dynamics_solver/bagfiles/ur10_exciting_trajectory.db3",
+                        "14244fc39e9b4204",
+                    )
+                ],
+            ),
+        ),
+        DataSet(
+            name="unisa_panda",
+            what="Panda joint state, 30 Hz, one run",
+            licence="BSD-3-Clause",
+            files=_github(
+                *_UNISA,
+                [
+                    (
+                        "panda_exciting_trajectory.db3",
+                        "franka_inria_inverse_dynamics_solver/bagfiles/panda_exciting_trajectory.db3",
+                        "6794c9dc89628d77",
+                    )
+                ],
+            ),
+        ),
+        DataSet(
+            name="falling_balls",
+            what="11 balls dropped twice from a bridge, 15 Hz",
+            licence="MIT",
+            files=_github(
+                "briandesilva/discovery-of-physics-from-data",
+                "b79c34317f049c9b47aaf2cc4c54c5ec7219f3d7",
+                [
+                    ("Ball_drops_data.xls", "data/Ball_drops_data.xls", "942b2d68abfff382"),
+                    ("balls.txt", "data/balls.txt", "7cc282a6559ef636"),
+                ],
+            ),
+        ),
+        DataSet(
+            name="dfki_double_pendulum",
+            what="two-joint pendulum, 500 Hz, two runs",
+            licence="BSD-3-Clause",
+            files=_github(
+                *_DFKI,
+                [
+                    (
+                        "design_C.1/sys_id_20230629-143339.csv",
+                        _SYSID + "20230629-143339/trajectory.csv",
+                        "94f17287b53187df",
+                    ),
+                    (
+                        "design_C.1/sys_id_20230629-143601.csv",
+                        _SYSID + "20230629-143601/trajectory.csv",
+                        "e028c1d7a6a45cfe",
+                    ),
+                    (
+                        "design_C.1/model_1.0_pendubot.urdf",
+                        "data/urdfs/design_C.1/model_1.0/pendubot.urdf",
+                        "fc82a76ea04be985",
+                    ),
+                ],
+            ),
+        ),
+        DataSet(
+            name="so101_sage",
+            what="SO-101 arm, 50 Hz, commanded and measured",
+            licence="Apache-2.0",
+            files=_github(
+                *_SAGE,
+                [
+                    (
+                        "static_holding/state_motor.csv",
+                        "output/real/so101/custom/static_holding/state_motor.csv",
+                        "85e7f6bbdb0f17a9",
+                    )
+                ],
+            ),
+        ),
+    )
+}
 
 
 def located(dataset: DataSet, data: str | None) -> dict[str, Path]:
@@ -89,16 +167,25 @@ def located(dataset: DataSet, data: str | None) -> dict[str, Path]:
         if root:
             path = Path(root) / dataset.name / source.local
             if not path.is_file():
-                raise GapError(f"{path}: no such file, --data must name a folder that holds {dataset.name}/{source.local}")
+                raise GapError(
+                    f"{path}: no such file, --data must name a folder that holds {dataset.name}/{source.local}"
+                )
         else:
             import pooch
 
             try:
-                path = Path(pooch.retrieve(source.url, known_hash=None, path=pooch.os_cache("caretree") / dataset.name,
-                                           fname=Path(source.local).name))
+                path = Path(
+                    pooch.retrieve(
+                        source.url,
+                        known_hash=None,
+                        path=pooch.os_cache("caretree") / dataset.name,
+                        fname=Path(source.local).name,
+                    )
+                )
             except Exception as error:  # requests raises many kinds
-                raise GapError(f"{source.url}: could not be downloaded ({type(error).__name__}); give a local copy with "
-                               "--data") from None
+                raise GapError(
+                    f"{source.url}: could not be downloaded ({type(error).__name__}); give a local copy with --data"
+                ) from None
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         if not digest.startswith(source.sha256):
             raise GapError(f"{path}: sha256 starts with {digest[:16]}, the published file's with {source.sha256}")

@@ -12,17 +12,25 @@ from .errors import GapError
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = argparse.ArgumentParser(prog="caretree gap", description="Find where simulation and measurement disagree, name the "
-                                  "missing effect, add it to the model and show that the gap shrinks.")
+    top = argparse.ArgumentParser(
+        prog="caretree gap",
+        description="Find where simulation and measurement disagree, name the "
+        "missing effect, add it to the model and show that the gap shrinks.",
+    )
     sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|fetch|bench")
-    for command, text in (("run", "the whole workflow: report.html, verdict.json, model.yaml"),
-                          ("find", "first step: where model and measurement disagree beyond noise")):
+    for command, text in (
+        ("run", "the whole workflow: report.html, verdict.json, model.yaml"),
+        ("find", "first step: where model and measurement disagree beyond noise"),
+    ):
         p = sub.add_parser(command, help=text)
         p.add_argument("set", help="folder with measurement.yaml")
         p.add_argument("--out", required=True, help="folder for the results")
         p.add_argument("--alpha", type=float, default=0.05, help="level of the tests (default 0.05)")
-    for command, text in (("name", "second step: which effect is missing"), ("add", "third step: write model.yaml"),
-                          ("show", "fourth step: held-out gap before and after, report")):
+    for command, text in (
+        ("name", "second step: which effect is missing"),
+        ("add", "third step: write model.yaml"),
+        ("show", "fourth step: held-out gap before and after, report"),
+    ):
         sub.add_parser(command, help=text).add_argument("out", help="folder the step before wrote to")
     p = sub.add_parser("fetch", help="turn a published data set into a measurement set")
     p.add_argument("name", help="data set, or `list`")
@@ -31,10 +39,18 @@ def parser() -> argparse.ArgumentParser:
     p = sub.add_parser("bench", help="the blind benchmark, scored")
     p.add_argument("--system", default="axis,arm,fall", help="comma-separated (default axis,arm,fall)")
     p.add_argument("--seeds", default="0:200", help="first:last (default 0:200)")
-    p.add_argument("--half", choices=("tune", "report", "both"), default="report",
-                   help="even seeds were used to choose thresholds, odd ones are reported (default report)")
-    p.add_argument("--out", default="runs/gap-bench", help="folder for sets, truth and results; finished seeds are kept")
-    p.add_argument("--ablations", action="store_true", help="also score one-shot least squares, STLSQ and the all-terms fit")
+    p.add_argument(
+        "--half",
+        choices=("tune", "report", "both"),
+        default="report",
+        help="even seeds were used to choose thresholds, odd ones are reported (default report)",
+    )
+    p.add_argument(
+        "--out", default="runs/gap-bench", help="folder for sets, truth and results; finished seeds are kept"
+    )
+    p.add_argument(
+        "--ablations", action="store_true", help="also score one-shot least squares, STLSQ and the all-terms fit"
+    )
     p.add_argument("--jobs", type=int, default=1, help="processes")
     return top
 
@@ -94,8 +110,10 @@ def _dispatch(args: argparse.Namespace) -> int:
         else:
             verdict = steps.show(out, _say)
         named = ", ".join(f"{f.name} on {f.target}" for f in verdict.effects) or "none"
-        print(f"{verdict.verdict}: effects {named}; held-out gap {verdict.gap.before:.4g} -> {verdict.gap.after:.4g} "
-              f"{verdict.gap.unit} (floor {verdict.gap.floor:.4g}); {out / 'report.html'}")
+        print(
+            f"{verdict.verdict}: effects {named}; held-out gap {verdict.gap.before:.4g} -> {verdict.gap.after:.4g} "
+            f"{verdict.gap.unit} (floor {verdict.gap.floor:.4g}); {out / 'report.html'}"
+        )
     return 0
 
 

@@ -98,7 +98,11 @@ class Gap:
     def closed(self) -> float:
         """Part of the gap above the floor that is gone, by root mean square; NaN where there was none."""
         above = self.before - self.floor
-        return float(np.clip((self.before - self.after) / above, -9.0, 1.0)) if above > 1e-3 * self.before else float("nan")
+        return (
+            float(np.clip((self.before - self.after) / above, -9.0, 1.0))
+            if above > 1e-3 * self.before
+            else float("nan")
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -93,7 +93,9 @@ def load_set(folder: Path | str) -> MeasurementSet:
     folder = Path(folder)
     file = folder / "measurement.yaml"
     if not file.is_file():
-        raise GapError(f"{file}: no such file, a measurement set is a folder with measurement.yaml and one CSV per episode")
+        raise GapError(
+            f"{file}: no such file, a measurement set is a folder with measurement.yaml and one CSV per episode"
+        )
     try:
         content = yaml.safe_load(file.read_text(encoding="utf-8"))
     except yaml.YAMLError as error:
@@ -128,9 +130,14 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
     if role not in ("", None, *ROLES):
         raise GapError(f"{file}: role of {entry['file']} is {role!r}, it must be one of {', '.join(ROLES)}")
     path = file.parent / entry["file"]
-    return Episode(name=path.stem, file=path, role=role or "", columns=read_table(path),
-                   phases=_phases(file, entry.get("phases")) or shared,
-                   settings={k: v for k, v in entry.items() if k not in ("file", "role", "phases")})
+    return Episode(
+        name=path.stem,
+        file=path,
+        role=role or "",
+        columns=read_table(path),
+        phases=_phases(file, entry.get("phases")) or shared,
+        settings={k: v for k, v in entry.items() if k not in ("file", "role", "phases")},
+    )
 
 
 def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:
@@ -139,8 +146,14 @@ def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:
     if isinstance(listed, dict):
         listed = [{"name": k, "t0": v[0], "t1": v[1]} for k, v in listed.items()]
     try:
-        return tuple(Phase(name=str(p["name"]), t0=float(p.get("t0", p.get("start", 0.0))),
-                           t1=float(p.get("t1", p.get("end", np.inf)))) for p in listed)
+        return tuple(
+            Phase(
+                name=str(p["name"]),
+                t0=float(p.get("t0", p.get("start", 0.0))),
+                t1=float(p.get("t1", p.get("end", np.inf))),
+            )
+            for p in listed
+        )
     except (TypeError, KeyError, ValueError, AttributeError, IndexError):
         raise GapError(f"{file}: `phases` must list entries with name, t0 and t1 [s]") from None
 
@@ -151,7 +164,7 @@ def _with_roles(file: Path, episodes: list[Episode]) -> tuple[Episode, ...]:
         blank = [i for i, e in enumerate(episodes) if e.role == ""]
         if not blank:
             blank = [i for i, e in enumerate(episodes) if e.role == "fit"] or list(range(len(episodes)))
-        for i in blank[-max(1, len(blank) // 3):]:
+        for i in blank[-max(1, len(blank) // 3) :]:
             episodes[i] = replace(episodes[i], role="heldout")
     episodes = [e if e.role else replace(e, role="fit") for e in episodes]
     if all(e.role == "heldout" for e in episodes):

@@ -14,7 +14,10 @@ def state_region(excess: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
 
     Args:
         excess: (T,) squared disagreement.
-        q, v, a, load: (T,) position, velocity, acceleration, model load.
+        q: (T,) position.
+        v: (T,) velocity.
+        a: (T,) acceleration.
+        load: (T,) load of the model.
         dt: [s].
 
     Returns:
@@ -26,13 +29,21 @@ def state_region(excess: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray
     turn = np.zeros(len(v), dtype=bool)
     width = max(1, int(0.08 / dt))
     for i in np.flatnonzero(np.diff(np.sign(v)) != 0):
-        turn[max(0, i - width):i + width] = True
+        turn[max(0, i - width) : i + width] = True
     top, bottom = np.quantile(q, 0.85), np.quantile(q, 0.15)
     heavy = np.quantile(np.abs(load), 0.85)
     sharp = np.quantile(np.abs(a), 0.85)
-    bins = {"reversal": turn, "low speed": speed < 0.15 * fast, "high speed": speed > 0.75 * fast,
-            "high load": np.abs(load) >= heavy, "high acceleration": np.abs(a) >= sharp, "upper end of range": q >= top,
-            "lower end of range": q <= bottom, "forward motion": v > 0.05 * fast, "backward motion": v < -0.05 * fast}
+    bins = {
+        "reversal": turn,
+        "low speed": speed < 0.15 * fast,
+        "high speed": speed > 0.75 * fast,
+        "high load": np.abs(load) >= heavy,
+        "high acceleration": np.abs(a) >= sharp,
+        "upper end of range": q >= top,
+        "lower end of range": q <= bottom,
+        "forward motion": v > 0.05 * fast,
+        "backward motion": v < -0.05 * fast,
+    }
     total = excess.mean() + 1e-30
     lifts = {name: excess[rows].mean() / total for name, rows in bins.items() if 0.02 < rows.mean() < 0.7}
     best = max(lifts, key=lambda k: lifts[k], default="everywhere")
@@ -66,12 +77,16 @@ def scan(energy: np.ndarray, t: np.ndarray, floor: float, join: float) -> list[t
     n = len(energy) // step
     coarse = energy[: n * step].reshape(n, step).mean(axis=1)
     level = np.sqrt(coarse)[:, None] / (np.sqrt(floor) + 1e-30)
-    cuts = ruptures.KernelCPD(kernel="linear", min_size=2).fit(level).predict(pen=4.0 * np.log(n) * max(
-        float(np.median(np.abs(np.diff(level[:, 0])))) ** 2, 1e-6))
+    cuts = (
+        ruptures.KernelCPD(kernel="linear", min_size=2)
+        .fit(level)
+        .predict(pen=4.0 * np.log(n) * max(float(np.median(np.abs(np.diff(level[:, 0])))) ** 2, 1e-6))
+    )
     active = np.zeros(len(energy), dtype=bool)
+    cuts = list(cuts or [n])
     for a, b in zip([0, *cuts[:-1]], cuts, strict=True):
         if coarse[a:b].mean() > 2.0 * floor:
-            active[a * step:b * step] = True
+            active[a * step : b * step] = True
     return intervals(active, t, join, 0.0)
 
 

@@ -7,7 +7,7 @@ the force balance go through the same filter, so that what it removes is removed
 from __future__ import annotations
 
 import numpy as np
-from scipy.fft import irfft, rfft, rfftfreq
+from numpy.fft import irfft, rfft, rfftfreq
 
 ORDER = 4  # of the Butterworth-like gain; squared once, phase zero
 
@@ -35,7 +35,7 @@ def _apply(x: np.ndarray, dt: float, cutoff: float, order: int) -> np.ndarray:
         return np.array(x, dtype=float)
     pad = int(min(n - 1, max(16, np.ceil(4.0 / (cutoff * dt)))))
     head = 2.0 * x[0] - x[pad:0:-1]
-    tail = 2.0 * x[-1] - x[-2:-pad - 2:-1]
+    tail = 2.0 * x[-1] - x[-2 : -pad - 2 : -1]
     extended = np.concatenate([head, x, tail])
     m = len(extended)
     # a straight line through the ends makes the periodic extension continuous
@@ -49,7 +49,7 @@ def _apply(x: np.ndarray, dt: float, cutoff: float, order: int) -> np.ndarray:
         out = out + line
     elif order == 1:
         out = out + (extended[-1] - extended[0]) / ((m - 1) * dt)
-    return out[pad:pad + n]
+    return out[pad : pad + n]
 
 
 def bandwidth(x: np.ndarray, dt: float, margin: float = 6.0) -> tuple[float, float]:

@@ -23,8 +23,17 @@ def find(folder: Path, out: Path, alpha: float, say: Say) -> Study:
     study = open_study(load_set(folder), alpha, cache=out / "cache")
     say("find: noise floor and places")
     p_value, source, where = study.find()
-    _write(out / "find.json", {"set": str(Path(folder).resolve()), "alpha": alpha, "p_value": p_value, "floor_source": source,
-                               "adequate": bool(p_value >= alpha), "where": [w.__dict__ for w in where]})
+    _write(
+        out / "find.json",
+        {
+            "set": str(Path(folder).resolve()),
+            "alpha": alpha,
+            "p_value": p_value,
+            "floor_source": source,
+            "adequate": bool(p_value >= alpha),
+            "where": [w.__dict__ for w in where],
+        },
+    )
     return study
 
 
@@ -33,9 +42,17 @@ def name(out: Path, say: Say, study: Study | None = None) -> Study:
     study = study or _again(out, "find.json")
     say("name: search of the bank")
     verdict, effects, recalibration, guess = study.name()
-    _write(out / "name.json", {"set": str(study.measured.folder.resolve()), "alpha": study.alpha, "verdict": verdict,
-                               "effects": [_finding(f) for f in effects],
-                               "recalibration": [_finding(f) for f in recalibration], "guess": guess})
+    _write(
+        out / "name.json",
+        {
+            "set": str(study.measured.folder.resolve()),
+            "alpha": study.alpha,
+            "verdict": verdict,
+            "effects": [_finding(f) for f in effects],
+            "recalibration": [_finding(f) for f in recalibration],
+            "guess": guess,
+        },
+    )
     return study
 
 

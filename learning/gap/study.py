@@ -43,10 +43,24 @@ class Study(abc.ABC):
         p_value, source, where = self.find()
         verdict, effects, recalibration, guess = self.name()
         gap, forward, placebos, detectable = self.show()
-        return Verdict(set=str(self.measured.folder.name), system=self.measured.system, verdict=verdict, where=where,
-                       effects=effects, recalibration=recalibration, gap=gap, alpha=self.alpha, p_value=p_value,
-                       floor_source=source, guess=guess, placebos=placebos, forward=forward, detectable=detectable,
-                       notes=tuple(self.notes), seconds=seconds)
+        return Verdict(
+            set=str(self.measured.folder.name),
+            system=self.measured.system,
+            verdict=verdict,
+            where=where,
+            effects=effects,
+            recalibration=recalibration,
+            gap=gap,
+            alpha=self.alpha,
+            p_value=p_value,
+            floor_source=source,
+            guess=guess,
+            placebos=placebos,
+            forward=forward,
+            detectable=detectable,
+            notes=tuple(self.notes),
+            seconds=seconds,
+        )
 
 
 def open_study(measured: MeasurementSet, alpha: float = 0.05, cache: Any = None) -> Study:

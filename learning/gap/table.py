@@ -9,6 +9,8 @@ import numpy as np
 
 from .errors import GapError
 
+FEWEST = 12  # rows that can say anything
+
 
 def read_table(path: Path) -> dict[str, np.ndarray]:
     """Columns of a CSV with a header line, first column `t` [s], every cell a finite number.
@@ -24,7 +26,7 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     with path.open(newline="", encoding="utf-8", errors="replace") as file:
         lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
     if not lines:
-        raise GapError(f"{path}: the file is empty, a header line and at least 20 rows are needed")
+        raise GapError(f"{path}: the file is empty, a header line and at least {FEWEST} rows are needed")
     header = [name.strip() for name in lines[0]]
     if header[0] != "t":
         raise GapError(f"{path}: the first column is '{header[0]}', it must be 't' (time in seconds)")
@@ -34,24 +36,30 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     rows = lines[1:]
     for number, row in enumerate(rows, start=2):
         if len(row) != len(header):
-            raise GapError(f"{path}: row {number} has {len(row)} cells, the header has {len(header)} columns "
-                           f"(column '{header[min(len(row), len(header) - 1)]}' is where it ends)")
-    if len(rows) < 20:
-        raise GapError(f"{path}: {len(rows)} rows of data, at least 20 are needed")
+            raise GapError(
+                f"{path}: row {number} has {len(row)} cells, the header has {len(header)} columns "
+                f"(column '{header[min(len(row), len(header) - 1)]}' is where it ends)"
+            )
+    if len(rows) < FEWEST:
+        raise GapError(f"{path}: {len(rows)} rows of data, at least {FEWEST} are needed")
     try:
         data = np.array(rows, dtype=float)
     except ValueError:
-        data = np.array([[_number(path, header[j], i, cell) for j, cell in enumerate(row)]
-                         for i, row in enumerate(rows, start=2)])
+        data = np.array(
+            [[_number(path, header[j], i, cell) for j, cell in enumerate(row)] for i, row in enumerate(rows, start=2)]
+        )
     bad = np.argwhere(~np.isfinite(data))
     if len(bad):
         i, j = bad[0]
-        raise GapError(f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, "
-                       "a finite number is needed")
+        raise GapError(
+            f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, a finite number is needed"
+        )
     back = np.flatnonzero(np.diff(data[:, 0]) <= 0)
     if len(back):
-        raise GapError(f"{path}: column 't', row {back[0] + 3}: time does not increase "
-                       f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})")
+        raise GapError(
+            f"{path}: column 't', row {back[0] + 3}: time does not increase "
+            f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})"
+        )
     return {name: data[:, j] for j, name in enumerate(header)}
 
 

@@ -12,8 +12,10 @@ class BodyWind(BodyEffect):
     """Specific force `-coefficient * |v - w| (v - w)` with w upward at `speed`."""
 
     name = "wind"
-    parameters = (Parameter(name="coefficient", unit="1/m", lower=0.0, upper=20.0),
-                  Parameter(name="speed", unit="m/s", lower=-30.0, upper=30.0))
+    parameters = (
+        Parameter(name="coefficient", unit="1/m", lower=0.0, upper=20.0),
+        Parameter(name="speed", unit="m/s", lower=-30.0, upper=30.0),
+    )
     contains = frozenset({"quadratic_drag"})
     usual_unit = "N s^2/m^2"
     sentence = "drag in air that rises or sinks"

@@ -38,7 +38,9 @@ class EffectBody:
             self._free = [(e.name, e.parameters) for e in effects.effects]
             return
         if effects.system not in ("arm", "axis"):
-            raise EffectError(f"the model file is for system '{effects.system}', a PyBullet body takes arm, axis or fall")
+            raise EffectError(
+                f"the model file is for system '{effects.system}', a PyBullet body takes arm, axis or fall"
+            )
         info = [client.getJointInfo(body, j) for j in range(client.getNumJoints(body))]
         by_name = {i[1].decode(): i for i in info}
         movable = [i for i in info if i[2] in (client.JOINT_REVOLUTE, client.JOINT_PRISMATIC)]
@@ -51,8 +53,9 @@ class EffectBody:
                 mass = client.getDynamicsInfo(body, j)[0]
                 client.changeDynamics(body, j, mass=max(mass + e.parameters["mass"], 1e-4))
             elif JOINT_EFFECTS[e.name].memoryless:
-                self._joints.append((e.name, j, found[16], np.array(found[13]), found[2] == client.JOINT_PRISMATIC,
-                                     e.parameters))
+                self._joints.append(
+                    (e.name, j, found[16], np.array(found[13]), found[2] == client.JOINT_PRISMATIC, e.parameters)
+                )
 
     def apply(self) -> None:
         """Apply this step's forces."""

@@ -24,4 +24,6 @@ class Contact(JointEffect):
         """Thresholds that leave the outer 4 % to 50 % of the range in contact, on both sides."""
         low, high = spread.q
         part = np.array([0.04, 0.08, 0.14, 0.22, 0.32, 0.42, 0.5]) * (high - low)
-        return [{"threshold": high - d, "side": 1.0} for d in part] + [{"threshold": low + d, "side": -1.0} for d in part]
+        return [{"threshold": high - d, "side": 1.0} for d in part] + [
+            {"threshold": low + d, "side": -1.0} for d in part
+        ]

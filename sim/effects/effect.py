@@ -125,4 +125,6 @@ class JointEffect(abc.ABC):
             raise EffectError(f"effect {self.name} has parameters {sorted(values)}, it takes {sorted(wanted)}")
         for name, p in wanted.items():
             if not p.lower <= values[name] <= p.upper:
-                raise EffectError(f"effect {self.name}: {name} = {values[name]:g} is outside {p.lower:g} to {p.upper:g}")
+                raise EffectError(
+                    f"effect {self.name}: {name} = {values[name]:g} is outside {p.lower:g} to {p.upper:g}"
+                )

@@ -18,6 +18,18 @@ from .viscous_friction import ViscousFriction
 
 JOINT_EFFECTS: dict[str, JointEffect] = {
     effect.name: effect
-    for effect in (ViscousFriction(), CoulombFriction(), AsymmetricFriction(), StribeckFriction(), LoadFriction(),
-                   Offset(), GainError(), Delay(), Backlash(), Armature(), Spring(), Contact())
+    for effect in (
+        ViscousFriction(),
+        CoulombFriction(),
+        AsymmetricFriction(),
+        StribeckFriction(),
+        LoadFriction(),
+        Offset(),
+        GainError(),
+        Delay(),
+        Backlash(),
+        Armature(),
+        Spring(),
+        Contact(),
+    )
 }

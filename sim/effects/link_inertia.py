@@ -9,7 +9,7 @@ import numpy as np
 from .effect import EffectError, Parameter
 
 if TYPE_CHECKING:
-    import pinocchio as pin
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
 BODY_PARAMETERS = (Parameter(name="mass", unit="kg"), *(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz"))
 BODY_TERMS = ("payload", "wrong_tool")
@@ -26,7 +26,7 @@ def with_point_mass(model: pin.Model, joint: str, values: dict[str, float]) -> p
     Raises:
         EffectError: the model has no such joint.
     """
-    import pinocchio as pin
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
     index = _joint(model, joint)
     mass = values["mass"]
@@ -53,7 +53,7 @@ def _joint(model: pin.Model, joint: str) -> int:
 
 
 def _changed(model: pin.Model, index: int, change: np.ndarray) -> pin.Model:
-    import pinocchio as pin
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
     out = model.copy()
     out.inertias[index] = pin.Inertia.FromDynamicParameters(model.inertias[index].toDynamicParameters() + change)

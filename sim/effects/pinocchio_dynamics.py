@@ -12,7 +12,7 @@ from .link_inertia import BODY_TERMS, with_point_mass, with_scaled_mass
 from .model_file import EffectModel
 
 if TYPE_CHECKING:
-    import pinocchio as pin
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
 
 class EffectArm:
@@ -51,19 +51,20 @@ class EffectArm:
 
     def inverse(self, t: np.ndarray, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Loads a sensor would read along a motion, (T, n) [N m]; history-dependent effects included."""
-        import pinocchio as pin
+        import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
         rigid = np.array([pin.rnea(self.model, self.data, a, b, c) for a, b, c in zip(q, dq, ddq, strict=True)])
         out = rigid.copy()
         for name, j, values in self._on_joint:
-            motion = JointMotion(t=t, q=q[:, j], dq=dq[:, j], ddq=ddq[:, j], load=rigid[:, j], measured=rigid[:, j],
-                                 slow=self.slow)
+            motion = JointMotion(
+                t=t, q=q[:, j], dq=dq[:, j], ddq=ddq[:, j], load=rigid[:, j], measured=rigid[:, j], slow=self.slow
+            )
             out[:, j] += JOINT_EFFECTS[name].load(motion, values)
         return out
 
     def forward(self, q: np.ndarray, dq: np.ndarray, load: np.ndarray) -> np.ndarray:
         """Acceleration under a load (n,) [rad/s^2]; effects that need history are left out."""
-        import pinocchio as pin
+        import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
         rigid = pin.rnea(self.model, self.data, q, dq, np.zeros(self.model.nv))
         left = np.array(load, dtype=float)

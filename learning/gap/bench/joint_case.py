@@ -23,6 +23,7 @@ def write_joint_case(system: str, seed: int, folder: Path) -> Truth:
     duration = rng.uniform(8.0, 16.0)
     robot = None if system == "axis" else str(rng.choice(ROBOTS))
     truth = Truth(system=system, seed=seed, kind=kind, robot=robot)
+    arm = None
     t = np.arange(0.0, duration, 1.0 / rate)
     if system == "axis":
         mass = rng.uniform(2.0, 120.0)
@@ -32,11 +33,11 @@ def write_joint_case(system: str, seed: int, folder: Path) -> Truth:
         names, header = ["axis"], {"system": "axis", "mass": round(float(mass), 6)}
         truth.effects = [{"name": "mass", "target": "axis", "size": float("nan")}] if kind == "recalibration" else []
     else:
-        motions, loads, names = _arm(rng, robot, t, episodes, kind, truth)
+        motions, loads, names, arm = _arm(rng, robot, t, episodes, kind, truth)
         header = {"system": "arm", "robot": robot}
     clean = np.sqrt(np.mean(np.concatenate(loads) ** 2, axis=0))
     noise = np.maximum(clean, 0.1 * clean.max()) * rng.uniform(0.02, 0.06)
-    added = _effects(rng, system, kind, truth, t, motions, loads, noise, names)
+    added = _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm)
     position_step = rng.choice([0.0, 2e-5, 5e-5]) * (0.2 if system == "axis" else 1.0)
     position_noise = rng.choice([0.0, 1e-5]) * (0.2 if system == "axis" else 1.0)
     give_speed = rng.random() < 0.6
@@ -58,15 +59,20 @@ def write_joint_case(system: str, seed: int, folder: Path) -> Truth:
             table |= {f"dq{j + 1}": v[:, j] for j in range(n)} if give_speed else {}
             table |= {f"tau{j + 1}": total[:, j] for j in range(n)}
         file = folder / f"episode_{e + 1}.csv"
-        np.savetxt(file, np.stack(list(table.values()), axis=1), delimiter=",", header=",".join(table), comments="", fmt="%.8g")
+        np.savetxt(
+            file, np.stack(list(table.values()), axis=1), delimiter=",", header=",".join(table), comments="", fmt="%.8g"
+        )
         entries.append({"file": file.name, "role": "heldout" if e >= episodes - max(1, episodes // 3) else "fit"})
     (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
     return truth
 
 
 def _path(rng: np.random.Generator, t: np.ndarray) -> np.ndarray:
-    return multisine(rng, t, rng.uniform(0.08, 0.2), int(rng.integers(3, 7))) if rng.random() < 0.6 else moves(
-        rng, t, rng.uniform(0.8, 2.5))
+    return (
+        multisine(rng, t, rng.uniform(0.08, 0.2), int(rng.integers(3, 7)))
+        if rng.random() < 0.6
+        else moves(rng, t, rng.uniform(0.8, 2.5))
+    )
 
 
 def _derive(t: np.ndarray, q: np.ndarray):
@@ -78,39 +84,50 @@ def _derive(t: np.ndarray, q: np.ndarray):
 def _arm(rng, robot, t, episodes, kind, truth):
     import sys
 
-    import pinocchio as pin
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
     base = Path(sys.prefix) / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
     base = base / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
-    file = {"ur5": "ur_description/urdf/ur5_robot.urdf", "ur10": "ur_description/urdf/ur10_robot.urdf",
-            "panda": "panda_description/urdf/panda.urdf", "z1": "z1_description/urdf/z1.urdf",
-            "xarm7": "xarm_description/urdf/xarm7.urdf"}[robot]
+    file = {
+        "ur5": "ur_description/urdf/ur5_robot.urdf",
+        "ur10": "ur_description/urdf/ur10_robot.urdf",
+        "panda": "panda_description/urdf/panda.urdf",
+        "z1": "z1_description/urdf/z1.urdf",
+        "xarm7": "xarm_description/urdf/xarm7.urdf",
+    }[robot]
     full = pin.buildModelFromUrdf(str(base / file))
     n = {"panda": 7, "xarm7": 7}.get(robot, 6)
     lock = list(range(n + 1, full.njoints))
     model = pin.buildReducedModel(full, lock, pin.neutral(full)) if lock else full
     motions = []
     low, high = model.lowerPositionLimit, model.upperPositionLimit
-    low, high = np.where(np.isfinite(low), np.maximum(low, -2.5), -2.5), np.where(np.isfinite(high), np.minimum(high, 2.5), 2.5)
+    low, high = (
+        np.where(np.isfinite(low), np.maximum(low, -2.5), -2.5),
+        np.where(np.isfinite(high), np.minimum(high, 2.5), 2.5),
+    )
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     slow = rng.uniform(0.5, 1.2)
     for _ in range(episodes):
-        q = np.stack([centre[j] + 0.55 * half[j] * slow * multisine(rng, t, rng.uniform(0.06, 0.12), int(rng.integers(3, 6)))
-                      for j in range(n)], axis=1)
+        q = np.stack(
+            [
+                centre[j] + 0.55 * half[j] * slow * multisine(rng, t, rng.uniform(0.06, 0.12), int(rng.integers(3, 6)))
+                for j in range(n)
+            ],
+            axis=1,
+        )
         motions.append(_derive(t, q))
     names = list(model.names)[1:]
     actual = model.copy()
     if kind == "recalibration":
         j = int(rng.choice([i for i in range(2, model.njoints - 1) if model.inertias[i].mass > 0.3]))
         factor = 1.0 + rng.choice([-1, 1]) * rng.uniform(0.15, 0.4)
-        actual.inertias[j] = pin.Inertia(model.inertias[j].mass * factor, model.inertias[j].lever,
-                                         model.inertias[j].inertia * factor)
+        actual.inertias[j] = pin.Inertia(
+            model.inertias[j].mass * factor, model.inertias[j].lever, model.inertias[j].inertia * factor
+        )
         truth.effects = [{"name": "mass", "target": names[j - 1], "size": float("nan")}]
     loads = [_rnea(pin, actual, m) for m in motions]
     truth.note = str(n)
-    truth_model = (pin, model)
-    _arm.model = truth_model
-    return motions, loads, names
+    return motions, loads, names, (pin, model)
 
 
 def _rnea(pin, model, motion):
@@ -118,25 +135,30 @@ def _rnea(pin, model, motion):
     return np.array([pin.rnea(model, data, np.ascontiguousarray(a), b, c) for a, b, c in zip(*motion, strict=True)])
 
 
-def _effects(rng, system, kind, truth, t, motions, loads, noise, names):
+def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
     added = [np.zeros_like(u) for u in loads]
     count = {"none": 0, "recalibration": 0, "single": 1, "two": 2, "outside": 1}[kind]
     used = set()
     for _ in range(count):
         size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
-        bank = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
+        bank = (
+            OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
+        )
         name = str(rng.choice([n for n in bank if n not in used]))
         dry = {"coulomb_friction", "asymmetric_friction", "stribeck_friction"}
         used |= dry if name in dry else {name}
         used |= {"offset", "spring"} if name in ("offset", "spring") else set()
         if name in ("payload", "wrong_tool"):
             used |= {"payload", "wrong_tool"}
-            load = _body(rng, name, truth, motions)
+            load = _body(rng, name, arm, motions)
             j = int(np.argmax(np.sqrt(np.mean(np.concatenate(load) ** 2, axis=0)) / noise))
             target = names[-1]
         else:
             j = int(rng.integers(len(names)))
-            trace = [Trace(t=t, q=q[:, j], v=v[:, j], a=a[:, j], u=u[:, j]) for (q, v, a), u in zip(motions, loads, strict=True)]
+            trace = [
+                Trace(t=t, q=q[:, j], v=v[:, j], a=a[:, j], u=u[:, j])
+                for (q, v, a), u in zip(motions, loads, strict=True)
+            ]
             one = shape_of(name, trace, rng)
             load = [np.zeros_like(u) for u in loads]
             for x, y in zip(load, one, strict=True):
@@ -148,8 +170,12 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names):
             scale = 1.0
         if name == "delay":
             shift = min(scale * 1e-3, 0.04)
-            load = [np.stack([np.interp(t - shift, t, u[:, k]) - u[:, k] if k == j else 0 * t for k in range(u.shape[1])], axis=1)
-                    for u in loads]
+            load = [
+                np.stack(
+                    [np.interp(t - shift, t, u[:, k]) - u[:, k] if k == j else 0 * t for k in range(u.shape[1])], axis=1
+                )
+                for u in loads
+            ]
             scale = 1.0
         size = float(scale * np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2)) / noise[j])
         for e, x in enumerate(load):
@@ -157,20 +183,23 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names):
             if name == "contact":
                 active = np.abs(x[:, j]) > 0
                 edges = np.diff(np.concatenate([[0], active.astype(int), [0]]))
-                truth.intervals += [(f"episode_{e + 1}", float(t[a]), float(t[b - 1])) for a, b in
-                                    zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)]
+                truth.intervals += [
+                    (f"episode_{e + 1}", float(t[a]), float(t[b - 1]))
+                    for a, b in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
+                ]
         truth.effects.append({"name": name, "target": target, "size": size})
     return added
 
 
-def _body(rng, name, truth, motions):
-    pin, model = _arm.model
+def _body(rng, name, arm, motions):
+    pin, model = arm
     changed = model.copy()
     last = model.njoints - 1
     if name == "payload":
         com = np.array([rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), rng.uniform(0.0, 0.15)])
         changed.inertias[last] = model.inertias[last] + pin.Inertia(1.0, com, np.zeros((3, 3)))
     else:
-        changed.inertias[last] = pin.Inertia(model.inertias[last].mass * 0.5, model.inertias[last].lever,
-                                             model.inertias[last].inertia * 0.5)
+        changed.inertias[last] = pin.Inertia(
+            model.inertias[last].mass * 0.5, model.inertias[last].lever, model.inertias[last].inertia * 0.5
+        )
     return [_rnea(pin, changed, m) - _rnea(pin, model, m) for m in motions]

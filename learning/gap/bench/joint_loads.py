@@ -49,8 +49,11 @@ def _asymmetric(m, rng):
 def _stribeck(m, rng):
     vs = rng.uniform(0.08, 0.3) * np.quantile(np.abs(np.concatenate([x.v for x in m])), 0.95)
     ratio = rng.uniform(0.8, 2.5)
-    return [(1.0 + ratio / (1.0 + (x.v / vs) ** 2) if rng.random() < 0 else
-             1.0 + ratio * np.exp(-np.abs(x.v / vs) ** 2)) * _sign(x.v) for x in m]
+    return [
+        (1.0 + ratio / (1.0 + (x.v / vs) ** 2) if rng.random() < 0 else 1.0 + ratio * np.exp(-(np.abs(x.v / vs) ** 2)))
+        * _sign(x.v)
+        for x in m
+    ]
 
 
 def _load(m, rng):
@@ -84,7 +87,7 @@ def _backlash(m, rng):
             inside = np.abs(x.q[start:stop] - x.q[start]) < gap
             k = np.flatnonzero(~inside)
             n = k[0] if len(k) else stop - start
-            load[start:start + n] = -x.u[start:start + n]
+            load[start : start + n] = -x.u[start : start + n]
         out.append(load)
     return out
 
@@ -130,13 +133,13 @@ def _warming(m, rng):
 def _place_friction(m, rng):
     q = np.concatenate([x.q for x in m])
     c, w = rng.uniform(q.min(), q.max()), 0.12 * np.ptp(q)
-    return [np.exp(-((x.q - c) / w) ** 2) * _sign(x.v) for x in m]
+    return [np.exp(-(((x.q - c) / w) ** 2)) * _sign(x.v) for x in m]
 
 
 def _centre(m, rng):
     q = np.concatenate([x.q for x in m])
     c, w = np.quantile(q, rng.uniform(0.3, 0.7)), 0.15 * np.ptp(q)
-    return [np.exp(-((x.q - c) / w) ** 2) for x in m]
+    return [np.exp(-(((x.q - c) / w) ** 2)) for x in m]
 
 
 def _wind_up(m, rng):
@@ -151,10 +154,25 @@ def _wind_up(m, rng):
     return out
 
 
-_SHAPES = {"viscous_friction": _viscous, "coulomb_friction": _coulomb, "asymmetric_friction": _asymmetric,
-           "stribeck_friction": _stribeck, "load_friction": _load, "offset": _offset, "gain_error": _gain,
-           "delay": _delay, "backlash": _backlash, "armature": _armature, "spring": _spring, "contact": _contact,
-           "cogging": _cogging, "vibration": _vibration, "warming": _warming, "place_friction": _place_friction,
-           "centre_pull": _centre, "wind_up": _wind_up}
+_SHAPES = {
+    "viscous_friction": _viscous,
+    "coulomb_friction": _coulomb,
+    "asymmetric_friction": _asymmetric,
+    "stribeck_friction": _stribeck,
+    "load_friction": _load,
+    "offset": _offset,
+    "gain_error": _gain,
+    "delay": _delay,
+    "backlash": _backlash,
+    "armature": _armature,
+    "spring": _spring,
+    "contact": _contact,
+    "cogging": _cogging,
+    "vibration": _vibration,
+    "warming": _warming,
+    "place_friction": _place_friction,
+    "centre_pull": _centre,
+    "wind_up": _wind_up,
+}
 INSIDE = tuple(k for k in list(_SHAPES)[:12])
 OUTSIDE = tuple(k for k in list(_SHAPES)[12:])

@@ -37,7 +37,9 @@ def solve(system: str, seed: int, out: Path) -> Path:
     return result
 
 
-def run(systems: list[str], seeds: str, half: str, out: Path, ablations: bool, jobs: int, say: Callable[[str], None]) -> int:
+def run(
+    systems: list[str], seeds: str, half: str, out: Path, ablations: bool, jobs: int, say: Callable[[str], None]
+) -> int:
     """Score seeds first:last of every system and print the table.
 
     Raises:

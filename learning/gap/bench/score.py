@@ -22,22 +22,39 @@ def judge_case(truth: Row, verdict: Row) -> Row:
     hidden = {(e["name"], e["target"]) for e in truth["effects"] if truth["kind"] in ("single", "two")}
     said = {(e["name"], e["target"]) for e in verdict["effects"]}
     sizes = [e["size"] for e in truth["effects"]]
-    return {"system": truth["system"], "seed": truth["seed"], "kind": truth["kind"], "verdict": verdict["verdict"],
-            "hidden": sorted(map(list, hidden)) if hidden else [[e["name"], e["target"]] for e in truth["effects"]],
-            "said": sorted(map(list, said)), "size": min(sizes) if sizes else 0.0,
-            "exact": verdict["verdict"] != "unknown" and said == hidden,
-            "up_to_equivalents": verdict["verdict"] != "unknown" and _equivalent(hidden, verdict["effects"]),
-            "joint": hidden <= said or {t for _, t in hidden} == {t for _, t in said},
-            "false_alarm": truth["kind"] in ("none", "recalibration") and bool(said or verdict["verdict"] == "unknown"),
-            "overlap": _overlap(truth, verdict), "closed": verdict["gap"].get("closed"),
-            "seconds": verdict.get("seconds", 0.0)}
+    return {
+        "system": truth["system"],
+        "seed": truth["seed"],
+        "kind": truth["kind"],
+        "verdict": verdict["verdict"],
+        "hidden": sorted(map(list, hidden)) if hidden else [[e["name"], e["target"]] for e in truth["effects"]],
+        "said": sorted(map(list, said)),
+        "size": min(sizes) if sizes else 0.0,
+        "exact": verdict["verdict"] != "unknown" and said == hidden,
+        "up_to_equivalents": verdict["verdict"] != "unknown" and _equivalent(hidden, verdict["effects"]),
+        "joint": hidden <= said or {t for _, t in hidden} == {t for _, t in said},
+        "false_alarm": truth["kind"] in ("none", "recalibration") and bool(said or verdict["verdict"] == "unknown"),
+        "overlap": _overlap(truth, verdict),
+        "closed": verdict["gap"].get("closed"),
+        "seconds": verdict.get("seconds", 0.0),
+    }
 
 
 def _equivalent(hidden: set[tuple[str, str]], effects: list[Row]) -> bool:
     """Whether swapping effects for their reported equivalents gives the hidden set."""
-    options = [[frozenset({(e["name"], e["target"])}),
-                *(frozenset((part.split(" of ")[0], part.split(" of ")[1] if " of " in part else e["target"])
-                            for part in q.split(" + ")) for q in e.get("equivalent", []))] for e in effects]
+    options = [
+        [
+            frozenset({(e["name"], e["target"])}),
+            *(
+                frozenset(
+                    (part.split(" of ")[0], part.split(" of ")[1] if " of " in part else e["target"])
+                    for part in q.split(" + ")
+                )
+                for q in e.get("equivalent", [])
+            ),
+        ]
+        for e in effects
+    ]
     reached = {frozenset()}
     for choices in options[:6]:
         reached = {r | c for r in reached for c in choices}
@@ -45,7 +62,7 @@ def _equivalent(hidden: set[tuple[str, str]], effects: list[Row]) -> bool:
 
 
 def _overlap(truth: Row, verdict: Row) -> float | None:
-    """Intersection over union of the hidden intervals and those found on the hidden target; None where nothing is local."""
+    """Intersection over union of hidden intervals and those found on the hidden target; None where none is hidden."""
     if not truth["intervals"]:
         return None
     target = next((e["target"] for e in truth["effects"] if e["name"] in ("contact", "snag")), None)
@@ -75,33 +92,62 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
         none = [r for r in mine if r["kind"] in ("none", "recalibration")]
         outside = [r for r in mine if r["kind"] == "outside"]
         local = [r for r in mine if r["overlap"] is not None and r["size"] >= 2.0]
-        for question, asked, key in (("single effect, size >= 2, exact set", big, "exact"),
-                                     ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
-                                     ("single effect, size < 2, exact set", small, "exact"),
-                                     ("two effects, exact set", two, "exact"),
-                                     ("two effects, up to stated equivalents", two, "up_to_equivalents"),
-                                     ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
-                                     ("false alarm where nothing is missing", none, "false_alarm"),
-                                     ("right joint, single effect, size >= 2", big, "joint")):
+        for question, asked, key in (
+            ("single effect, size >= 2, exact set", big, "exact"),
+            ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
+            ("single effect, size < 2, exact set", small, "exact"),
+            ("two effects, exact set", two, "exact"),
+            ("two effects, up to stated equivalents", two, "up_to_equivalents"),
+            ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
+            ("false alarm where nothing is missing", none, "false_alarm"),
+            ("right joint, single effect, size >= 2", big, "joint"),
+        ):
             if asked:
                 hits = sum(bool(r[key]) for r in asked)
                 out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
         recalibrated = [r for r in mine if r["kind"] == "recalibration"]
-        for question, asked, good in (("recalibration named as such", recalibrated, "recalibration"),
-                                      ("unknown on effects outside the bank", outside, "unknown")):
+        for question, asked, good in (
+            ("recalibration named as such", recalibrated, "recalibration"),
+            ("unknown on effects outside the bank", outside, "unknown"),
+        ):
             if asked:
                 hits = sum(r["verdict"] == good for r in asked)
                 out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
         if local:
             hits = sum(r["overlap"] >= 0.7 for r in local)
-            out.append(("interval overlap at least 0.7, size >= 2", system, hits, len(local), hits / len(local),
-                        *interval(hits, len(local))))
+            out.append(
+                (
+                    "interval overlap at least 0.7, size >= 2",
+                    system,
+                    hits,
+                    len(local),
+                    hits / len(local),
+                    *interval(hits, len(local)),
+                )
+            )
         closed = np.array([r["closed"] for r in big if r["closed"] is not None])
         if len(closed):
             draws = np.median(np.random.default_rng(0).choice(closed, (500, len(closed))), axis=1)
-            out.append(("median part of the gap closed, size >= 2", system, len(closed), len(closed),
-                        float(np.median(closed)), *(float(x) for x in np.quantile(draws, [0.025, 0.975]))))
+            out.append(
+                (
+                    "median part of the gap closed, size >= 2",
+                    system,
+                    len(closed),
+                    len(closed),
+                    float(np.median(closed)),
+                    *(float(x) for x in np.quantile(draws, [0.025, 0.975])),
+                )
+            )
         seconds = np.array([r["seconds"] for r in mine])
-        out.append(("seconds per set, median and range", system, len(mine), len(mine), float(np.median(seconds)),
-                    float(seconds.min()), float(seconds.max())))
+        out.append(
+            (
+                "seconds per set, median and range",
+                system,
+                len(mine),
+                len(mine),
+                float(np.median(seconds)),
+                float(seconds.min()),
+                float(seconds.max()),
+            )
+        )
     return out

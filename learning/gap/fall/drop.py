@@ -48,5 +48,7 @@ def height(t: np.ndarray, table: np.ndarray, release_height: float, release_t: f
     i = np.minimum((since / STEP).astype(int), len(table) - 2)
     rest = since - table[i, 0]
     acceleration = (table[i + 1, 2] - table[i, 2]) / STEP
-    return (release_height - (table[i, 1] + table[i, 2] * rest + 0.5 * acceleration * rest**2),
-            table[i, 2] + acceleration * rest)
+    return (
+        release_height - (table[i, 1] + table[i, 2] * rest + 0.5 * acceleration * rest**2),
+        table[i, 2] + acceleration * rest,
+    )

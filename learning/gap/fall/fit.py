@@ -54,7 +54,7 @@ def unpack(names: tuple[str, ...], theta: np.ndarray) -> dict[str, dict[str, flo
     out, at = {}, 0
     for name in names:
         parameters = BODY_EFFECTS[name].parameters
-        out[name] = {p.name: float(x) for p, x in zip(parameters, theta[at:at + len(parameters)], strict=True)}
+        out[name] = {p.name: float(x) for p, x in zip(parameters, theta[at : at + len(parameters)], strict=True)}
         at += len(parameters)
     return out
 
@@ -68,8 +68,13 @@ def table_of(values: dict[str, dict[str, float]], duration: float) -> tuple[np.n
     return table, 1.0 + values.get("gain_error", {"fraction": 0.0})["fraction"]
 
 
-def fit_drops(drops: list[Drop], names: tuple[str, ...], mode: str = "free", start: np.ndarray | None = None,
-              late: float | None = None) -> DropFit:
+def fit_drops(
+    drops: list[Drop],
+    names: tuple[str, ...],
+    mode: str = "free",
+    start: np.ndarray | None = None,
+    late: float | None = None,
+) -> DropFit:
     """Least squares over effects and releases.
 
     Args:
@@ -81,7 +86,7 @@ def fit_drops(drops: list[Drop], names: tuple[str, ...], mode: str = "free", sta
     """
     parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
     theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
-    k, moving, e = len(parameters), 0 if start is not None else len(parameters), len(drops)
+    moving, e = 0 if start is not None else len(parameters), len(drops)
     instants = {"together": 0, "late": 0 if late is not None else 1, "free": e}[mode]
     duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
     first = np.concatenate([theta[:moving], [d.h[:3].mean() for d in drops], np.zeros(instants)])
@@ -89,9 +94,9 @@ def fit_drops(drops: list[Drop], names: tuple[str, ...], mode: str = "free", sta
     high = np.concatenate([[p.upper for p in parameters][:moving], [np.inf] * e, [RELEASE] * instants])
 
     def split(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        tail = x[moving + e:]
+        tail = x[moving + e :]
         release = tail if mode == "free" else np.full(e, tail[0] if instants else (late or 0.0))
-        return np.concatenate([x[:moving], theta[moving:]]), x[moving:moving + e], release
+        return np.concatenate([x[:moving], theta[moving:]]), x[moving : moving + e], release
 
     def model(x: np.ndarray) -> tuple[np.ndarray, list[np.ndarray], float]:
         values, tops, release = split(x)
@@ -123,10 +128,24 @@ def fit_drops(drops: list[Drop], names: tuple[str, ...], mode: str = "free", sta
         return J
 
     first[:moving] = np.clip(first[:moving], low[:moving] + 1e-9, high[:moving] - 1e-9)
-    solved = least_squares(residual, first, jac=jacobian, bounds=(low, high), x_scale="jac", max_nfev=60)
+    solved = least_squares(
+        residual,
+        first,
+        jac=jacobian,  # pyright: ignore[reportArgumentType] - scipy's stubs know strings only
+        bounds=(low, high),
+        x_scale="jac",
+        max_nfev=60,
+    )
     r = residual(solved.x)
     values, tops, release = split(solved.x)
     ends = np.cumsum([len(d.t) for d in drops])[:-1]
-    return DropFit(names=names, mode=mode, values=unpack(names, values), theta=values,
-                   releases=np.stack([tops, release], axis=1), residuals=np.split(-r, ends),
-                   jacobian=jacobian(solved.x), rss=float(r @ r))
+    return DropFit(
+        names=names,
+        mode=mode,
+        values=unpack(names, values),
+        theta=values,
+        releases=np.stack([tops, release], axis=1),
+        residuals=np.split(-r, ends),
+        jacobian=jacobian(solved.x),
+        rss=float(r @ r),
+    )

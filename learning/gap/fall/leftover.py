@@ -27,7 +27,7 @@ def repeating(fit: DropFit, times: list[np.ndarray], widening_of) -> tuple[float
     since = [np.maximum(t - r, 0.0) for t, r in zip(times, fit.releases[:, 1], strict=True)]
     end = max(float(s[-1]) for s in since)
     knots = np.concatenate([[0.0] * 3, np.linspace(0.0, end, PIECES - 2), [end] * 3])
-    pieces = [BSpline.basis_element(knots[i:i + 5], extrapolate=False) for i in range(PIECES)]
+    pieces = [BSpline.basis_element(knots[i : i + 5], extrapolate=False) for i in range(PIECES)]
     grid = np.linspace(0.0, end, 600)
     step = grid[1]
     bumps = np.stack([np.nan_to_num(b(grid)) for b in pieces], axis=1)

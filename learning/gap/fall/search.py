@@ -21,6 +21,7 @@ SEARCHED = ("linear_drag", "quadratic_drag", "buoyancy", "gain_error", "wind")
 IMPOSSIBLE = ({"quadratic_drag", "wind"}, {"buoyancy", "gain_error"})
 PLAUSIBLE = {"gain_error": ("fraction", 0.0, 0.03), "buoyancy": ("fraction", 0.0, 0.03), "wind": ("speed", 0.0, 3.0)}
 ALPHA = 0.05
+FITTED = 1.3
 MATERIAL = 0.15  # an effect's own part over the noise, root mean square
 
 
@@ -71,22 +72,24 @@ def widening_of(residuals: list[np.ndarray]) -> float:
     for k in range(1, max(2, min(len(r) for r in residuals) // 4)):
         running += 2.0 * sum(float(r[k:] @ r[:-k]) for r in residuals) / zero
         best = max(best, running)
-    return max((1.0 + first) / (1.0 - first), best)
+    # fitted residuals forget faster than the noise did
+    return max((1.0 + first) / (1.0 - first), best) * FITTED
 
 
 def search(drops: list[Drop], mass: float | None, diameter: float | None) -> DropSearch:
     """Fit every plausible set and rank them."""
     sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
     sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
-    fits = [fit_drops(drops, names, mode) for mode in MODES for names in sets
-            if mode != "late" or len(drops) >= 3]  # one or two drops cannot tell late from each at its own instant
+    fits = [
+        fit_drops(drops, names, mode) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3
+    ]  # one or two drops cannot tell late from each at its own instant
     rows = sum(len(d.t) for d in drops)
     cleanest = min(fits, key=lambda f: f.rss)
     spent = len(cleanest.theta) + 2 * len(drops)
     floor2 = cleanest.rss / max(rows - spent, 1)
     widening = widening_of(cleanest.residuals)
     worth = max(rows - spent, 4) / widening
-    price = max(float(chi2.isf(ALPHA / (2.0 * len(SEARCHED)), 1)), worth * MATERIAL**2)
+    price = max(float(chi2.isf(ALPHA / (2.0 * len(SEARCHED) * len(MODES)), 1)), worth * MATERIAL**2)
     candidates = []
     for fit in fits:
         instants = {"together": 0, "late": 1, "free": len(drops)}[fit.mode]
@@ -94,7 +97,9 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
         score += implausibility(fit, mass, diameter)
         candidates.append(Candidate(fit=fit, score=float(score)))
     candidates.sort(key=lambda c: c.score)
-    return DropSearch(candidates=tuple(candidates), widening=widening, price=price, floor=float(np.sqrt(floor2)), rows=rows)
+    return DropSearch(
+        candidates=tuple(candidates), widening=widening, price=price, floor=float(np.sqrt(floor2)), rows=rows
+    )
 
 
 def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> float:

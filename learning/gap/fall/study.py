@@ -37,8 +37,10 @@ def drop_of(episode: Episode) -> Drop:
     jump = np.abs(np.diff(h))
     row = int(np.argmax(jump))
     if jump[row] > 50.0 * max(step, 0.02) * 5.0:
-        raise GapError(f"{episode.file}: column 'h', row {row + 3} jumps by {jump[row]:g} in {step:g} s, "
-                       "it must be a height in metres")
+        raise GapError(
+            f"{episode.file}: column 'h', row {row + 3} jumps by {jump[row]:g} in {step:g} s, "
+            "it must be a height in metres"
+        )
     lowest = int(np.argmin(h))
     if lowest < len(h) - 2 and h[-1] - h[lowest] > 0.03 * np.ptp(h):  # it bounced: only the fall is modelled
         t, h = t[:lowest], h[:lowest]
@@ -87,8 +89,11 @@ class FallStudy(Study):
         out = {}
         for name in fit.names:
             without = fit_drops(self.fitted, tuple(n for n in fit.names if n != name), fit.mode)
-            parts = [(np.sum(a**2), np.sum(b**2)) for x, y in zip(without.residuals, fit.residuals, strict=True)
-                     for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)]
+            parts = [
+                (np.sum(a**2), np.sum(b**2))
+                for x, y in zip(without.residuals, fit.residuals, strict=True)
+                for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)
+            ]
             table = np.array(parts)
             size = len(BODY_EFFECTS[name].parameters)
             worth = self.found.rows / self.found.widening
@@ -108,7 +113,7 @@ class FallStudy(Study):
         J = self.chosen.jacobian
         step = float(np.median(np.diff(self.fitted[0].t)))
         own = np.sqrt(np.maximum(np.diag(np.linalg.pinv(J.T @ J)), 0.0) * self.found.widening) * self.found.floor
-        own = own[len(self.chosen.theta) + len(instants):]
+        own = own[len(self.chosen.theta) + len(instants) :]
         mean = float(instants.mean())
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
         scatter = float(instants.var(ddof=1)) / len(instants) if self.chosen.mode == "free" else 0.0
@@ -135,11 +140,23 @@ class FallStudy(Study):
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
-        none = min((c for c in self.found.candidates if not c.fit.names and c.fit.mode == "together"),
-                   key=lambda c: c.score).fit if self.late else self.found.given
+        none = (
+            min(
+                (c for c in self.found.candidates if not c.fit.names and c.fit.mode == "together"),
+                key=lambda c: c.score,
+            ).fit
+            if self.late
+            else self.found.given
+        )
         worth = self.found.rows / self.found.widening
-        p = min(1.0, min(15.0 * float(chi2.sf(worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
-                         for c in self.found.candidates if c.fit.names))
+        p = min(
+            1.0,
+            min(
+                15.0 * float(chi2.sf(worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
+                for c in self.found.candidates
+                if c.fit.names
+            ),
+        )
         if self.verdict == "adequate":
             p = max(p, self.alpha)
         elif self.verdict == "unknown":
@@ -149,11 +166,20 @@ class FallStudy(Study):
             phases = {e.name: e.phases for e in self.measured.episodes}
             for d, r, (_, start) in zip(self.fitted, none.residuals, none.releases, strict=True):
                 late = d.t >= max(start, 0.0)
-                places.append(Where(channel="h", target="body", episode=d.name, t0=float(max(start, 0.0)),
-                                    t1=float(d.t[-1]), state_region="high speed", p_value=p,
-                                    phase=phase_of(phases[d.name], float(start), float(d.t[-1])),
-                                    size=float(np.sqrt(np.mean(r[late] ** 2)) / self.found.floor),
-                                    effect=self.chosen.names[0] if self.chosen.names else ""))
+                places.append(
+                    Where(
+                        channel="h",
+                        target="body",
+                        episode=d.name,
+                        t0=float(max(start, 0.0)),
+                        t1=float(d.t[-1]),
+                        state_region="high speed",
+                        p_value=p,
+                        phase=phase_of(phases[d.name], float(start), float(d.t[-1])),
+                        size=float(np.sqrt(np.mean(r[late] ** 2)) / self.found.floor),
+                        effect=self.chosen.names[0] if self.chosen.names else "",
+                    )
+                )
         return p, "residual", tuple(places)
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
@@ -172,29 +198,61 @@ class FallStudy(Study):
                 at += 1
             if self.mass and effect.per_mass:
                 first = values[0]
-                values.append(Value(name="coefficient_with_mass", unit=effect.usual_unit, value=first.value * self.mass,
-                                    low=first.low * self.mass, high=first.high * self.mass))
+                values.append(
+                    Value(
+                        name="coefficient_with_mass",
+                        unit=effect.usual_unit,
+                        value=first.value * self.mass,
+                        low=first.low * self.mass,
+                        high=first.high * self.mass,
+                    )
+                )
             others = equals(self.found, name)
             without = fit_drops(self.fitted, tuple(n for n in self.chosen.names if n != name), self.chosen.mode)
             own = np.sqrt(max(without.rss - self.chosen.rss, 0.0) / self.found.rows)
             first_value = values[0].value
-            smallest = np.sqrt(self.found.price * self.found.widening / max(
-                self.found.rows * np.log(without.rss / self.chosen.rss), 1e-9))
-            out.append(EffectFinding(name=name, target="body", parameters=tuple(values), confidence=kept[name],
-                                     equivalent=tuple(n for n, _ in others), size=float(own / self.found.floor),
-                                     smallest=float(smallest) if first_value else float("nan"),
-                                     experiment=self._experiment(self.chosen, others[0]) if others else ""))
+            smallest = np.sqrt(
+                self.found.price
+                * self.found.widening
+                / max(self.found.rows * np.log(without.rss / self.chosen.rss), 1e-9)
+            )
+            out.append(
+                EffectFinding(
+                    name=name,
+                    target="body",
+                    parameters=tuple(values),
+                    confidence=kept[name],
+                    equivalent=tuple(n for n, _ in others),
+                    size=float(own / self.found.floor),
+                    smallest=float(smallest) if first_value else float("nan"),
+                    experiment=self._experiment(self.chosen, others[0]) if others else "",
+                )
+            )
         if self.late:
             mean, low, high = self.late
-            out.append(EffectFinding(name="delay", target="body", size=float("nan"),
-                                     parameters=(Value(name="time", unit="s", value=mean, low=low, high=high),)))
+            out.append(
+                EffectFinding(
+                    name="delay",
+                    target="body",
+                    size=float("nan"),
+                    parameters=(Value(name="time", unit="s", value=mean, low=low, high=high),),
+                )
+            )
         names = {f.name for f in out}
         if names & {"linear_drag", "quadratic_drag"} and any("drag" in n for f in out for n in f.equivalent):
-            self.notes.append("Over one range of speeds linear and quadratic drag look alike; which fits better here says "
-                              "little about which acts.")
+            self.notes.append(
+                "Over one range of speeds linear and quadratic drag look alike; which fits better here says "
+                "little about which acts."
+            )
         energy, _, when = self.leftover
-        guess = (f"a force that repeats from drop to drop, largest about {when:.2f} s after release, "
-                 f"{np.sqrt(max(energy, 0.0)):.3g} m root mean square") if self.verdict == "unknown" else ""
+        guess = (
+            (
+                f"a force that repeats from drop to drop, largest about {when:.2f} s after release, "
+                f"{np.sqrt(max(energy, 0.0)):.3g} m root mean square"
+            )
+            if self.verdict == "unknown"
+            else ""
+        )
         return self.verdict, tuple(out), (), guess
 
     def _experiment(self, fit: DropFit, other: tuple[str, DropFit]) -> str:
@@ -232,22 +290,40 @@ class FallStudy(Study):
         """See `Study.show`."""
         before, after = self._compared()
         b, a = np.concatenate(before.residuals), np.concatenate(after.residuals)
-        rows = [(np.sum(x**2), np.sum(y**2)) for p, q in zip(before.residuals, after.residuals, strict=True)
-                for x, y in zip(np.array_split(p, 5), np.array_split(q, 5), strict=True)]
+        rows = [
+            (np.sum(x**2), np.sum(y**2))
+            for p, q in zip(before.residuals, after.residuals, strict=True)
+            for x, y in zip(np.array_split(p, 5), np.array_split(q, 5), strict=True)
+        ]
         table, rng = np.array(rows), np.random.default_rng(0)
-        ratio = [np.sqrt(s[1] / max(s[0], 1e-30)) for s in
-                 (table[rng.integers(len(table), size=len(table))].sum(axis=0) for _ in range(300))]
+        ratio = [
+            np.sqrt(s[1] / max(s[0], 1e-30))
+            for s in (table[rng.integers(len(table), size=len(table))].sum(axis=0) for _ in range(300))
+        ]
         low, high = np.quantile(ratio, [0.025, 0.975])
         rms = lambda x: float(np.sqrt(np.mean(x**2)))  # noqa: E731
         floor = float(min(self.found.floor, rms(a)))
-        gap = Gap(unit="m", floor=floor, before=rms(b), after=rms(a), low=float(low), high=float(high),
-                  channels={"h": {"floor": floor, "before": rms(b), "after": rms(a)}})
+        gap = Gap(
+            unit="m",
+            floor=floor,
+            before=rms(b),
+            after=rms(a),
+            low=float(low),
+            high=float(high),
+            channels={"h": {"floor": floor, "before": rms(b), "after": rms(a)}},
+        )
         controls = []
         if self.chosen.names:
             wrong = np.array([-0.5 * x for x in self.chosen.theta])
-            turned = fit_drops(self.heldout, self.chosen.names, after.mode, start=wrong, late=self.late[0] if self.late else None)
-            controls.append(Placebo(what=f"{' + '.join(self.chosen.names)} with half the size and the wrong sign, against the model as given",
-                                    ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12)))
+            turned = fit_drops(
+                self.heldout, self.chosen.names, after.mode, start=wrong, late=self.late[0] if self.late else None
+            )
+            controls.append(
+                Placebo(
+                    what=f"{' + '.join(self.chosen.names)} half the size, wrong sign, against the model as given",
+                    ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12),
+                )
+            )
         return gap, None, tuple(controls), self._detectable()
 
     def _detectable(self) -> dict[str, str]:
@@ -279,15 +355,26 @@ class FallStudy(Study):
         late = self.late[0] if self.late else None
         mode = "late" if late is not None else self.chosen.mode
         given = self.found.given.mode if late is None else "together"
-        return (fit_drops(self.heldout, (), given),
-                fit_drops(self.heldout, self.chosen.names, mode, start=self.chosen.theta, late=late))
+        return (
+            fit_drops(self.heldout, (), given),
+            fit_drops(self.heldout, self.chosen.names, mode, start=self.chosen.theta, late=late),
+        )
 
     def curves(self) -> list[Curve]:
         """Held-out drops."""
         before, after = self._compared()
-        return [Curve(title=f"height, held-out {d.name}", unit="m", t=d.t, measured=d.h, before=d.h - x, after=d.h - y,
-                      floor=self.found.floor)
-                for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]]
+        return [
+            Curve(
+                title=f"height, held-out {d.name}",
+                unit="m",
+                t=d.t,
+                measured=d.h,
+                before=d.h - x,
+                after=d.h - y,
+                floor=self.found.floor,
+            )
+            for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]
+        ]
 
 
 def _between(shifted: DropFit, plain: DropFit, drop: Drop) -> np.ndarray:

@@ -21,10 +21,18 @@ def write(files: dict[str, Path], out: Path) -> list[Path]:
             header, *rows = list(csv.reader(file))
         data = {k: np.array([float(r[i]) for r in rows]) for i, k in enumerate(header)}
         moved = np.concatenate([[True], np.diff(data["time"]) > 0])
-        episodes.append((path.stem, role, {
-            "t": data["time"][moved], **{f"q{j}": data[f"pos_meas{j}"][moved] for j in (1, 2)},
-            **{f"dq{j}": data[f"vel_meas{j}"][moved] for j in (1, 2)},
-            **{f"tau{j}": data[f"tau_meas{j}"][moved] for j in (1, 2)}}))
+        episodes.append(
+            (
+                path.stem,
+                role,
+                {
+                    "t": data["time"][moved],
+                    **{f"q{j}": data[f"pos_meas{j}"][moved] for j in (1, 2)},
+                    **{f"dq{j}": data[f"vel_meas{j}"][moved] for j in (1, 2)},
+                    **{f"tau{j}": data[f"tau_meas{j}"][moved] for j in (1, 2)},
+                },
+            )
+        )
     urdf = next(p for k, p in files.items() if k.endswith(".urdf"))
     text = urdf.read_text()
     if '<link name="world"' not in text:  # the published file welds its base to a link it does not declare

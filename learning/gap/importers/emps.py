@@ -1,4 +1,4 @@
-"""The electro-mechanical positioning system: one axis, two records of 24.8 s; the second has pulses in its controller."""
+"""The electro-mechanical positioning system: one axis, two records of 24.8 s; the second has controller pulses."""
 
 from __future__ import annotations
 
@@ -17,7 +17,22 @@ def write(files: dict[str, Path], out: Path) -> list[Path]:
 
     episodes = []
     for name, role in (("DATA_EMPS", "fit"), ("DATA_EMPS_PULSES", "heldout")):
-        d = {k: np.asarray(v, dtype=float).ravel() for k, v in loadmat(files[f"{name}.mat"]).items() if not k.startswith("__")}
-        episodes.append((name.lower(), role, {"t": d["t"], "q": d["qm"], "force": d["gtau"][0] * d["vir"],
-                                              "reference": d["qg"], "voltage": d["vir"]}))
+        d = {
+            k: np.asarray(v, dtype=float).ravel()
+            for k, v in loadmat(files[f"{name}.mat"]).items()
+            if not k.startswith("__")
+        }
+        episodes.append(
+            (
+                name.lower(),
+                role,
+                {
+                    "t": d["t"],
+                    "q": d["qm"],
+                    "force": d["gtau"][0] * d["vir"],
+                    "reference": d["qg"],
+                    "voltage": d["vir"],
+                },
+            )
+        )
     return [write_set(out, {"system": "axis", "mass": MASS}, episodes)]

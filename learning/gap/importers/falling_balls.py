@@ -10,10 +10,18 @@ import numpy as np
 from .setting import write_set
 
 OUNCE, CENTIMETRE = 0.028349523, 0.01
-KNOWN = {"Baseball": "baseball", "Blue Basketball": "bluebasketball", "Green Basketball": "greenbasketball",
-         "Bowling Ball": "heavyBowling", "Golf Ball": "golfball", "Tennis Ball": "tennisball",
-         "Whiffle Ball 1": "wiffleball1", "Whiffle Ball 2": "wiffleball2", "Yellow Whiffle Ball": "yellowWiffle",
-         "Orange Whiffle Ball": "orangeWiffle"}  # the list has two bowling balls; which was dropped is not said
+KNOWN = {
+    "Baseball": "baseball",
+    "Blue Basketball": "bluebasketball",
+    "Green Basketball": "greenbasketball",
+    "Bowling Ball": "heavyBowling",
+    "Golf Ball": "golfball",
+    "Tennis Ball": "tennisball",
+    "Whiffle Ball 1": "wiffleball1",
+    "Whiffle Ball 2": "wiffleball2",
+    "Yellow Whiffle Ball": "yellowWiffle",
+    "Orange Whiffle Ball": "orangeWiffle",
+}  # the list has two bowling balls; which was dropped is not said
 
 
 def sizes(path: Path) -> dict[str, tuple[float, float]]:
@@ -35,8 +43,13 @@ def write(files: dict[str, Path], out: Path) -> list[Path]:
         book = openpyxl.load_workbook(file, read_only=True, data_only=True)
         written = []
         for sheet in book.worksheets:
-            rows = np.array([[float(c) for c in row[:3]] for row in sheet.iter_rows(min_row=2, values_only=True)
-                             if row[0] is not None and all(isinstance(c, int | float) for c in row[:3])])
+            rows = np.array(
+                [
+                    [float(str(c)) for c in row[:3]]
+                    for row in sheet.iter_rows(min_row=2, values_only=True)
+                    if row[0] is not None and all(isinstance(c, int | float) for c in row[:3])
+                ]
+            )
             header: dict = {"system": "fall"}
             if KNOWN.get(sheet.title) in known and sheet.title != "Bowling Ball":
                 mass, diameter = known[KNOWN[sheet.title]]

@@ -18,7 +18,9 @@ def write(files: dict[str, Path], out: Path) -> list[Path]:
     with files["static_holding/state_motor.csv"].open(newline="") as file:
         rows = [r for r in csv.DictReader(file)]
     t = np.array([float(r["timestamp"]) for r in rows]) * 1e-6
-    q, dq, tau = (np.array([json.loads(r[k]) for r in rows])[:, :JOINTS] for k in ("positions", "velocities", "torques"))
+    q, dq, tau = (
+        np.array([json.loads(r[k]) for r in rows])[:, :JOINTS] for k in ("positions", "velocities", "torques")
+    )
     keep = np.concatenate([[True], np.diff(t) > 0])
     t, q, dq, tau = t[keep], q[keep], dq[keep], tau[keep]
     cut = int(0.6 * len(t))

@@ -1,4 +1,4 @@
-"""Joint states of a UR10 and a Panda in rosbag2 files; one run each, cut in time into what is fitted and what is not."""
+"""Joint states of a UR10 and a Panda in rosbag2 files; one run each, cut in time into fitted and held out."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ FIT = 0.6  # part of the run that may be fitted to; the rest is held out (optimi
 
 
 def joint_states(path: Path) -> dict[str, np.ndarray]:
-    """t (T,) and q, dq, tau (T, n) of every sensor_msgs/JointState in a rosbag2 sqlite file."""
+    """T (T,) and q, dq, tau (T, n) of every sensor_msgs/JointState in a rosbag2 sqlite file."""
     with sqlite3.connect(f"file:{path}?mode=ro&immutable=1", uri=True) as base:
         rows = base.execute("select data from messages order by timestamp").fetchall()
     parsed = [_joint_state(row[0]) for row in rows]
-    return {"t": np.array([p[0] for p in parsed]), **{k: np.array([p[i + 1] for p in parsed])
-                                                      for i, k in enumerate(("q", "dq", "tau"))}}
+    return {
+        "t": np.array([p[0] for p in parsed]),
+        **{k: np.array([p[i + 1] for p in parsed]) for i, k in enumerate(("q", "dq", "tau"))},
+    }
 
 
 def _joint_state(data: bytes) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:

@@ -39,15 +39,17 @@ def alternatives(search: Search, chosen: tuple[int, ...], index: int) -> list[Al
 
     def consider(new: tuple[int, ...]) -> None:
         theta = search.fit((*rest, *new))
-        mine = theta[len(search.columns(rest)):]
+        mine = theta[len(search.columns(rest)) :]
         if not np.any(np.abs(mine) > 1e-9):
             return
         worse = float(search.rows @ np.log(search.rss((*rest, *new), theta))) - base
-        names = tuple(search.blocks[i].name + ("" if search.blocks[i].target == block.target else
-                                               f" of {search.blocks[i].target}") for i in new)
+        names = tuple(
+            search.blocks[i].name
+            + ("" if search.blocks[i].target == block.target else f" of {search.blocks[i].target}")
+            for i in new
+        )
         if worse < slack and (names not in out or worse < out[names][0]):
-            out[names] = (worse, Alternative(names=names, replaces=index,
-                                             blocks=tuple(search.blocks[i] for i in new)))
+            out[names] = (worse, Alternative(names=names, replaces=index, blocks=tuple(search.blocks[i] for i in new)))
 
     for i, other in enumerate(search.blocks):
         if i in chosen or other.key == block.key or not set(other.channels) & set(block.channels):
@@ -57,20 +59,29 @@ def alternatives(search: Search, chosen: tuple[int, ...], index: int) -> list[Al
         if not search.clash(i, rest):
             consider((i,))
     if block.name == "asymmetric_friction":
-        parts = [i for i, b in enumerate(search.blocks) if b.target == block.target
-                 and b.name in ("coulomb_friction", "offset") and i not in chosen]
+        parts = [
+            i
+            for i, b in enumerate(search.blocks)
+            if b.target == block.target and b.name in ("coulomb_friction", "offset") and i not in chosen
+        ]
         if len(parts) == 2:
             consider(tuple(parts))
     if block.name in ("coulomb_friction", "offset"):
-        partner = [i for i in rest if search.blocks[i].target == block.target
-                   and {block.name, search.blocks[i].name} == {"coulomb_friction", "offset"}]
+        partner = [
+            i
+            for i in rest
+            if search.blocks[i].target == block.target
+            and {block.name, search.blocks[i].name} == {"coulomb_friction", "offset"}
+        ]
         unequal = [i for i, b in enumerate(search.blocks) if b.key == ("asymmetric_friction", block.target)]
         if partner and unequal:
             new = tuple(i for i in rest if i != partner[0])
             worse = float(search.rows @ np.log(search.rss((*new, unequal[0])))) - base
             if worse < slack:
-                out[("asymmetric_friction",)] = (worse, Alternative(
-                    names=("asymmetric_friction",), blocks=(search.blocks[unequal[0]],), replaces=index))
+                out[("asymmetric_friction",)] = (
+                    worse,
+                    Alternative(names=("asymmetric_friction",), blocks=(search.blocks[unequal[0]],), replaces=index),
+                )
     return [a for _, a in sorted(out.values(), key=lambda pair: pair[0])][:4]
 
 
@@ -82,21 +93,27 @@ def mass_twins(block: Block) -> tuple[str, ...]:
 def experiments(model: RigidModel, log: JointLog) -> dict[str, JointLog]:
     """Motions that could be run next, made from a log: the sentence for the reader and the log it would give."""
     out = {}
-    for text, factor in (("repeat the same path at half the speed", 0.5), ("repeat the same path at a fifth of the speed", 0.2),
-                         ("repeat the same path at twice the speed", 2.0)):
+    for text, factor in (
+        ("repeat the same path at half the speed", 0.5),
+        ("repeat the same path at a fifth of the speed", 0.2),
+        ("repeat the same path at twice the speed", 2.0),
+    ):
         out[text] = _again(model, log, log.q, log.dq * factor, log.ddq * factor**2, 1.0 / factor)
     steps = _staircase(log)
     out["hold still at eight positions across the range"] = _again(model, log, steps, 0 * steps, 0 * steps, 1.0)
     middle = log.q.mean(axis=0)
-    out["repeat the same path with half the range"] = _again(model, log, middle + 0.5 * (log.q - middle), 0.5 * log.dq,
-                                                              0.5 * log.ddq, 1.0)
+    out["repeat the same path with half the range"] = _again(
+        model, log, middle + 0.5 * (log.q - middle), 0.5 * log.dq, 0.5 * log.ddq, 1.0
+    )
     terms = [t for t in model.body_terms() if t.name in ("payload", "mass")]
     term = next((t for t in terms if t.name == "payload"), terms[0] if terms else None)
     if term is not None:
         typical = float(np.abs(log.rigid).max()) * 0.05 + 0.5
         values = {p.name: (typical if p.name == "mass" else 0.0) for p in term.parameters}
         heavier = model.patched(term, values)
-        out[f"repeat the same path with {typical:.1f} kg added at the end"] = _again(heavier, log, log.q, log.dq, log.ddq, 1.0)
+        out[f"repeat the same path with {typical:.1f} kg added at the end"] = _again(
+            heavier, log, log.q, log.dq, log.ddq, 1.0
+        )
     return out
 
 
@@ -107,12 +124,24 @@ def _staircase(log: JointLog) -> np.ndarray:
 
 def _again(model: RigidModel, log: JointLog, q, dq, ddq, stretch: float) -> JointLog:
     rigid = model.load(q, dq, ddq)
-    return replace(log, name=f"{log.name}*", t=log.t[0] + (log.t - log.t[0]) * stretch, dt=log.dt * stretch,
-                   cutoff=log.cutoff / stretch, q=q, dq=dq, ddq=ddq, rigid=rigid, measured=rigid, residual=0.0 * rigid)
+    return replace(
+        log,
+        name=f"{log.name}*",
+        t=log.t[0] + (log.t - log.t[0]) * stretch,
+        dt=log.dt * stretch,
+        cutoff=log.cutoff / stretch,
+        q=q,
+        dq=dq,
+        ddq=ddq,
+        rigid=rigid,
+        measured=rigid,
+        residual=0.0 * rigid,
+    )
 
 
-def best_experiment(block: Block, theta: np.ndarray, other: Alternative, model: RigidModel, logs: list[JointLog],
-                    floor: np.ndarray) -> tuple[str, float]:
+def best_experiment(
+    block: Block, theta: np.ndarray, other: Alternative, model: RigidModel, logs: list[JointLog], floor: np.ndarray
+) -> tuple[str, float]:
     """The motion in which two explanations differ most, both having to explain the old data too.
 
     Returns:
@@ -144,5 +173,3 @@ def _forget(block: Block, name: str) -> None:
     for cell in block.build.__closure__ or ():
         if isinstance(cell.cell_contents, dict):
             cell.cell_contents.pop(name, None)
-
-

@@ -35,7 +35,9 @@ def find_urdf(robot: str, folder: Path) -> Path:
             if match(path.stem.lower() if robot.islower() else path.stem):
                 return path
     near = [p.stem for p in files if robot.lower()[:3] in p.stem.lower()][:5] or ["ur10", "panda"]
-    raise GapError(f"robot is '{robot}', it must be a URDF file or a name in example-robot-data such as {', '.join(near)}")
+    raise GapError(
+        f"robot is '{robot}', it must be a URDF file or a name in example-robot-data such as {', '.join(near)}"
+    )
 
 
 class ArmModel(RigidModel):
@@ -47,7 +49,7 @@ class ArmModel(RigidModel):
         Raises:
             GapError: the URDF cannot be read or has fewer movable joints.
         """
-        import pinocchio as pin
+        import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
         try:
             full = pin.buildModelFromUrdf(str(urdf))
@@ -87,7 +89,9 @@ class ArmModel(RigidModel):
     def load(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Joint torques along a motion, (T, n) [N m]."""
         pin, model, data = self._pin, self.model, self.data
-        return np.array([pin.rnea(model, data, self.configuration(a), b, c) for a, b, c in zip(q, dq, ddq, strict=True)])
+        return np.array(
+            [pin.rnea(model, data, self.configuration(a), b, c) for a, b, c in zip(q, dq, ddq, strict=True)]
+        )
 
     def acceleration(self, q: np.ndarray, dq: np.ndarray, load: np.ndarray) -> np.ndarray:
         """Joint acceleration at one instant, (n,) [rad/s^2]."""
@@ -104,20 +108,49 @@ class ArmModel(RigidModel):
     def body_terms(self) -> list[BodyTerm]:
         """Link masses (the model's own numbers), a payload and a wrong tool on the last link."""
         n = self.model.njoints
-        terms = [BodyTerm(name="mass", target=self.model.names[i], recalibration=True, shape={},
-                          deviation=MASS_DEVIATION * self.model.inertias[i].mass,
-                          parameters=(Parameter(name="mass", unit="kg", lower=-self.model.inertias[i].mass),))
-                 for i in range(1, n - 1) if self.model.inertias[i].mass > 1e-3]
+        terms = [
+            BodyTerm(
+                name="mass",
+                target=self.model.names[i],
+                recalibration=True,
+                shape={},
+                deviation=MASS_DEVIATION * self.model.inertias[i].mass,
+                parameters=(Parameter(name="mass", unit="kg", lower=-self.model.inertias[i].mass),),
+            )
+            for i in range(1, n - 1)
+            if self.model.inertias[i].mass > 1e-3
+        ]
         com = tuple(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz")
         last = self.model.names[n - 1]
-        terms.append(BodyTerm(name="payload", target=last, recalibration=False, shape={},
-                              parameters=(Parameter(name="mass", unit="kg", lower=0.0), *com)))
+        terms.append(
+            BodyTerm(
+                name="payload",
+                target=last,
+                recalibration=False,
+                shape={},
+                parameters=(Parameter(name="mass", unit="kg", lower=0.0), *com),
+            )
+        )
         if self.tool is not None:
-            terms.append(BodyTerm(name="wrong_tool", target=last, recalibration=False, shape={},
-                                  parameters=(Parameter(name="mass", unit="kg"),)))
+            terms.append(
+                BodyTerm(
+                    name="wrong_tool",
+                    target=last,
+                    recalibration=False,
+                    shape={},
+                    parameters=(Parameter(name="mass", unit="kg"),),
+                )
+            )
         else:
-            terms.append(BodyTerm(name="wrong_tool", target=last, recalibration=False, shape={},
-                                  parameters=(Parameter(name="mass", unit="kg", upper=0.0), *com)))
+            terms.append(
+                BodyTerm(
+                    name="wrong_tool",
+                    target=last,
+                    recalibration=False,
+                    shape={},
+                    parameters=(Parameter(name="mass", unit="kg", upper=0.0), *com),
+                )
+            )
         return terms
 
     def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
@@ -141,8 +174,12 @@ class ArmModel(RigidModel):
                 point = pin.Inertia(1.0, c, np.zeros((3, 3))).toDynamicParameters()
                 mix[4:, 0] = point[4:]
         block = slice(10 * (index - 1), 10 * index)
-        return np.array([pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)[:, block] @ mix
-                         for a, b, c in zip(q, dq, ddq, strict=True)])
+        return np.array(
+            [
+                pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)[:, block] @ mix
+                for a, b, c in zip(q, dq, ddq, strict=True)
+            ]
+        )
 
     def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:
         """The arm with a body changed by `values`."""
@@ -169,5 +206,7 @@ class ArmModel(RigidModel):
         """Mass and first moments of a payload or tool change; a scaled tool brings the URDF tool's own centre."""
         if "mass_com_x" in values or self.tool is None:
             return {"mass": values["mass"], **{f"mass_com_{a}": values.get(f"mass_com_{a}", 0.0) for a in "xyz"}}
-        return {"mass": values["mass"],
-                **{f"mass_com_{a}": float(values["mass"] * c) for a, c in zip("xyz", self.tool.lever, strict=True)}}
+        return {
+            "mass": values["mass"],
+            **{f"mass_com_{a}": float(values["mass"] * c) for a, c in zip("xyz", self.tool.lever, strict=True)},
+        }

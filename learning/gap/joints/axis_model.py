@@ -33,8 +33,15 @@ class AxisModel(RigidModel):
 
     def body_terms(self) -> list[BodyTerm]:
         """The mass, which the log itself measures better than a data sheet."""
-        return [BodyTerm(name="mass", target="axis", recalibration=True, shape={},
-                         parameters=(Parameter(name="mass", unit="kg", lower=-self.mass),))]
+        return [
+            BodyTerm(
+                name="mass",
+                target="axis",
+                recalibration=True,
+                shape={},
+                parameters=(Parameter(name="mass", unit="kg", lower=-self.mass),),
+            )
+        ]
 
     def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Acceleration, (T, 1, 1)."""

@@ -65,9 +65,18 @@ def joint_block(effect: JointEffect, model: RigidModel, joint: int, shape: dict[
             kept[log.name] = log.shared(effect.columns(log.motion(joint), shape))[:, None, :]
         return kept[log.name]
 
-    return Block(name=effect.name, target=model.joints[joint], recalibration=False, channels=(joint,),
-                 parameters=effect.linear, build=build, shape=shape, shape_parameters=effect.shape,
-                 contains=effect.contains, trials=trials)
+    return Block(
+        name=effect.name,
+        target=model.joints[joint],
+        recalibration=False,
+        channels=(joint,),
+        parameters=effect.linear,
+        build=build,
+        shape=shape,
+        shape_parameters=effect.shape,
+        contains=effect.contains,
+        trials=trials,
+    )
 
 
 def body_block(term: BodyTerm, model: RigidModel) -> Block:
@@ -80,9 +89,17 @@ def body_block(term: BodyTerm, model: RigidModel) -> Block:
         return kept[log.name]
 
     special = {"payload": frozenset({"wrong_tool"}), "wrong_tool": frozenset({"payload"})}
-    return Block(name=term.name, target=term.target, recalibration=term.recalibration,
-                 channels=tuple(range(len(model.joints))), parameters=term.parameters, build=build,
-                 shape=term.shape, term=term, contains=special.get(term.name, frozenset()))
+    return Block(
+        name=term.name,
+        target=term.target,
+        recalibration=term.recalibration,
+        channels=tuple(range(len(model.joints))),
+        parameters=term.parameters,
+        build=build,
+        shape=term.shape,
+        term=term,
+        contains=special.get(term.name, frozenset()),
+    )
 
 
 def bank(model: RigidModel, logs: list[JointLog], system: str) -> list[Block]:

@@ -46,7 +46,7 @@ def resample(search: Search, chosen: tuple[int, ...], logs: list[JointLog], seed
         for b in blocks:
             built = b.build(log)
             for j, c in enumerate(b.channels):
-                columns[channels.index(c), :, at:at + len(b.parameters)] = built[:, j, :]
+                columns[channels.index(c), :, at : at + len(b.parameters)] = built[:, j, :]
             at += len(b.parameters)
         y = log.residual[log.inner][:, channels].T
         for rows in np.array_split(np.arange(y.shape[1]), each):
@@ -70,10 +70,12 @@ def resample(search: Search, chosen: tuple[int, ...], logs: list[JointLog], seed
         full = _rss(Ac, rc, yc, theta)
         if s % 4 == 0:
             for b in range(len(blocks)):
-                others = np.r_[0:spans[b], spans[b + 1]:k]
+                others = np.r_[0 : spans[b], spans[b + 1] : k]
                 part = np.zeros(k)
                 if len(others):
-                    part[others] = bounded_solve(At[np.ix_(others, others)], rt[others], [parameters[o] for o in others])
+                    part[others] = bounded_solve(
+                        At[np.ix_(others, others)], rt[others], [parameters[o] for o in others]
+                    )
                 gain = rows * float(np.sum(np.log(_rss(Ac, rc, yc, part)) - np.log(full)))
                 kept[b] += gain > search.price[chosen[b]]
     low, high = np.quantile(thetas, [0.025, 0.975], axis=0)
@@ -91,7 +93,11 @@ def confident(named: Named, logs: list[JointLog]) -> Named:
         worst = int(np.argmin(kept))
         if kept[worst] >= CONFIDENCE:
             break
-        chosen = named.chosen[:worst] + named.chosen[worst + 1:]
-        named = replace(named, chosen=chosen, blocks=named.blocks[:worst] + named.blocks[worst + 1:],
-                        theta=named.search.fit(chosen))
+        chosen = named.chosen[:worst] + named.chosen[worst + 1 :]
+        named = replace(
+            named,
+            chosen=chosen,
+            blocks=named.blocks[:worst] + named.blocks[worst + 1 :],
+            theta=named.search.fit(chosen),
+        )
     return named

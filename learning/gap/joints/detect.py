@@ -42,11 +42,17 @@ def replace_residual(search: Search, chosen: tuple[int, ...]) -> Search:
     if not len(s):
         return search
     b = gram.b - gram.G[:, :, :, s] @ theta
-    yy = gram.yy - 2 * gram.b[:, :, s] @ theta + np.einsum("i,fcij,j->fc", theta, gram.G[:, :, s[:, None], s[None, :]], theta)
+    yy = (
+        gram.yy
+        - 2 * gram.b[:, :, s] @ theta
+        + np.einsum("i,fcij,j->fc", theta, gram.G[:, :, s[:, None], s[None, :]], theta)
+    )
     return Search(gram=replace(gram, b=b, yy=np.maximum(yy, 1e-12)), noise=search.noise, strict=search.strict)
 
 
-def _named(base: Search, search: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray) -> bool:
+def _named(
+    base: Search, search: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray
+) -> bool:
     gram = base.gram
     s = search.columns(rest)
     extra = gram.G[:, :, :, span] @ theta

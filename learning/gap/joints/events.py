@@ -1,4 +1,4 @@
-"""Contacts that happen at a time rather than at a place: short bursts of load that no function of the state explains."""
+"""Contacts that happen at a time rather than at a place: bursts of load that no function of the state explains."""
 
 from __future__ import annotations
 
@@ -50,8 +50,16 @@ def bursts(logs: list[JointLog], left: list[np.ndarray], channel: int) -> list[B
         for a, b in intervals(np.abs(z) > 3.0, t, 0.02 * span, 0.0):
             rows = (t >= a) & (t <= b)
             if np.abs(z[rows]).max() > PEAK and b - a < LONGEST * span and not _turns(log, channel, a, b):
-                out.append(Burst(episode=log.name, channel=channel, t0=float(a), t1=float(b),
-                                 load=float(smooth[rows].mean()), strength=float(np.abs(z[rows]).max())))
+                out.append(
+                    Burst(
+                        episode=log.name,
+                        channel=channel,
+                        t0=float(a),
+                        t1=float(b),
+                        load=float(smooth[rows].mean()),
+                        strength=float(np.abs(z[rows]).max()),
+                    )
+                )
     return out
 
 

@@ -1,4 +1,4 @@
-"""A basis that stands for "some function of the state and its recent past": it sets the floor and notices effects the bank lacks."""
+"""A basis for "some function of the state and its recent past", which notices effects the bank lacks."""
 
 from __future__ import annotations
 
@@ -17,21 +17,50 @@ def scales(logs: list[JointLog]) -> np.ndarray:
 
 def generic_columns(log: JointLog, channel: int, scale: np.ndarray) -> np.ndarray:
     """Smooth functions of one joint's state and of time, through the shared filter, (T_inner, p)."""
-    q, v, a, u = ((getattr(log, name)[:, channel] - scale[i, 0, channel] * (i != 1)) / scale[i, 1, channel]
-                  for i, name in enumerate(("q", "dq", "ddq", "rigid")))
+    q, v, a, u = (
+        (getattr(log, name)[:, channel] - scale[i, 0, channel] * (i != 1)) / scale[i, 1, channel]
+        for i, name in enumerate(("q", "dq", "ddq", "rigid"))
+    )
     s = np.tanh(2.0 * log.dq[:, channel] / max(log.slow[channel], 1e-12))
     angle = log.q[:, channel]
     rng = np.random.default_rng(7)
     w = rng.normal(size=(4, FEATURES)) * np.array([[1.2], [1.2], [0.5], [0.5]])
     phase = rng.uniform(0, 2 * np.pi, FEATURES)
     waves = np.cos(np.stack([q, v, a, u], axis=1) @ w + phase)
-    plain = [np.ones_like(q), q, v, a, u, s, s * np.abs(u), v * np.abs(v), v**3, q**2, q**3, q * v, s * q, s * q**2, a * v,
-             np.sin(angle), np.cos(angle), np.sin(2 * angle), np.cos(2 * angle), s * np.exp(-((v / 0.1) ** 2)),
-             s * np.exp(-((v / 0.4) ** 2))]
-    around = [getattr(log, name)[:, j] / scale[i, 1, j] for j in (channel - 1, channel + 1)
-              if 0 <= j < log.q.shape[1] for i, name in ((1, "dq"), (2, "ddq"))]
+    plain = [
+        np.ones_like(q),
+        q,
+        v,
+        a,
+        u,
+        s,
+        s * np.abs(u),
+        v * np.abs(v),
+        v**3,
+        q**2,
+        q**3,
+        q * v,
+        s * q,
+        s * q**2,
+        a * v,
+        np.sin(angle),
+        np.cos(angle),
+        np.sin(2 * angle),
+        np.cos(2 * angle),
+        s * np.exp(-((v / 0.1) ** 2)),
+        s * np.exp(-((v / 0.4) ** 2)),
+    ]
+    around = [
+        getattr(log, name)[:, j] / scale[i, 1, j]
+        for j in (channel - 1, channel + 1)
+        if 0 <= j < log.q.shape[1]
+        for i, name in ((1, "dq"), (2, "ddq"))
+    ]
+    centres = np.linspace(float(np.quantile(q, 0.02)), float(np.quantile(q, 0.98)), 9)
+    spots = [np.exp(-(((q - c) / (0.8 * (centres[1] - centres[0]) + 1e-9)) ** 2)) for c in centres]
+    spots += [s * x for x in spots]
     past = [wind_up(angle, part * (np.ptp(angle) + 1e-9)) for part in (0.01, 0.04, 0.15)]
-    return log.shared(np.column_stack([*plain, *around, waves, *past, *(z * u for z in past[:2])]))
+    return log.shared(np.column_stack([*plain, *around, waves, *spots, *past, *(z * u for z in past[:2])]))
 
 
 def wind_up(q: np.ndarray, distance: float) -> np.ndarray:
@@ -45,7 +74,10 @@ def wind_up(q: np.ndarray, distance: float) -> np.ndarray:
     return z
 
 
-def clock_columns(log: JointLog) -> np.ndarray:
-    """Slow functions of time alone (drift, warming up), (T_inner, 2)."""
+def clock_columns(log: JointLog, channel: int) -> np.ndarray:
+    """Slow functions of time, alone (drift) and times the state (friction while warming up), (T_inner, 10)."""
     x = np.linspace(-1.0, 1.0, len(log.t[log.inner]))
-    return np.stack([x, x**2 - 1.0 / 3.0], axis=1)
+    v, s, u, q = (getattr(log.motion(channel), name) for name in ("dq", "direction", "load", "q"))
+    state = log.shared(np.stack([v, s, u, q], axis=1))
+    slow = np.stack([x, x**2 - 1.0 / 3.0], axis=1)
+    return np.concatenate([slow, state * slow[:, :1], state * slow[:, 1:]], axis=1)

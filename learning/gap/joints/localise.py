@@ -17,24 +17,41 @@ ACTIVE = 0.05  # an effect acts where its load exceeds this part of its largest
 LOCAL = 0.6  # an effect that acts in less of the time than this is localised
 
 
-def places(measured: MeasurementSet, model: RigidModel, logs: list[JointLog], named: Named, outcome: Outcome,
-           channels: tuple[str, ...]) -> list[Where]:
+def places(
+    measured: MeasurementSet,
+    model: RigidModel,
+    logs: list[JointLog],
+    named: Named,
+    outcome: Outcome,
+    channels: tuple[str, ...],
+) -> list[Where]:
     """Places of every named effect, burst and unexplained leftover, in all episodes."""
     out: list[Where] = []
     phases = {e.name: e.phases for e in measured.episodes}
     p_values = _p_values(named)
     at = 0
     for k, block in enumerate(named.blocks):
-        theta = named.theta[at:at + len(block.parameters)]
+        theta = named.theta[at : at + len(block.parameters)]
         at += len(block.parameters)
         for log in logs:
             out += _of_effect(block, theta, log, model, outcome, channels, phases[log.name], p_values[k])
     for b in outcome.bursts:
         log = next(x for x in logs if x.name == b.episode)
         rows = (log.t >= b.t0) & (log.t <= b.t1)
-        out.append(Where(channel=channels[b.channel], target=model.joints[b.channel], episode=b.episode, t0=b.t0, t1=b.t1,
-                         state_region="contact", phase=phase_of(phases[b.episode], b.t0, b.t1), effect="contact",
-                         p_value=float(np.exp(-0.5 * b.strength**2)) * int(rows.sum()), size=b.strength))
+        out.append(
+            Where(
+                channel=channels[b.channel],
+                target=model.joints[b.channel],
+                episode=b.episode,
+                t0=b.t0,
+                t1=b.t1,
+                state_region="contact",
+                phase=phase_of(phases[b.episode], b.t0, b.t1),
+                effect="contact",
+                p_value=float(np.exp(-0.5 * b.strength**2)) * int(rows.sum()),
+                size=b.strength,
+            )
+        )
     if outcome.verdict == "unknown":
         fitted = [log for log in logs if log.role != "heldout"]
         for r in outcome.remainders:
@@ -44,11 +61,23 @@ def places(measured: MeasurementSet, model: RigidModel, logs: list[JointLog], na
                 energy = left[:, r.channel] ** 2
                 t = log.t[log.inner]
                 region = _region(energy, log, r.channel)
-                spans = scan(energy, t, outcome.floor[r.channel] ** 2, 0.05 * (t[-1] - t[0])) or [(float(t[0]), float(t[-1]))]
+                spans = scan(energy, t, outcome.floor[r.channel] ** 2, 0.05 * (t[-1] - t[0])) or [
+                    (float(t[0]), float(t[-1]))
+                ]
                 for a, b in spans:
-                    out.append(Where(channel=channels[r.channel], target=model.joints[r.channel], episode=log.name, t0=a,
-                                     t1=b, state_region=region, phase=phase_of(phases[log.name], a, b),
-                                     p_value=r.p_value, size=float(np.sqrt(r.energy) / outcome.floor[r.channel])))
+                    out.append(
+                        Where(
+                            channel=channels[r.channel],
+                            target=model.joints[r.channel],
+                            episode=log.name,
+                            t0=a,
+                            t1=b,
+                            state_region=region,
+                            phase=phase_of(phases[log.name], a, b),
+                            p_value=r.p_value,
+                            size=float(np.sqrt(r.energy) / outcome.floor[r.channel]),
+                        )
+                    )
     return out
 
 
@@ -71,8 +100,16 @@ def _region(energy: np.ndarray, log: JointLog, c: int) -> str:
     return state_region(energy, log.q[s][:, c], log.dq[s][:, c], log.ddq[s][:, c], log.rigid[s][:, c], log.dt)
 
 
-def _of_effect(block: Block, theta: np.ndarray, log: JointLog, model: RigidModel, outcome: Outcome,
-               channels: tuple[str, ...], phases, p_value: float) -> list[Where]:
+def _of_effect(
+    block: Block,
+    theta: np.ndarray,
+    log: JointLog,
+    model: RigidModel,
+    outcome: Outcome,
+    channels: tuple[str, ...],
+    phases,
+    p_value: float,
+) -> list[Where]:
     load = block.build(log) @ theta  # (T, channels of the block)
     sizes = np.sqrt(np.mean(load**2, axis=0)) / outcome.floor[list(block.channels)]
     k = int(np.argmax(sizes))
@@ -86,8 +123,22 @@ def _of_effect(block: Block, theta: np.ndarray, log: JointLog, model: RigidModel
     region = "contact" if block.name == "contact" else _region(load[:, k] ** 2, log, c)
     span = float(t[-1] - t[0])
     found = [(float(t[0]), float(t[-1]))]
-    if block.name == "contact" or (active.mean() < LOCAL and block.name not in ("coulomb_friction", "viscous_friction")):
+    if block.name == "contact" or (
+        active.mean() < LOCAL and block.name not in ("coulomb_friction", "viscous_friction")
+    ):
         found = intervals(active, t, 0.004 * span, 2.0 * log.dt)
-    return [Where(channel=channels[c], target=block.target, episode=log.name, t0=a, t1=b, state_region=region,
-                  phase=phase_of(phases, a, b), p_value=p_value, size=float(sizes[k]), effect=block.name)
-            for a, b in found]
+    return [
+        Where(
+            channel=channels[c],
+            target=block.target,
+            episode=log.name,
+            t0=a,
+            t1=b,
+            state_region=region,
+            phase=phase_of(phases, a, b),
+            p_value=p_value,
+            size=float(sizes[k]),
+            effect=block.name,
+        )
+        for a, b in found
+    ]

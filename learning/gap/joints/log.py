@@ -56,8 +56,15 @@ class JointLog:
 
     def motion(self, joint: int) -> JointMotion:
         """The motion of one joint, before the shared filter."""
-        return JointMotion(t=self.t, q=self.q[:, joint], dq=self.dq[:, joint], ddq=self.ddq[:, joint],
-                           load=self.rigid[:, joint], measured=self.measured[:, joint], slow=float(self.slow[joint]))
+        return JointMotion(
+            t=self.t,
+            q=self.q[:, joint],
+            dq=self.dq[:, joint],
+            ddq=self.ddq[:, joint],
+            load=self.rigid[:, joint],
+            measured=self.measured[:, joint],
+            slow=float(self.slow[joint]),
+        )
 
     def wide(self) -> JointLog:
         """The same log without the shared filter, to see what lies outside the motion's bandwidth."""
@@ -91,7 +98,7 @@ def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -
         if has_dq:
             parts.append(_matrix(episode, names.dq))
         t, table, dt = resample(episode.t, np.concatenate(parts, axis=1))
-        raw.append((t, dt, table[:, :n], table[:, n:2 * n], table[:, 2 * n:] if has_dq else None))
+        raw.append((t, dt, table[:, :n], table[:, n : 2 * n], table[:, 2 * n :] if has_dq else None))
     measured_speed = all(r[4] is not None for r in raw)
     dt = float(np.median([r[1] for r in raw]))
     per_q = [[bandwidth(r[2][:, j], r[1]) for j in range(r[2].shape[1])] for r in raw]
@@ -117,8 +124,9 @@ def _agree(q: np.ndarray, dq: np.ndarray, dt: float) -> float:
     return float(np.corrcoef(lowpass(slope, dt, 0.05 / dt), lowpass(dq, dt, 0.05 / dt))[0, 1]) * (0.9 < scale < 1.1)
 
 
-def _prepare(episode: Episode, raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray,
-             model: RigidModel) -> JointLog:
+def _prepare(
+    episode: Episode, raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray, model: RigidModel
+) -> JointLog:
     t, dt, q, load, dq = raw
     step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (4.0 * cut * dt)))
     cut = min(cut, 0.4 / (dt * step))
@@ -139,13 +147,31 @@ def _prepare(episode: Episode, raw, cut: float, use_speed: np.ndarray, noise_v: 
     residual = lowpass(smooth - rigid, dt, shared)
     slow = np.maximum(4.0 * noise_v, 2e-3 * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
     trim = int(min(len(t) // 10, np.ceil(0.7 / (shared * dt))))
-    return JointLog(name=episode.name, role=episode.role, t=t, dt=dt, cutoff=shared, q=position, dq=speed,
-                    ddq=acceleration, rigid=rigid, measured=smooth, residual=residual, raw=raw, slow=slow, trim=trim)
+    return JointLog(
+        name=episode.name,
+        role=episode.role,
+        t=t,
+        dt=dt,
+        cutoff=shared,
+        q=position,
+        dq=speed,
+        ddq=acceleration,
+        rigid=rigid,
+        measured=smooth,
+        residual=residual,
+        raw=raw,
+        slow=slow,
+        trim=trim,
+    )
 
 
 def spread(logs: list[JointLog], joint: int) -> Spread:
     """What the logs cover of one joint's motion."""
     q = np.concatenate([log.q[:, joint] for log in logs])
     dq = np.concatenate([log.dq[:, joint] for log in logs])
-    return Spread(q=(float(q.min()), float(q.max())), speed=float(np.quantile(np.abs(dq), 0.95)),
-                  slow=float(np.max([log.slow[joint] for log in logs])), dt=float(np.max([log.dt for log in logs])))
+    return Spread(
+        q=(float(q.min()), float(q.max())),
+        speed=float(np.quantile(np.abs(dq), 0.95)),
+        slow=float(np.max([log.slow[joint] for log in logs])),
+        dt=float(np.max([log.dt for log in logs])),
+    )

@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from numpy.fft import irfft, rfft
+from scipy.fft import next_fast_len
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,8 +84,12 @@ def repeat_difference(residuals: list[np.ndarray], motions: list[np.ndarray]) ->
     while free:
         i = free.pop(0)
         scale = motions[i].std() + 1e-12
-        twins = [j for j in free if abs(len(motions[j]) - len(motions[i])) <= 2
-                 and np.sqrt(np.mean((motions[j][: len(motions[i])] - motions[i][: len(motions[j])]) ** 2)) < 0.01 * scale]
+        twins = [
+            j
+            for j in free
+            if abs(len(motions[j]) - len(motions[i])) <= 2
+            and np.sqrt(np.mean((motions[j][: len(motions[i])] - motions[i][: len(motions[j])]) ** 2)) < 0.01 * scale
+        ]
         if not twins:
             continue
         n = min(len(motions[k]) for k in [i, *twins])

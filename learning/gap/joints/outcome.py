@@ -60,24 +60,40 @@ def judge(named: Named, logs: list[JointLog]) -> Outcome:
     remainders = tuple(leftover(logs, calm, wide, c) for c in range(channels))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
     rest = np.mean(np.concatenate(calm) ** 2, axis=0)
-    floor2 = np.array([max(rest[c] - (r.energy if r.p_value < 0.01 else 0.0), 0.05 * rest[c]) for c, r in enumerate(remainders)])
+    floor2 = np.array(
+        [max(rest[c] - (r.energy if r.p_value < 0.01 else 0.0), 0.05 * rest[c]) for c, r in enumerate(remainders)]
+    )
     if named.noise.source == "repeats":
         floor2 = np.minimum(named.noise.rms**2, np.maximum(rest, 1e-30))
     weight = 1.0 / floor2
-    energy = np.array([r.energy if r.p_value < 0.01 and r.energy > REMAINDER_SIZE * floor2[c] else 0.0
-                       for c, r in enumerate(remainders)])
+    energy = np.array(
+        [
+            r.energy if r.p_value < 0.01 and r.energy > REMAINDER_SIZE * floor2[c] else 0.0
+            for c, r in enumerate(remainders)
+        ]
+    )
     explained_energy = np.maximum(total - rest, 0.0)
     share = float(weight @ energy / (weight @ (energy + explained_energy) + 1e-30))
     p = float(min([r.p_value * channels for r, e in zip(remainders, energy, strict=True) if e > 0], default=1.0))
     unknown = energy.any() and share > REMAINDER
     effects = any(not b.recalibration for b in blocks) or bool(found)
-    verdict: VerdictName = ("unknown" if unknown else "effects" if effects else "recalibration" if blocks else "adequate")
+    verdict: VerdictName = "unknown" if unknown else "effects" if effects else "recalibration" if blocks else "adequate"
     text = ""
     if unknown:
-        worst = max((r for r, e in zip(remainders, energy, strict=True) if e > 0), key=lambda r: weight[r.channel] * r.energy)
+        worst = max(
+            (r for r, e in zip(remainders, energy, strict=True) if e > 0), key=lambda r: weight[r.channel] * r.energy
+        )
         text = guess(logs, calm, worst)
-    return Outcome(verdict=verdict, p_value=min(p, 1.0), floor=np.sqrt(floor2), left=left, bursts=tuple(found),
-                   contacts=_contacts(found, logs), remainders=remainders, guess=text)
+    return Outcome(
+        verdict=verdict,
+        p_value=min(p, 1.0),
+        floor=np.sqrt(floor2),
+        left=left,
+        bursts=tuple(found),
+        contacts=_contacts(found, logs),
+        remainders=remainders,
+        guess=text,
+    )
 
 
 def _without(logs: list[JointLog], left: list[np.ndarray], found: list[Burst]) -> list[np.ndarray]:
@@ -97,9 +113,21 @@ def _contacts(found: list[Burst], logs: list[JointLog]) -> tuple[EffectFinding, 
         mine = [b for b in found if b.channel == c]
         load = np.array([b.load for b in mine])
         spread = 1.96 * load.std() / max(np.sqrt(len(load)), 1.0)
-        out.append(EffectFinding(
-            name="contact", target=f"joint {c + 1}", size=float(max(b.strength for b in mine)),
-            parameters=(Value(name="load", unit="N m", value=float(load.mean()), low=float(load.mean() - spread),
-                              high=float(load.mean() + spread)),),
-            experiment="repeat the motion: a contact with something in the way comes back at the same place"))
+        out.append(
+            EffectFinding(
+                name="contact",
+                target=f"joint {c + 1}",
+                size=float(max(b.strength for b in mine)),
+                parameters=(
+                    Value(
+                        name="load",
+                        unit="N m",
+                        value=float(load.mean()),
+                        low=float(load.mean() - spread),
+                        high=float(load.mean() + spread),
+                    ),
+                ),
+                experiment="repeat the motion: a contact with something in the way comes back at the same place",
+            )
+        )
     return tuple(out)

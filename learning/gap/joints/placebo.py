@@ -30,10 +30,18 @@ def placebos(named: Named, model: RigidModel, fitted: list[JointLog], heldout: l
         free = [j for j in range(len(model.joints)) if model.joints[j] not in taken]
         if free:
             other = joint_block(effect, model, free[0], first.shape, 1)
-            out.append(Placebo(what=f"{first.name} on {model.joints[free[0]]} instead of {first.target}",
-                               ratio=_ratio(other, fitted, left, heldout, held)))
-        out.append(Placebo(what=f"{first.name} on {first.target}, shifted by a third of the episode",
-                           ratio=_ratio(_shifted(first), fitted, left, heldout, held)))
+            out.append(
+                Placebo(
+                    what=f"{first.name} on {model.joints[free[0]]} instead of {first.target}",
+                    ratio=_ratio(other, fitted, left, heldout, held),
+                )
+            )
+        out.append(
+            Placebo(
+                what=f"{first.name} on {first.target}, shifted by a third of the episode",
+                ratio=_ratio(_shifted(first), fitted, left, heldout, held),
+            )
+        )
     return tuple(out)
 
 
@@ -49,8 +57,9 @@ def _shifted(block: Block) -> Block:
     return replace(block, build=build)
 
 
-def _ratio(block: Block, fitted: list[JointLog], left: list[np.ndarray], heldout: list[JointLog],
-           held: list[np.ndarray]) -> float:
+def _ratio(
+    block: Block, fitted: list[JointLog], left: list[np.ndarray], heldout: list[JointLog], held: list[np.ndarray]
+) -> float:
     c = block.channels[0]
     X = np.concatenate([block.build(log)[:, 0, :] for log in fitted])
     y = np.concatenate([x[:, c] for x in left])

@@ -18,7 +18,7 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
     out = list(chosen)
     at = 0
     for i, block in enumerate(chosen):
-        values = theta[at:at + len(block.parameters)]
+        values = theta[at : at + len(block.parameters)]
         at += len(block.parameters)
         if block.term is not None and len(values) == 4 and abs(values[0]) > 1e-6:
             com = np.clip(values[1:] / values[0], -1.0, 1.0)
@@ -33,8 +33,12 @@ def _fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[
     channel = block.channels[0]
     effect = JOINT_EFFECTS[block.name]
     mine = [b for b in others if channel in b.channels]
-    base = [np.column_stack([log.residual[log.inner, channel],
-                             *(b.build(log)[:, b.channels.index(channel), :] for b in mine)]) for log in logs]
+    base = [
+        np.column_stack(
+            [log.residual[log.inner, channel], *(b.build(log)[:, b.channels.index(channel), :] for b in mine)]
+        )
+        for log in logs
+    ]
     table = np.concatenate(base)
     y, X = table[:, 0], table[:, 1:]
     q = np.linalg.qr(X)[0] if X.shape[1] else np.zeros((len(y), 0))
@@ -56,10 +60,16 @@ def _fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[
         left = y - Z @ theta
         return float(left @ left)
 
-    simplex = np.stack([start / unit] + [start / unit + (0.12 if free[k] == "threshold" else 0.4) * np.eye(len(free))[k]
-                                         for k in range(len(free))])
-    best = minimize(rss, start / unit, method="Nelder-Mead",
-                    options={"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4 * rss(start / unit), "maxfev": 60})
+    simplex = np.stack(
+        [start / unit]
+        + [start / unit + (0.12 if free[k] == "threshold" else 0.4) * np.eye(len(free))[k] for k in range(len(free))]
+    )
+    best = minimize(
+        rss,
+        start / unit,
+        method="Nelder-Mead",
+        options={"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4 * rss(start / unit), "maxfev": 60},
+    )
     if best.fun >= rss(start / unit):
         return block
     shape = {**block.shape, **dict(zip(free, (float(v) for v in best.x * unit), strict=True))}

@@ -19,6 +19,8 @@ from .log import JointLog
 RIDGES = (1e-3, 1e-1, 3.0)
 WAVES = 60
 FOLDS = 6
+SHIFTS = 40
+STRETCHES = 24
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,24 +55,40 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
     edges = fold_edges(logs, FOLDS)
     fold = np.concatenate([np.concatenate([np.full(b - a, f) for f, a, b in parts]) for parts in edges])
     scale = scales(logs)
-    kinds = {"state": (np.concatenate([generic_columns(log, channel, scale) for log in logs]), "a function of the state"),
-             "drift": (np.concatenate([clock_columns(log) for log in logs]), "slow in time")}
+    kinds = {
+        "state": (np.concatenate([generic_columns(log, channel, scale) for log in logs]), "a function of the state"),
+        "drift": (
+            np.concatenate([clock_columns(log, channel) for log in logs]),
+            "slow in time, alone or with the state",
+        ),
+    }
     q = np.concatenate([log.q[log.inner, channel] for log in logs])
     reach = max(float(np.ptp(q)), 1e-9)
-    k = _loudest(y, q, np.linspace(2.0, 2.0 * WAVES, 4 * WAVES) * np.pi / reach)
+    k = _loudest([(y, q)], 2.0 * np.pi / reach, 2.0 * WAVES * np.pi / reach)
     kinds["position wave"] = (_waves(q, k), f"period {2 * np.pi / k:.4g} in position")
     clock = np.concatenate([log.t[log.inner] for log in logs])
     span = max(float(log.t[-1] - log.t[0]) for log in logs)
     loud = np.concatenate([x[:, channel] for x in wide])
-    f = _loudest(loud, clock, 2 * np.pi * np.arange(2.0 / span, 0.4 / max(log.dt for log in logs), 0.4 / span))
-    phases = [np.where(np.concatenate([np.full(len(log.t[log.inner]), i == j) for j, log in enumerate(logs)])[:, None],
-                       _waves(clock, f), 0.0) for i in range(len(logs))]  # its own phase in each episode
+    top = 2 * np.pi * 0.4 / max(log.dt for log in logs)
+    f = _loudest([(x[:, channel], log.t[log.inner]) for x, log in zip(wide, logs, strict=True)], 4 * np.pi / span, top)
+    phases = [
+        np.where(
+            np.concatenate([np.full(len(log.t[log.inner]), i == j) for j, log in enumerate(logs)])[:, None],
+            _waves(clock, f),
+            0.0,
+        )
+        for i in range(len(logs))
+    ]  # its own phase in each episode
     kinds["time wave"] = (np.concatenate(phases, axis=1), f"period {2 * np.pi / f:.4g} s")
     results = []
     for kind, (X, detail) in kinds.items():
         within = kind in ("time wave", "drift")
-        gain, p = _predict(X, loud if kind == "time wave" else y, _interleaved(fold, edges) if within else fold)
-        results.append(Remainder(channel=channel, energy=max(gain, 0.0), p_value=min(1.0, len(kinds) * p), kind=kind, detail=detail))
+        gain, p = _predict(X, loud if kind == "time wave" else y, _interleaved(fold, edges) if within else fold, within)
+        results.append(
+            Remainder(
+                channel=channel, energy=max(gain, 0.0), p_value=min(1.0, len(kinds) * p), kind=kind, detail=detail
+            )
+        )
     sure = [r for r in results if r.p_value < 0.01] or results
     return max(sure, key=lambda r: r.energy)
 
@@ -80,7 +98,7 @@ def _interleaved(fold: np.ndarray, edges) -> np.ndarray:
     out, at = np.empty_like(fold), 0
     for parts in edges:
         n = sum(b - a for _, a, b in parts)
-        out[at:at + n] = (np.arange(n) * 2 * FOLDS // max(n, 1)) % FOLDS
+        out[at : at + n] = (np.arange(n) * 2 * FOLDS // max(n, 1)) % FOLDS
         at += n
     return out
 
@@ -89,29 +107,68 @@ def _waves(x: np.ndarray, k: float) -> np.ndarray:
     return np.stack([np.sin(k * x), np.cos(k * x), np.sin(2 * k * x), np.cos(2 * k * x)], axis=1)
 
 
-def _loudest(y: np.ndarray, x: np.ndarray, wavenumbers: np.ndarray) -> float:
-    thin = slice(None, None, max(1, len(y) // 4000))
-    a, b = y[thin] - y.mean(), x[thin]
-    power = np.abs(np.exp(-1j * np.outer(wavenumbers, b)) @ a)
-    return float(wavenumbers[int(np.argmax(power))])
+def _loudest(parts: list[tuple[np.ndarray, np.ndarray]], low: float, high: float) -> float:
+    """Wavenumber between two bounds at which series over a coordinate have most power, phases free per part.
+
+    Args:
+        parts: (values, coordinate) pairs; the coordinate need not be uniform.
+        low: smallest wavenumber [rad per unit of the coordinate].
+        high: largest one.
+    """
+    start = min(float(x.min()) for _, x in parts)
+    reach = max(max(float(x.max()) for _, x in parts) - start, 1e-9)
+    bins = int(np.clip(2 ** np.ceil(np.log2(2.0 * reach * high / np.pi)), 256, 16384))
+    power = np.zeros(2 * bins + 1)
+    for y, x in parts:
+        cell = np.minimum(((x - start) / reach * bins).astype(int), bins - 1)
+        power += np.abs(np.fft.rfft(np.bincount(cell, weights=y - y.mean(), minlength=bins), n=4 * bins)) ** 2
+    k = 2 * np.pi * np.arange(2 * bins + 1) / (4.0 * reach)
+    inside = (k >= low) & (k <= high)
+    return float(k[inside][int(np.argmax(power[inside]))]) if inside.any() else low
 
 
-def _predict(X: np.ndarray, y: np.ndarray, fold: np.ndarray) -> tuple[float, float]:
-    """Mean square removed out of sample with the best ridge, and its p-value over blocks."""
+def _predict(X: np.ndarray, y: np.ndarray, fold: np.ndarray, within: bool) -> tuple[float, float]:
+    """Mean square removed out of sample with the best ridge, and its p-value.
+
+    Two nulls.  The leftover shifted in time against the features is as coloured as before but unrelated to them; waves
+    and drifts in time survive a shift, so for them the gain must be there in stretch after stretch instead.
+    """
     X = X / (np.sqrt(np.mean(X**2, axis=0)) + 1e-12)
-    every = range(int(fold.max()) + 1)
-    G = np.array([X[fold == f].T @ X[fold == f] for f in every])
-    b = np.array([X[fold == f].T @ y[fold == f] for f in every])
-    best = (-np.inf, 1.0)
+    parts = [X[fold == f] for f in range(int(fold.max()) + 1)]
+    rows = [np.flatnonzero(fold == f) for f in range(len(parts))]
+    G = np.array([x.T @ x for x in parts])
+    best: tuple[float, float] = (-np.inf, 1.0)
+    kept: list[np.ndarray] = []
     for ridge in RIDGES:
-        gain = np.zeros(len(y))
-        for f in every:
-            theta = np.linalg.solve(G.sum(axis=0) - G[f] + ridge * len(y) / 50.0 * np.eye(X.shape[1]), b.sum(axis=0) - b[f])
-            rows = fold == f
-            gain[rows] = y[rows] ** 2 - (y[rows] - X[rows] @ theta) ** 2
-        blocks = np.array([g.mean() for g in np.array_split(gain, 24)])
-        spread = blocks.std(ddof=1) / np.sqrt(len(blocks)) + 1e-30
-        p = float(student.sf(blocks.mean() / spread, len(blocks) - 1))
-        if gain.mean() > best[0]:
-            best = (float(gain.mean()), p)
-    return best
+        inverse = [np.linalg.inv(G.sum(axis=0) - g + ridge * len(y) / 50.0 * np.eye(X.shape[1])) for g in G]
+        gain = _gain(parts, rows, inverse, y)
+        if gain > best[0]:
+            best, kept = (gain, 1.0), inverse
+    if best[0] <= 0.0:
+        return best
+    rng = np.random.default_rng(3)
+    shifts = rng.integers(len(y) // 12, len(y) - len(y) // 12, size=SHIFTS)
+    null = np.array([_gain(parts, rows, kept, np.roll(y, int(s))) for s in shifts])
+    z = (best[0] - null.mean()) / (null.std(ddof=1) + 1e-30)
+    shifted = 1.0 if within else float(student.sf(z, SHIFTS - 1))
+    return best[0], min(1.0, len(RIDGES) * min(shifted, _steady(parts, rows, kept, y) * (1.0 if within else 2.0)))
+
+
+def _steady(parts: list[np.ndarray], rows: list[np.ndarray], inverse: list[np.ndarray], y: np.ndarray) -> float:
+    """p-value that the gain is no more than zero on average over stretches of time."""
+    b = [x.T @ y[r] for x, r in zip(parts, rows, strict=True)]
+    whole = np.sum(b, axis=0)
+    gain = np.zeros(len(y))
+    for x, r, w, v in zip(parts, rows, inverse, b, strict=True):
+        gain[r] = y[r] ** 2 - (y[r] - x @ (w @ (whole - v))) ** 2
+    blocks = np.array([g.mean() for g in np.array_split(gain, STRETCHES)])
+    return float(student.sf(blocks.mean() / (blocks.std(ddof=1) / np.sqrt(STRETCHES) + 1e-30), STRETCHES - 1))
+
+
+def _gain(parts: list[np.ndarray], rows: list[np.ndarray], inverse: list[np.ndarray], y: np.ndarray) -> float:
+    b = [x.T @ y[r] for x, r in zip(parts, rows, strict=True)]
+    whole = np.sum(b, axis=0)
+    left = sum(
+        float(np.sum((y[r] - x @ (w @ (whole - v))) ** 2)) for x, r, w, v in zip(parts, rows, inverse, b, strict=True)
+    )
+    return (float(y @ y) - left) / len(y)

@@ -57,7 +57,6 @@ class RigidModel(abc.ABC):
     def patched(self, term: BodyTerm, values: dict[str, float]) -> RigidModel:
         """The model with a body term applied."""
 
-
     @abc.abstractmethod
     def with_armature(self, joint: int, inertia: float) -> RigidModel:
         """The model with a rotor's inertia on one joint, solved implicitly (an explicit one is unstable)."""

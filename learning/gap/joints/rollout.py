@@ -28,12 +28,21 @@ class PatchedJoints:
     effects: tuple[tuple[str, int, dict[str, float]], ...]
     slow: np.ndarray
 
-    def acceleration(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray, rigid: np.ndarray, load: np.ndarray) -> np.ndarray:
-        """Acceleration under a measured load; `ddq` and `rigid` of the step before stand in where an effect needs them."""
+    def acceleration(
+        self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray, rigid: np.ndarray, load: np.ndarray
+    ) -> np.ndarray:
+        """Acceleration under a measured load; `ddq` and `rigid` are of the step before."""
         left = load.copy()
         for name, joint, values in self.effects:
-            now = JointMotion(t=np.zeros(1), q=q[joint:joint + 1], dq=dq[joint:joint + 1], ddq=ddq[joint:joint + 1],
-                              load=rigid[joint:joint + 1], measured=load[joint:joint + 1], slow=float(self.slow[joint]))
+            now = JointMotion(
+                t=np.zeros(1),
+                q=q[joint : joint + 1],
+                dq=dq[joint : joint + 1],
+                ddq=ddq[joint : joint + 1],
+                load=rigid[joint : joint + 1],
+                measured=load[joint : joint + 1],
+                slow=float(self.slow[joint]),
+            )
             left[joint] -= JOINT_EFFECTS[name].load(now, values)[0]
         return self.model.acceleration(q, dq, left)
 
@@ -42,7 +51,9 @@ def patched_joints(model: RigidModel, blocks: tuple[Block, ...], theta: np.ndarr
     """Put named blocks into the model: body terms into its inertias, joint effects beside it."""
     effects, at = [], 0
     for block in blocks:
-        values = {p.name: float(v) for p, v in zip(block.parameters, theta[at:at + len(block.parameters)], strict=True)}
+        values = {
+            p.name: float(v) for p, v in zip(block.parameters, theta[at : at + len(block.parameters)], strict=True)
+        }
         at += len(block.parameters)
         if block.term is not None:
             model = model.patched(block.term, values)

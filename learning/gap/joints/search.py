@@ -79,7 +79,9 @@ class Search:
     def columns(self, chosen: Set) -> np.ndarray:
         """Column indices of a set of blocks."""
         spans = self.gram.spans
-        return np.concatenate([np.arange(spans[i].start, spans[i].stop) for i in chosen]) if chosen else np.zeros(0, int)
+        return (
+            np.concatenate([np.arange(spans[i].start, spans[i].stop) for i in chosen]) if chosen else np.zeros(0, int)
+        )
 
     def fit(self, chosen: Set, folds: list[int] | None = None) -> np.ndarray:
         """Bounded least squares of the blocks' parameters, concatenated in the order of `chosen`."""
@@ -97,8 +99,10 @@ class Search:
         s = self.columns(chosen)
         theta = self.fit(chosen) if theta is None else theta
         inner = self.Gc[:, s[:, None], s[None, :]]
-        return np.maximum(self.yyc - 2 * self.bc[:, s] @ theta + np.einsum("i,cij,j->c", theta, inner, theta),
-                          1e-12 * self.yyc + 1e-30)
+        return np.maximum(
+            self.yyc - 2 * self.bc[:, s] @ theta + np.einsum("i,cij,j->c", theta, inner, theta),
+            1e-12 * self.yyc + 1e-30,
+        )
 
     def score(self, chosen: Set) -> float:
         """The criterion, smaller is better."""
@@ -167,9 +171,17 @@ class Search:
     def clash(self, i: int, chosen: Set) -> Set:
         """Members of `chosen` that block `i` replaces: itself in other shape, its special cases, what contains it."""
         new = self.blocks[i]
-        return tuple(j for j in chosen if self.blocks[j].target == new.target and (
-            self.blocks[j].name == new.name or self.blocks[j].name in new.contains
-            or new.name in self.blocks[j].contains or (self.blocks[j].contains & new.contains)))
+        return tuple(
+            j
+            for j in chosen
+            if self.blocks[j].target == new.target
+            and (
+                self.blocks[j].name == new.name
+                or self.blocks[j].name in new.contains
+                or new.name in self.blocks[j].contains
+                or (self.blocks[j].contains & new.contains)
+            )
+        )
 
     def run(self, start: Set = ()) -> Set:
         """Search until no single move improves the criterion."""
@@ -194,8 +206,11 @@ class Search:
                 continue
             if added is not None:
                 gone = tuple(i for i in now if i not in chosen)
-                base = now if len(gone) == 1 and self.blocks[gone[0]].name in self.blocks[added].contains else tuple(
-                    i for i in chosen if i != added)
+                base = (
+                    now
+                    if len(gone) == 1 and self.blocks[gone[0]].name in self.blocks[added].contains
+                    else tuple(i for i in chosen if i != added)
+                )
                 if not (self.crossed(chosen, added, base) and self.weighty(chosen, added, base)):
                     continue
             return chosen, score
@@ -216,15 +231,19 @@ class Search:
         return out
 
     def _removals(self, chosen: Set) -> list[tuple[float, Set, int | None]]:
-        sets = [chosen[:k] + chosen[k + 1:] for k in range(len(chosen))]
+        sets = [chosen[:k] + chosen[k + 1 :] for k in range(len(chosen))]
         return [(self.score(new), new, None) for new in sets]
 
     def _swaps(self, chosen: Set) -> list[tuple[float, Set, int | None]]:
         out: list[tuple[float, Set, int | None]] = []
         drops: list[Set] = [(i,) for i in chosen]
-        drops += [(i, j) for a, i in enumerate(chosen) for j in chosen[a + 1:]
-                  if set(self.blocks[i].channels) & set(self.blocks[j].channels)
-                  and min(len(self.blocks[i].channels), len(self.blocks[j].channels)) == 1]
+        drops += [
+            (i, j)
+            for a, i in enumerate(chosen)
+            for j in chosen[a + 1 :]
+            if set(self.blocks[i].channels) & set(self.blocks[j].channels)
+            and min(len(self.blocks[i].channels), len(self.blocks[j].channels)) == 1
+        ]
         for drop in drops:
             rest = tuple(i for i in chosen if i not in drop)
             base = self.score(rest)
@@ -276,8 +295,9 @@ def _bounded_gain(A: np.ndarray, r: np.ndarray, free: np.ndarray, block: Block) 
             return 0.0
         k = np.flatnonzero(free)
         theta = np.linalg.lstsq(_ridge(A[np.ix_(k, k)]), r[k], rcond=None)[0]
-        bad = [j for j, x in zip(k, theta, strict=True)
-               if not block.parameters[j].lower <= x <= block.parameters[j].upper]
+        bad = [
+            j for j, x in zip(k, theta, strict=True) if not block.parameters[j].lower <= x <= block.parameters[j].upper
+        ]
         if not bad:
             return float(theta @ r[k])
         free[bad] = False

@@ -43,8 +43,11 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
             n += 1
         if n == 0:
             require_columns(measured.episodes[0], ["q1"])
-        names = JointColumns(q=tuple(f"q{i + 1}" for i in range(n)), dq=tuple(f"dq{i + 1}" for i in range(n)),
-                             load=tuple(f"tau{i + 1}" for i in range(n)))
+        names = JointColumns(
+            q=tuple(f"q{i + 1}" for i in range(n)),
+            dq=tuple(f"dq{i + 1}" for i in range(n)),
+            load=tuple(f"tau{i + 1}" for i in range(n)),
+        )
     for episode in measured.episodes:
         require_columns(episode, [*names.q, *names.load])
         step = float(np.median(np.diff(episode.t)))
@@ -57,7 +60,9 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
                 unit = "metres" if measured.system == "axis" else "radians"
                 raise GapError(f"{episode.file}: column '{name}', row {row + 2} is {x[row]:g}, it must be in {unit}")
             if np.ptp(x) == 0 and len(names.q) == 1:
-                raise GapError(f"{episode.file}: column '{name}' never changes (rows 2 to {len(x) + 1}), nothing can be learnt")
+                raise GapError(
+                    f"{episode.file}: column '{name}' never changes (rows 2 to {len(x) + 1}), nothing can be learnt"
+                )
     return names
 
 
@@ -77,7 +82,9 @@ def rigid_model(measured: MeasurementSet, joints: int) -> RigidModel:
         gravity = measured.settings.get("gravity", GRAVITY)
         if not (isinstance(gravity, list | tuple) and len(gravity) == 3):
             raise GapError(f"gravity is {gravity!r}, three numbers [m/s^2] are needed")
-        return ArmModel(find_urdf(robot, measured.folder), joints, tuple(float(g) for g in gravity))
+        return ArmModel(
+            find_urdf(robot, measured.folder), joints, (float(gravity[0]), float(gravity[1]), float(gravity[2]))
+        )
     except GapError as error:
         raise GapError(f"{file}: {error}") from None
 
@@ -93,7 +100,9 @@ class JointStudy(Study):
         if isinstance(model, AxisModel) and not model.mass_known:
             fit = [log for log in logs if log.role != "heldout"]
             model = AxisModel(_start_mass(fit))
-            self.notes.append(f"No mass was given; {model.mass:.4g} kg fits this log best and stands for the model's own.")
+            self.notes.append(
+                f"No mass was given; {model.mass:.4g} kg fits this log best and stands for the model's own."
+            )
             logs = read_logs(list(self.measured.episodes), columns, model)
         return model, logs
 
@@ -142,14 +151,19 @@ class JointStudy(Study):
         search = self.named.search
         gains = search.gains(())
         tried = len({b.key for b in search.blocks})
-        single = [min(1.0, tried * b.trials * float(chi2.sf(gains[i] / search.widening[i], b.size)))
-                  for i, b in enumerate(search.blocks)]
+        single = [
+            min(1.0, tried * b.trials * float(chi2.sf(gains[i] / search.widening[i], b.size)))
+            for i, b in enumerate(search.blocks)
+        ]
         if self.outcome.verdict == "adequate":  # a gain that is significant but not material, or does not repeat
             p = max(float(min(single)), self.alpha) if not self.named.blocks else float(min(single))
         else:
             p = float(min([*single, self.outcome.p_value]))
-        return p, self.named.noise.source, tuple(places(self.measured, self.model, self._logs[1], self.named,
-                                                         self.outcome, self.channels))
+        return (
+            p,
+            self.named.noise.source,
+            tuple(places(self.measured, self.model, self._logs[1], self.named, self.outcome, self.channels)),
+        )
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
         """See `Study.name`."""
@@ -157,7 +171,7 @@ class JointStudy(Study):
         at = 0
         for k, block in enumerate(self.named.blocks):
             n = len(block.parameters)
-            theta = self.named.theta[at:at + n]
+            theta = self.named.theta[at : at + n]
             finding = self._finding(k, block, theta, slice(at, at + n))
             at += n
             (recalibration if block.recalibration else effects).append(finding)
@@ -167,25 +181,49 @@ class JointStudy(Study):
 
     def _finding(self, k: int, block: Block, theta: np.ndarray, span: slice) -> EffectFinding:
         prismatic = self.model.prismatic[block.channels[0]]
-        values = [Value(name=p.name, unit=p.unit_for(prismatic), value=float(v), low=float(a), high=float(b))
-                  for p, v, a, b in zip(block.parameters, theta, self.resampled.low[span], self.resampled.high[span],
-                                        strict=True)]
+        values = [
+            Value(name=p.name, unit=p.unit_for(prismatic), value=float(v), low=float(a), high=float(b))
+            for p, v, a, b in zip(
+                block.parameters, theta, self.resampled.low[span], self.resampled.high[span], strict=True
+            )
+        ]
         if not (block.term is not None):
-            values += [Value(name=p.name, unit=p.unit_for(prismatic), value=block.shape[p.name], low=block.shape[p.name],
-                             high=block.shape[p.name]) for p in block.shape_parameters]
+            values += [
+                Value(
+                    name=p.name,
+                    unit=p.unit_for(prismatic),
+                    value=block.shape[p.name],
+                    low=block.shape[p.name],
+                    high=block.shape[p.name],
+                )
+                for p in block.shape_parameters
+            ]
         search, chosen = self.named.search, self.named.chosen
         others = alternatives(search, chosen, chosen[k])
         experiment = ""
         if others:
             text, apart = best_experiment(block, theta, others[0], self.model, self.fitted, self.named.noise.rms)
-            experiment = (f"{text}: {block.name} and {' + '.join(others[0].names)} would then differ by "
-                          f"{apart:.2g} times the noise floor") if text else "no motion of this log tells them apart"
+            experiment = (
+                (
+                    f"{text}: {block.name} and {' + '.join(others[0].names)} would then differ by "
+                    f"{apart:.2g} times the noise floor"
+                )
+                if text
+                else "no motion of this log tells them apart"
+            )
         loads = np.concatenate([block.build(log) @ theta for log in self.fitted])
         size = float(np.max(np.sqrt(np.mean(loads**2, axis=0)) / self.named.noise.rms[list(block.channels)]))
         smallest = smallest_found(search, chosen, chosen[k], theta)
-        return EffectFinding(name=block.name, target=block.target, parameters=tuple(values), experiment=experiment,
-                             equivalent=(*(" + ".join(a.names) for a in others), *mass_twins(block)), size=size,
-                             smallest=smallest, confidence=float(self.resampled.kept[k]))
+        return EffectFinding(
+            name=block.name,
+            target=block.target,
+            parameters=tuple(values),
+            experiment=experiment,
+            equivalent=(*(" + ".join(a.names) for a in others), *mass_twins(block)),
+            size=size,
+            smallest=smallest,
+            confidence=float(self.resampled.kept[k]),
+        )
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""
@@ -193,7 +231,7 @@ class JointStudy(Study):
         at = 0
         for block in self.named.blocks:
             n = len(block.parameters)
-            values = {p.name: float(v) for p, v in zip(block.parameters, self.named.theta[at:at + n], strict=True)}
+            values = {p.name: float(v) for p, v in zip(block.parameters, self.named.theta[at : at + n], strict=True)}
             at += n
             if block.term is not None and not block.recalibration and isinstance(self.model, ArmModel):
                 values = self.model.moments(block.term, values)
@@ -201,8 +239,11 @@ class JointStudy(Study):
                 values |= block.shape
             entry = {"name": block.name, "target": block.target, "parameters": {k: float(v) for k, v in values.items()}}
             (recalibration if block.recalibration else effects).append(entry)
-        base = {"system": self.measured.system}
-        base |= {"robot": self.measured.settings.get("robot")} if self.measured.system == "arm" else {"mass": self.model.mass}
+        base: dict[str, Any] = {"system": self.measured.system}
+        if isinstance(self.model, AxisModel):
+            base["mass"] = self.model.mass
+        else:
+            base["robot"] = self.measured.settings["robot"]
         return {**base, "recalibration": recalibration, "effects": effects}
 
     def show(self) -> tuple[Gap, Gap | None, tuple[Placebo, ...], dict[str, str]]:
@@ -218,10 +259,18 @@ class JointStudy(Study):
             with_it = patched_joints(self.model, tuple(blocks), theta, self.heldout[0].slow)
             pairs = [(rollout_gap(given, log), rollout_gap(with_it, log)) for log in self.heldout[:3]]
             b, a = (np.sqrt(np.mean([p[i] ** 2 for p in pairs], axis=0)) for i in (0, 1))
-            forward = Gap(unit="m" if all(self.model.prismatic) else "rad", floor=0.0, before=float(np.sqrt(np.mean(b**2))),
-                          after=float(np.sqrt(np.mean(a**2))), low=float("nan"), high=float("nan"),
-                          channels={j: {"floor": 0.0, "before": float(x), "after": float(y)}
-                                    for j, x, y in zip(columns_of(self.measured).q, b, a, strict=True)})
+            forward = Gap(
+                unit="m" if all(self.model.prismatic) else "rad",
+                floor=0.0,
+                before=float(np.sqrt(np.mean(b**2))),
+                after=float(np.sqrt(np.mean(a**2))),
+                low=float("nan"),
+                high=float("nan"),
+                channels={
+                    j: {"floor": 0.0, "before": float(x), "after": float(y)}
+                    for j, x, y in zip(columns_of(self.measured).q, b, a, strict=True)
+                },
+            )
         controls = placebos(self.named, self.model, self.fitted, self.heldout) if blocks else ()
         return gap, forward, controls, self._detectable()
 
@@ -241,8 +290,10 @@ class JointStudy(Study):
                 factor = smallest_found(search, chosen, i, unit)
                 p = block.parameters[0]
                 out[f"{block.name} on {block.target}"] = (
-                    f"{factor * unit[0]:.3g} {p.unit_for(self.model.prismatic[block.channels[0]])}" if np.isfinite(factor)
-                    else f"not even {4 * unit[0]:.3g} {p.unit_for(self.model.prismatic[block.channels[0]])}")
+                    f"{factor * unit[0]:.3g} {p.unit_for(self.model.prismatic[block.channels[0]])}"
+                    if np.isfinite(factor)
+                    else f"not even {4 * unit[0]:.3g} {p.unit_for(self.model.prismatic[block.channels[0]])}"
+                )
         return out
 
     def curves(self) -> list[Curve]:
@@ -255,30 +306,54 @@ class JointStudy(Study):
         where = self.find()[2]
         out = []
         for c in sorted(order):
-            spans = tuple((w.t0, w.t1) for w in where if w.channel == self.channels[c] and w.episode == log.name
-                          and (w.t1 - w.t0) < 0.8 * (log.t[-1] - log.t[0]))
-            out.append(Curve(title=f"{self.channels[c]} ({self.model.joints[c]}), held-out {log.name}", unit=self.unit,
-                             t=log.t[log.inner], measured=measured[:, c], before=measured[:, c] - residual[:, c],
-                             after=measured[:, c] - residual[:, c] + change[:, c], floor=float(self.outcome.floor[c]),
-                             spans=spans))
+            spans = tuple(
+                (w.t0, w.t1)
+                for w in where
+                if w.channel == self.channels[c]
+                and w.episode == log.name
+                and (w.t1 - w.t0) < 0.8 * (log.t[-1] - log.t[0])
+            )
+            out.append(
+                Curve(
+                    title=f"{self.channels[c]} ({self.model.joints[c]}), held-out {log.name}",
+                    unit=self.unit,
+                    t=log.t[log.inner],
+                    measured=measured[:, c],
+                    before=measured[:, c] - residual[:, c],
+                    after=measured[:, c] - residual[:, c] + change[:, c],
+                    floor=float(self.outcome.floor[c]),
+                    spans=spans,
+                )
+            )
         return out
 
 
-def gap_of(before: list[np.ndarray], after: list[np.ndarray], floor: np.ndarray, channels: tuple[str, ...],
-           unit: str) -> Gap:
+def gap_of(
+    before: list[np.ndarray], after: list[np.ndarray], floor: np.ndarray, channels: tuple[str, ...], unit: str
+) -> Gap:
     """The gap over all held-out rows, with an interval of after / before from resampled stretches."""
     b, a = np.concatenate(before), np.concatenate(after)
     rms = lambda x: np.sqrt(np.mean(x**2, axis=0))  # noqa: E731
     rows = np.array_split(np.arange(len(b)), 20)
     sums = np.array([[np.sum(b[r] ** 2), np.sum(a[r] ** 2)] for r in rows])
     rng = np.random.default_rng(0)
-    ratios = [np.sqrt(s[1] / max(s[0], 1e-30)) for s in (sums[rng.integers(20, size=20)].sum(axis=0) for _ in range(400))]
+    ratios = [
+        np.sqrt(s[1] / max(s[0], 1e-30)) for s in (sums[rng.integers(20, size=20)].sum(axis=0) for _ in range(400))
+    ]
     low, high = np.quantile(ratios, [0.025, 0.975])
     rb, ra = rms(b), rms(a)
-    return Gap(unit=unit, floor=float(np.sqrt(np.mean(floor**2))), before=float(np.sqrt(np.mean(b**2))),
-               after=float(np.sqrt(np.mean(a**2))), low=float(low), high=float(high),
-               channels={name: {"floor": float(floor[i]), "before": float(rb[i]), "after": float(ra[i])}
-                         for i, name in enumerate(channels)})
+    return Gap(
+        unit=unit,
+        floor=float(np.sqrt(np.mean(floor**2))),
+        before=float(np.sqrt(np.mean(b**2))),
+        after=float(np.sqrt(np.mean(a**2))),
+        low=float(low),
+        high=float(high),
+        channels={
+            name: {"floor": float(floor[i]), "before": float(rb[i]), "after": float(ra[i])}
+            for i, name in enumerate(channels)
+        },
+    )
 
 
 def _start_mass(logs: list[JointLog]) -> float:
@@ -286,7 +361,10 @@ def _start_mass(logs: list[JointLog]) -> float:
     rows = []
     for log in logs:
         m = log.motion(0)
-        rows.append(np.column_stack([log.shared(np.stack([m.ddq, m.dq, m.direction, np.ones_like(m.dq)], axis=1)),
-                                     log.shared(log.measured)]))
+        rows.append(
+            np.column_stack(
+                [log.shared(np.stack([m.ddq, m.dq, m.direction, np.ones_like(m.dq)], axis=1)), log.shared(log.measured)]
+            )
+        )
     table = np.concatenate(rows)
     return float(max(np.linalg.lstsq(table[:, :4], table[:, 4], rcond=None)[0][0], 1e-3))

@@ -18,15 +18,38 @@ def guess(logs: list[JointLog], left: list[np.ndarray], found: Remainder) -> str
     """
     c = found.channel
     y = np.concatenate([x[:, c] for x in left])
-    q, v, a, u = (np.concatenate([getattr(log, n)[log.inner][:, c] for log in logs]) for n in ("q", "dq", "ddq", "rigid"))
+    q, v, a, u = (
+        np.concatenate([getattr(log, n)[log.inner][:, c] for log in logs]) for n in ("q", "dq", "ddq", "rigid")
+    )
     if found.kind in ("position wave", "time wave", "drift"):
         return f"about {np.sqrt(2 * found.energy):.3g} times a wave or trend: {found.detail}"
     slow = float(np.median([log.slow[c] for log in logs]))
     s = np.tanh(2 * v / max(slow, 1e-12))
-    terms = {"v|v|": v * np.abs(v), "v^3": v**3, "q v": q * v, "q^2": q**2, "q^3": q**3, "v^2": v**2, "a|a|": a * np.abs(a),
-             "sin(2q)": np.sin(2 * q), "sin(q)": np.sin(q), "cos(q)": np.cos(q), "q^2 v": q**2 * v, "q sign(v)": q * s,
-             "q^2 sign(v)": q**2 * s, "a v": a * v, "u v": u * v, "u q": u * q, "sign(v) sqrt|v|": s * np.sqrt(np.abs(v)),
-             "v": v, "sign(v)": s, "q": q, "a": a, "u": u, "1": np.ones_like(q)}
+    terms = {
+        "v|v|": v * np.abs(v),
+        "v^3": v**3,
+        "q v": q * v,
+        "q^2": q**2,
+        "q^3": q**3,
+        "v^2": v**2,
+        "a|a|": a * np.abs(a),
+        "sin(2q)": np.sin(2 * q),
+        "sin(q)": np.sin(q),
+        "cos(q)": np.cos(q),
+        "q^2 v": q**2 * v,
+        "q sign(v)": q * s,
+        "q^2 sign(v)": q**2 * s,
+        "a v": a * v,
+        "u v": u * v,
+        "u q": u * q,
+        "sign(v) sqrt|v|": s * np.sqrt(np.abs(v)),
+        "v": v,
+        "sign(v)": s,
+        "q": q,
+        "a": a,
+        "u": u,
+        "1": np.ones_like(q),
+    }
     X = np.stack(list(terms.values()), axis=1)
     X = _filtered(X, logs)
     size = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
@@ -48,7 +71,7 @@ def _filtered(X: np.ndarray, logs: list[JointLog]) -> np.ndarray:
     at, out = 0, []
     for log in logs:
         n = len(log.t[log.inner])
-        out.append(lowpass(X[at:at + n], log.dt, log.cutoff))
+        out.append(lowpass(X[at : at + n], log.dt, log.cutoff))
         at += n
     return np.concatenate(out)
 

@@ -65,14 +65,20 @@ def first_noise(blocks: list[Block], logs: list[JointLog]) -> NoiseModel:
     out = [np.zeros_like(log.residual[log.inner]) for log in logs]
     for c in range(logs[0].q.shape[1]):
         mine = [b for b in one_shape_each(blocks) if c in b.channels]
-        X = np.concatenate([np.column_stack([*(b.build(log)[:, b.channels.index(c), :] for b in mine),
-                                             generic_columns(log, c, scale)]) for log in logs])
+        X = np.concatenate(
+            [
+                np.column_stack(
+                    [*(b.build(log)[:, b.channels.index(c), :] for b in mine), generic_columns(log, c, scale)]
+                )
+                for log in logs
+            ]
+        )
         X = X / (np.sqrt(np.mean(X**2, axis=0)) + 1e-12)
         y = np.concatenate([log.residual[log.inner, c] for log in logs])
         left = y - X @ np.linalg.solve(X.T @ X + 1e-4 * len(y) * np.eye(X.shape[1]), X.T @ y)
         at = 0
-        for i, series in enumerate(out):
-            series[:, c] = left[at:at + len(series)]
+        for series in out:
+            series[:, c] = left[at : at + len(series)]
             at += len(series)
     return estimate_noise(out, "residual")
 
@@ -83,7 +89,7 @@ def explained(blocks: list[Block], theta: np.ndarray, log: JointLog) -> np.ndarr
     at = 0
     for block in blocks:
         k = len(block.parameters)
-        out[:, list(block.channels)] += block.build(log) @ theta[at:at + k]
+        out[:, list(block.channels)] += block.build(log) @ theta[at : at + k]
         at += k
     return out
 
@@ -104,15 +110,52 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
         seen.append(found)
         if noise.source == "residual":
             theta = Search(gram=gram, noise=noise).fit(chosen)
-            noise = estimate_noise([log.residual[log.inner] - explained([blocks[i] for i in chosen], theta, log)
-                                    for log in logs], "residual")
+            noise = estimate_noise(
+                [log.residual[log.inner] - explained([blocks[i] for i in chosen], theta, log) for log in logs],
+                "residual",
+            )
     search = Search(gram=gram, noise=noise, strict=strict)
-    return Named(blocks=tuple(gram.blocks[i] for i in chosen), noise=noise, search=search, chosen=chosen,
-                 theta=search.fit(chosen))
+    chosen = unequal_levels(search, chosen)
+    return Named(
+        blocks=tuple(gram.blocks[i] for i in chosen),
+        noise=noise,
+        search=search,
+        chosen=chosen,
+        theta=search.fit(chosen),
+    )
 
 
-def _settle(gram: Gram, model: RigidModel, logs: list[JointLog], noise: NoiseModel, strict: float,
-            chosen: tuple[int, ...]) -> tuple[tuple[int, ...], Gram]:
+UNEQUAL = 0.2  # (forward - backward) / (forward + backward) from which unequal friction is likelier than an offset
+TIE = 9.0  # Wald statistic below which the two fit alike
+
+
+def unequal_levels(search: Search, chosen: tuple[int, ...]) -> tuple[int, ...]:
+    """Settle ties between unequal dry friction and equal friction with an offset.
+
+    While a joint moves the two are the same load.  Where the log cannot tell, a large difference between the
+    directions is taken for friction, a small one for a zero that is a little off; the other is reported as equivalent.
+    """
+    at = {(b.name, b.target): i for i, b in enumerate(search.blocks) if not b.shape}
+    for target in {b.target for b in search.blocks}:
+        level, zero, both = (at.get((n, target)) for n in ("coulomb_friction", "offset", "asymmetric_friction"))
+        if level is None or zero is None or both is None:
+            continue
+        split = tuple(i for i in chosen if i not in (level, zero, both))
+        apart, joined = (*split, level, zero), (*split, both)
+        if not ({level, zero} <= set(chosen) or both in chosen):
+            continue
+        parts = search.rows @ (np.log(search.rss(joined)) - np.log(search.rss(apart)))
+        if abs(parts) > TIE * search.widening[level]:
+            continue
+        forward, backward = search.fit(joined)[-2:]
+        ratio = abs(forward - backward) / max(forward + backward, 1e-12)
+        chosen = joined if ratio > UNEQUAL else apart
+    return chosen
+
+
+def _settle(
+    gram: Gram, model: RigidModel, logs: list[JointLog], noise: NoiseModel, strict: float, chosen: tuple[int, ...]
+) -> tuple[tuple[int, ...], Gram]:
     """Search, fit the shapes of what was found, and search again with them."""
     for _ in range(2):
         search = Search(gram=gram, noise=noise, strict=strict)

@@ -1,0 +1,143 @@
+"""What the search may try on a cloth: each effect at a first guess, with the step that makes it matter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....sim.effects.adhesion import surface
+from ....sim.effects.carriers import spread_vertices
+from ....sim.effects.model_file import EffectEntry
+from .fitting import ClothModel, Free
+from .scene import ClothEpisode, ClothScene
+
+PATCHES = 7  # places of the cloth where a mass or a snag is tried
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidate:
+    """One hypothesis.
+
+    Attributes:
+        name: effect, or the physics parameter it recalibrates.
+        target: what it acts on.
+        start: the model with the effect at zero size.
+        push: the same at a size that should show.
+        steps: finite-difference step of each free parameter.
+        recalibration: one of the model's own numbers.
+    """
+
+    name: str
+    target: str
+    start: ClothModel
+    push: ClothModel
+    steps: dict[Free, float]
+    recalibration: bool = False
+
+
+def _effect(name: str, target: str, zero: dict[str, float], push: dict[str, float], free: tuple[str, ...]) -> Candidate:
+    steps: dict[Free, float] = {(name, p): (push[p] - zero[p]) if push[p] != zero[p] else 0.05 for p in free}
+    keys = tuple((name, p) for p in free)
+    return Candidate(
+        name=name,
+        target=target,
+        steps=steps,
+        start=ClothModel(effects=(EffectEntry(name=name, target=target, parameters=zero),), free=keys),
+        push=ClothModel(effects=(EffectEntry(name=name, target=target, parameters=push),), free=keys),
+    )
+
+
+def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[np.ndarray]) -> list[Candidate]:
+    """Every hypothesis for this scene, places and times taken from where the residual is."""
+    out = [
+        _effect("air_drag", "cloth", {"coefficient": 0.0}, {"coefficient": 1.0}, ("coefficient",)),
+        _effect(
+            "strain_stiffening",
+            "cloth",
+            {"stiffness": 0.0, "onset": 0.03},
+            {"stiffness": 20.0, "onset": 0.03},
+            ("stiffness",),
+        ),
+        _effect("delay", "cloth", {"time": 0.0}, {"time": 0.01}, ("time",)),
+        _effect("offset", "cloth", {a: 0.0 for a in "xyz"}, {a: 0.003 for a in "xyz"}, ("x", "y", "z")),
+        _effect(
+            "tilted_gravity",
+            "cloth",
+            {"towards_x": 0.0, "towards_y": 0.0},
+            {"towards_x": 0.03, "towards_y": 0.03},
+            ("towards_x", "towards_y"),
+        ),
+        _effect("wind", "cloth", {"x": 0.0, "y": 0.0}, {"x": 1.0, "y": 1.0}, ("x", "y")),
+    ]
+    ph = scene.physics
+    for key in ("elastic_stiffness", "damping_stiffness", "bending_stiffness", "mass"):
+        value = getattr(ph, key)
+        if value > 0:
+            free = (("physics", key),)
+            out.append(
+                Candidate(
+                    name=key,
+                    target="cloth",
+                    recalibration=True,
+                    steps={free[0]: 0.25 * value},
+                    start=ClothModel(physics={key: value}, free=free),
+                    push=ClothModel(physics={key: 1.25 * value}, free=free),
+                )
+            )
+    if len(scene.capsules) and _touches(scene, episodes):
+        out.append(_effect("contact_friction", "cloth", {"change": 0.0}, {"change": 0.3}, ("change",)))
+        out.append(_effect("adhesion", "cloth", {"pressure": 0.0}, {"pressure": 8.0}, ("pressure",)))
+    places = scene.vertices[spread_vertices(scene.vertices, PATCHES, set())]
+    size = float(np.ptp(scene.vertices, axis=0).max())
+    for p in (*places, _worst_place(scene, residuals)):
+        where = {a: float(x) for a, x in zip("xyz", p, strict=True)}
+        out.append(
+            _effect(
+                "added_mass",
+                "region",
+                {"mass": 0.0, **where, "radius": 0.2 * size},
+                {"mass": 0.1 * ph.mass, **where, "radius": 0.2 * size},
+                ("mass",),
+            )
+        )
+    t0, t1 = _when(episodes, residuals)
+    worst = {a: float(x) for a, x in zip("xyz", _worst_place(scene, residuals), strict=True)}
+    out.append(
+        _effect(
+            "snag",
+            "region",
+            {"stiffness": 0.0, **worst, "t0": t0, "t1": t1},
+            {"stiffness": 3.0, **worst, "t0": t0, "t1": t1},
+            ("stiffness",),
+        )
+    )
+    if any(e.pins for e in episodes):
+        end = float(max(e.t[-1] for e in episodes))
+        for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
+            out.append(_effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",)))
+    return out
+
+
+def _touches(scene: ClothScene, episodes: list[ClothEpisode]) -> bool:
+    return any(surface(e.markers.reshape(-1, 3), scene.capsules)[0].min() < 0.06 for e in episodes)
+
+
+def _worst_place(scene: ClothScene, residuals: list[np.ndarray]) -> np.ndarray:
+    """Start place of the marker whose residual is largest, (3,)."""
+    m = len(scene.markers)
+    energy = sum(np.sum(r[:, : 3 * m] ** 2, axis=0).reshape(m, 3).sum(axis=1) for r in residuals)
+    return scene.vertices[scene.markers[int(np.argmax(energy))]]
+
+
+def _when(episodes: list[ClothEpisode], residuals: list[np.ndarray]) -> tuple[float, float]:
+    """Onset and end of the largest disagreement, common to all episodes [s]."""
+    end = float(min(e.t[-1] for e in episodes))
+    grid = np.linspace(0.0, end, 80)
+    energy = np.sum(
+        [np.interp(grid, e.t, np.sqrt(np.sum(r**2, axis=1))) for e, r in zip(episodes, residuals, strict=True)], axis=0
+    )
+    quiet = float(np.quantile(energy, 0.1))
+    over = np.flatnonzero(energy > quiet + 0.15 * (energy.max() - quiet))
+    start = float(grid[over[0]]) if len(over) else 0.0
+    return max(0.0, start - 0.05), max(start + 0.1, float(grid[int(np.argmax(energy))]))

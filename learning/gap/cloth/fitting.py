@@ -1,0 +1,161 @@
+"""Fit a set of effects and physics changes to cloth recordings by simulation (Gauss-Newton with finite differences).
+
+Parameters carry a step: the change that moves the cloth about as much as the residual does.  Every simulation goes
+through the `Simulator`, so that an interrupted run finds its results again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ....sim.effects.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.model_file import EffectEntry
+from .scene import ClothEpisode
+from .simulate import Simulator
+
+Free = tuple[str, str]  # (effect name or "physics", parameter)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClothModel:
+    """Effects and physics changes with their values, and which of them may move.
+
+    Attributes:
+        effects: entries, in order.
+        physics: changed physics parameters.
+        free: parameters that are fitted.
+    """
+
+    effects: tuple[EffectEntry, ...] = ()
+    physics: dict[str, float] = field(default_factory=dict)
+    free: tuple[Free, ...] = ()
+
+    def value(self, which: Free) -> float:
+        """Value of one free parameter."""
+        if which[0] == "physics":
+            return self.physics[which[1]]
+        return next(e for e in self.effects if e.name == which[0]).parameters[which[1]]
+
+    def moved(self, changes: dict[Free, float]) -> ClothModel:
+        """The model with some free parameters set to new values, kept inside their bounds."""
+        physics = dict(self.physics)
+        effects = []
+        for (name, parameter), value in changes.items():
+            if name == "physics":
+                physics[parameter] = max(value, 1e-6)
+        for e in self.effects:
+            values = dict(e.parameters)
+            for p in CLOTH_EFFECTS[e.name].parameters:
+                if (e.name, p.name) in changes:
+                    values[p.name] = float(np.clip(changes[(e.name, p.name)], p.lower, p.upper))
+            effects.append(EffectEntry(name=e.name, target=e.target, parameters=values))
+        return ClothModel(effects=tuple(effects), physics=physics, free=self.free)
+
+    def joined(self, other: ClothModel) -> ClothModel:
+        """Both models' effects and physics."""
+        return ClothModel(
+            effects=(*self.effects, *other.effects),
+            physics={**self.physics, **other.physics},
+            free=(*self.free, *other.free),
+        )
+
+    def without(self, name: str) -> ClothModel:
+        """The model without one effect, or without one physics change."""
+        return ClothModel(
+            effects=tuple(e for e in self.effects if e.name != name),
+            physics={k: v for k, v in self.physics.items() if k != name},
+            free=tuple(f for f in self.free if name not in f),
+        )
+
+
+def predict(sim: Simulator, model: ClothModel, episodes: list[ClothEpisode]) -> list[np.ndarray]:
+    """Markers (and load) of every episode under a model."""
+    return [sim.run(e, model.effects, model.physics) for e in episodes]
+
+
+def measured(episode: ClothEpisode) -> np.ndarray:
+    """What was recorded, in the layout of `predict`."""
+    flat = episode.markers.reshape(len(episode.t), -1)
+    return flat if episode.load is None else np.concatenate([flat, episode.load], axis=1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClothFit:
+    """A fitted model.  rss: weighted sum of squares; residuals: measured minus predicted, per episode."""
+
+    model: ClothModel
+    rss: float
+    residuals: list[np.ndarray]
+    covariance: np.ndarray
+
+
+class ClothFitter:
+    """Fits models to a group of episodes.
+
+    Attributes:
+        weights: (columns,) one over the noise of each column.
+    """
+
+    def __init__(self, sim: Simulator, episodes: list[ClothEpisode], weights: np.ndarray) -> None:
+        self.sim, self.episodes, self.weights = sim, episodes, weights
+        self.data = [measured(e) for e in episodes]
+
+    def residuals(self, model: ClothModel) -> list[np.ndarray]:
+        """Measured minus predicted, per episode, unweighted."""
+        return [y - x for y, x in zip(self.data, predict(self.sim, model, self.episodes), strict=True)]
+
+    def rss(self, residuals: list[np.ndarray]) -> float:
+        """Weighted sum of squares."""
+        return float(sum(np.sum((r * self.weights) ** 2) for r in residuals))
+
+    def fit(self, model: ClothModel, steps: dict[Free, float], rounds: int = 3) -> ClothFit:
+        """Gauss-Newton from the model's own values, each step halved until it helps."""
+        residuals = self.residuals(model)
+        best = self.rss(residuals)
+        covariance = np.zeros((len(model.free), len(model.free)))
+        for _ in range(rounds):
+            if not model.free:
+                break
+            J = self._columns(model, residuals, steps)
+            r = np.concatenate([(x * self.weights).ravel() for x in residuals])
+            A = J.T @ J
+            size = np.sqrt(np.diag(A)) + 1e-12
+            inverse = np.linalg.pinv(A / np.outer(size, size) + 1e-6 * np.eye(len(A))) / np.outer(size, size)
+            covariance = inverse
+            change = inverse @ (J.T @ r)
+            for shrink in (1.0, 0.5, 0.2):
+                tried = model.moved({f: model.value(f) + shrink * c for f, c in zip(model.free, change, strict=True)})
+                left = self.residuals(tried)
+                rss = self.rss(left)
+                if rss < best:
+                    break
+            else:
+                break
+            gained = best - rss
+            model, residuals, best = tried, left, rss
+            if gained < 0.003 * best:
+                break
+        return ClothFit(model=model, rss=best, residuals=residuals, covariance=covariance)
+
+    def _columns(self, model: ClothModel, residuals: list[np.ndarray], steps: dict[Free, float]) -> np.ndarray:
+        columns = []
+        for f in model.free:
+            step = steps[f] * 0.3
+            x = model.value(f)
+            moved = model.moved({f: x + step})
+            if abs(moved.value(f) - x) < 0.5 * abs(step):
+                moved = model.moved({f: x - step})
+            change = moved.value(f) - x
+            other = self.residuals(moved)
+            columns.append(
+                np.concatenate([((a - b) * self.weights).ravel() for a, b in zip(residuals, other, strict=True)])
+                / (change if change else 1.0)
+            )
+        return np.stack(columns, axis=1)
+
+
+def scaled(model: ClothModel, factor: float, start: ClothModel) -> ClothModel:
+    """A model between `start` (0) and `model` (1): every free value moved by `factor`."""
+    return replace(model).moved({f: start.value(f) + factor * (model.value(f) - start.value(f)) for f in model.free})

@@ -1,0 +1,64 @@
+"""Noise of markers: what neighbouring markers do not share.
+
+Sensors err marker by marker; a wrong model moves neighbouring markers together.  The product of neighbours' residuals
+is therefore the model's share of the disagreement, whatever the colour of the noise in time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coherence:
+    """Shared and unshared parts of a residual.
+
+    Attributes:
+        shared: mean square that neighbours share [m^2].
+        floor: root mean square of the rest [m].
+        p_value: of no sharing.
+    """
+
+    shared: float
+    floor: float
+    p_value: float
+
+
+def neighbours(points: np.ndarray, count: int = 3) -> np.ndarray:
+    """Pairs of each marker with its nearest ones, (P, 2)."""
+    away = np.linalg.norm(points[:, None] - points[None], axis=2)
+    np.fill_diagonal(away, np.inf)
+    near = np.argsort(away, axis=1)[:, : min(count, len(points) - 1)]
+    return np.array([(i, j) for i, row in enumerate(near) for j in row]).reshape(-1, 2)
+
+
+def coherence(residuals: list[np.ndarray], pairs: np.ndarray, markers: int) -> Coherence:
+    """How much of the residual neighbours share.
+
+    Args:
+        residuals: (T, >= 3 M) per episode, markers first.
+        pairs: (P, 2) neighbours.
+        markers: M.
+    """
+    i, j = np.unique(np.sort(pairs, axis=1), axis=0).T if len(pairs) else (np.zeros(0, int), np.zeros(0, int))
+    x = np.concatenate([r[:, : 3 * markers].reshape(len(r), markers, 3) for r in residuals])
+    products = np.einsum("tkc,tkc->kc", x[:, i], x[:, j]) / len(x)  # (pairs, 3)
+    total = float(np.mean(x**2))
+    # were markers independent, each product's sign would be a coin's
+    z = float(products.sum() / (np.sqrt(np.sum(products**2)) + 1e-30))
+    together = float(products.mean()) if products.size else 0.0
+    left = max(total - max(together, 0.0), 0.02 * total)
+    return Coherence(shared=together, floor=float(np.sqrt(left)), p_value=float(norm.sf(z)))
+
+
+def memory(residuals: list[np.ndarray]) -> float:
+    """How many samples are worth one: long-run over plain variance, pooled over columns, at least 1."""
+    zero = sum(float(np.sum(r**2)) for r in residuals) + 1e-30
+    running = best = 1.0
+    for k in range(1, max(2, min(len(r) for r in residuals) // 4)):
+        running += 2.0 * sum(float(np.sum(r[k:] * r[:-k])) for r in residuals) / zero
+        best = max(best, running)
+    return best

@@ -1,0 +1,193 @@
+"""What a cloth measurement set says: mesh, physics, pins, capsules, markers, and what was measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import GapError
+from ..measurement import Episode, MeasurementSet, require_columns
+from ..table import read_table
+from .obj import read_obj
+
+DEFAULTS = {
+    "mass": 0.25,
+    "elastic_stiffness": 40.0,
+    "damping_stiffness": 0.005,
+    "bending_stiffness": 0.1,
+    "friction": 0.4,
+}
+STABLE = 0.7  # elastic * dt^2 / vertex mass above which explicit springs explode
+
+
+@dataclass(frozen=True, kw_only=True)
+class Physics:
+    """Parameters of the soft body, SI."""
+
+    mass: float
+    elastic_stiffness: float
+    damping_stiffness: float
+    bending_stiffness: float
+    friction: float
+    gravity: tuple[float, float, float]
+    time_step: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """Vertices held together.
+
+    Attributes:
+        vertices: ids.
+        release_t: when they are let go [s]; inf for never.
+        path: (K, 4) time and displacement from the start pose [s, m], or None where they stay.
+    """
+
+    vertices: tuple[int, ...]
+    release_t: float
+    path: np.ndarray | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClothScene:
+    """Everything but the episode.  capsules: (K, 7) a, b, radius; markers: vertex ids."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    physics: Physics
+    capsules: np.ndarray
+    markers: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClothEpisode:
+    """One recording.
+
+    Attributes:
+        name, role: as listed.
+        t: (T,) from the start pose [s].
+        markers: (T, M, 3) [m].
+        load: (T, 3) at the first pin [N], or None.
+        pins: in this episode.
+    """
+
+    name: str
+    role: str
+    t: np.ndarray
+    markers: np.ndarray
+    load: np.ndarray | None
+    pins: tuple[Pin, ...]
+
+
+def read_scene(measured: MeasurementSet) -> tuple[ClothScene, list[ClothEpisode]]:
+    """The scene and its episodes.
+
+    Raises:
+        GapError: something is missing or does not fit; one sentence with file, column and row.
+    """
+    file, s = measured.folder / "measurement.yaml", measured.settings
+    if not isinstance(s.get("mesh"), str):
+        raise GapError(f"{file}: `mesh` is {s.get('mesh')!r}, the path of an OBJ file is needed")
+    vertices, faces = read_obj(measured.folder / s["mesh"])
+    ids = s.get("markers")
+    if not isinstance(ids, list) or not ids or not all(isinstance(i, int) and 0 <= i < len(vertices) for i in ids):
+        raise GapError(f"{file}: `markers` must list vertex ids from 0 to {len(vertices) - 1}")
+    scene = ClothScene(
+        vertices=vertices,
+        faces=faces,
+        physics=_physics(file, s.get("physics") or {}, len(vertices)),
+        capsules=_capsules(file, s.get("capsules") or []),
+        markers=tuple(ids),
+    )
+    return scene, [
+        _episode(e, scene, _pins(file, e.settings.get("pins", s.get("pins")), scene)) for e in measured.episodes
+    ]
+
+
+def _physics(file: Path, given: dict[str, Any], count: int) -> Physics:
+    values = {}
+    for key, default in DEFAULTS.items():
+        x = given.get(key, default)
+        if (
+            isinstance(x, bool)
+            or not isinstance(x, int | float)
+            or not np.isfinite(x)
+            or x < 0
+            or (key == "mass" and x == 0)
+        ):
+            raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
+        values[key] = float(x)
+    g = given.get("gravity", -9.81)
+    g = (0.0, 0.0, -abs(float(g))) if isinstance(g, int | float) else tuple(float(x) for x in g)
+    if len(g) != 3:
+        raise GapError(f"{file}: physics.gravity is {g!r}, a number or three numbers [m/s^2] are needed")
+    step = float(given.get("time_step", 0.002))
+    limit = np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9))
+    while step > limit:  # explicit springs explode above this
+        step /= 2.0
+    return Physics(**values, gravity=g, time_step=step)
+
+
+def _capsules(file: Path, listed: list) -> np.ndarray:
+    try:
+        return np.array([[*map(float, c["a"]), *map(float, c["b"]), float(c["radius"])] for c in listed]).reshape(-1, 7)
+    except (KeyError, TypeError, ValueError):
+        raise GapError(f"{file}: every capsule needs a, b (three numbers each) and radius [m]") from None
+
+
+def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
+    if listed is None:
+        return ()
+    listed = [listed] if isinstance(listed, dict) else listed
+    if listed and all(isinstance(i, int) for i in listed):
+        listed = [{"vertices": listed}]
+    out = []
+    for p in listed:
+        ids = p.get("vertices") if isinstance(p, dict) else None
+        ids = [ids] if isinstance(ids, int) else ids
+        if not isinstance(ids, list) or not all(isinstance(i, int) and 0 <= i < len(scene.vertices) for i in ids):
+            raise GapError(
+                f"{file}: every pin needs `vertices`, ids from 0 to {len(scene.vertices) - 1}, this one has {ids!r}"
+            )
+        path = None
+        if p.get("path"):
+            table = read_table(file.parent / p["path"])
+            for axis in "xyz":
+                if axis not in table:
+                    raise GapError(
+                        f"{file.parent / p['path']}: column '{axis}' is missing (row 1 has {', '.join(table)})"
+                    )
+            path = np.stack([table[c] for c in ("t", "x", "y", "z")], axis=1)
+            path[:, 1:] -= path[0, 1:]  # a displacement, whether the file gives places or displacements
+        release = p.get("release_t")
+        out.append(Pin(vertices=tuple(ids), release_t=float("inf") if release is None else float(release), path=path))
+    return tuple(out)
+
+
+def _episode(e: Episode, scene: ClothScene, pins: tuple[Pin, ...]) -> ClothEpisode:
+    names = [f"m{k}{a}" for k in range(len(scene.markers)) for a in "xyz"]
+    require_columns(e, names)
+    markers = np.stack([e.columns[n] for n in names], axis=1).reshape(len(e.t), -1, 3)
+    first = markers[0] - scene.vertices[list(scene.markers)]
+    k = int(np.argmax(np.abs(first).max(axis=1)))
+    if np.abs(first[k]).max() > 1.0 + 2.0 * np.ptp(scene.vertices, axis=0).max():
+        raise GapError(
+            f"{e.file}: column 'm{k}x', row 2 lies {np.abs(first[k]).max():.3g} m from its vertex "
+            f"{scene.markers[k]}, markers must be in metres in the mesh's frame"
+        )
+    load = (
+        np.stack([e.columns[c] for c in ("fx", "fy", "fz")], axis=1)
+        if all(c in e.columns for c in ("fx", "fy", "fz"))
+        else None
+    )
+    return ClothEpisode(
+        name=e.name, role=e.role, t=e.t - min(0.0, float(e.t[0])), markers=markers, load=load, pins=pins
+    )
+
+
+def with_physics(scene: ClothScene, **changes: float) -> ClothScene:
+    """The scene with some physics changed."""
+    return replace(scene, physics=replace(scene.physics, **changes))

@@ -1,0 +1,242 @@
+"""Which effects a cloth recording lacks: screened with one simulation each, verified by fitting with simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2
+
+from ....sim.effects.carriers import spread_vertices
+from ....sim.effects.model_file import EffectEntry
+from .candidates import Candidate, candidates
+from .fitting import ClothFit, ClothFitter, ClothModel, Free
+from .noise import Coherence, coherence, memory, neighbours
+from .scene import ClothEpisode, ClothScene
+from .simulate import Simulator
+
+ALPHA = 0.05
+VERIFIED = 4  # candidates per round that are fitted by simulation
+MOST = 3  # effects and recalibrations at once
+MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
+SHARE = 0.01  # and by this part of what is explained
+SAME = 12.0  # criterion within which two explanations fit alike
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tried:
+    """One verified explanation: names added in its round, the fit, the criterion."""
+
+    added: Candidate
+    fit: ClothFit
+    score: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClothSearch:
+    """The result.
+
+    Attributes:
+        chosen: candidates in the model, in order.
+        fit: the final fit.
+        plain: the model as given.
+        before, after: shared and unshared parts of its residual and of the final one.
+        rivals: per chosen candidate, other names that fitted as well.
+        worth: independent samples.
+    """
+
+    chosen: tuple[Candidate, ...]
+    fit: ClothFit
+    plain: ClothFit
+    before: Coherence
+    after: Coherence
+    rivals: dict[str, tuple[str, ...]]
+    worth: float
+
+
+def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]) -> ClothSearch:
+    """Rounds of screening and verification until no effect pays its price."""
+    m = len(scene.markers)
+    pairs = neighbours(scene.vertices[list(scene.markers)])
+    first = ClothFitter(sim, episodes, np.ones(3 * m + (3 if episodes[0].load is not None else 0)))
+    weights = _weights(first, m)
+    fitter = ClothFitter(sim, episodes, weights)
+    plain = fitter.fit(ClothModel(), {})
+    before = coherence(plain.residuals, pairs, m)
+    rows = sum(r.size for r in plain.residuals)
+    chosen: list[Candidate] = []
+    fit, rivals = plain, {}
+    worth = rows / memory(plain.residuals)
+    after = before
+    while len(chosen) < MOST and after.p_value < 0.01 and after.shared > 0.03 * after.floor**2:
+        pool = candidates(scene, episodes, fit.residuals)
+        taken = {c.name for c in chosen}
+        pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]
+        say(f"round {len(chosen) + 1}: {len(pool)} hypotheses, {sim.runs} simulations so far")
+        ranked = _screen(sim, fitter, fit, chosen, pool)
+        tried = []
+        for k, c in enumerate(ranked[:VERIFIED]):
+            joined = fitter.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=2)
+            say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(fit.rss, 1e-30)):.3f} of the residual left")
+            tried.append((c, joined))
+        if not tried:
+            break
+        best = min(tried, key=lambda x: x[1].rss)
+        worth = rows / memory(best[1].residuals)
+        scored = [
+            Tried(added=c, fit=f, score=worth * np.log(f.rss / rows) + _price(len(pool), f.model)) for c, f in tried
+        ]
+        scored.sort(key=lambda t: t.score - (3.0 if t.added.recalibration else 0.0))
+        top = scored[0]
+        now = worth * np.log(fit.rss / rows) + _price(len(pool), fit.model)
+        drop = fit.rss - top.fit.rss
+        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss or drop < SHARE * (plain.rss - top.fit.rss):
+            break
+        chosen.append(top.added)
+        rivals[top.added.name] = tuple(
+            dict.fromkeys(
+                t.added.name for t in scored[1:] if t.score - top.score < SAME and t.added.name != top.added.name
+            )
+        )
+        fit = _polish(fitter, top.fit, chosen, scene)
+        after = coherence(fit.residuals, pairs, m)
+    fit, chosen = _prune(fitter, fit, chosen, worth, rows)
+    after = coherence(fit.residuals, pairs, m)
+    return ClothSearch(
+        chosen=tuple(chosen), fit=fit, plain=plain, before=before, after=after, rivals=rivals, worth=worth
+    )
+
+
+def _weights(fitter: ClothFitter, markers: int) -> np.ndarray:
+    """One over the short-term noise, shared by all marker columns and by all load columns."""
+    residuals = fitter.residuals(ClothModel())
+    jitter = [np.mean(np.diff(r, 2, axis=0) ** 2, axis=0) / 6.0 for r in residuals]
+    power = np.mean(jitter, axis=0)
+    marker = float(np.median(power[: 3 * markers])) + 1e-14
+    out = np.full(len(power), 1.0 / np.sqrt(marker))
+    if len(power) > 3 * markers:
+        # a load is a few columns among many; it counts no more than its own noise and bias allow
+        total = float(np.mean([np.mean(r[:, 3 * markers :] ** 2) for r in residuals]))
+        out[3 * markers :] = 1.0 / np.sqrt(max(float(np.median(power[3 * markers :])), 0.02 * total) + 1e-14)
+    return out
+
+
+def _clash(name: str, taken: set[str]) -> bool:
+    return (name == "added_mass" and "mass" in taken) or (name == "mass" and "added_mass" in taken)
+
+
+def _price(tried: int, model: ClothModel) -> float:
+    return float(chi2.isf(ALPHA / max(tried, 1), 1)) * len(model.free)
+
+
+def _steps(chosen: list[Candidate]) -> dict[Free, float]:
+    return {f: s for c in chosen for f, s in c.steps.items()}
+
+
+def _screen(
+    sim: Simulator, fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], pool: list[Candidate]
+) -> list[Candidate]:
+    """Candidates by how much a linear use of one simulation each would explain, best first, one per name first."""
+    runs = []
+    for c in pool:
+        for f in c.start.free:
+            model = fit.model.joined(c.start.moved({f: c.push.value(f)}))
+            runs += [(e, model.effects, model.physics) for e in fitter.episodes]
+    sim.ahead(runs)
+    own = [fitter._columns(fit.model, fit.residuals, _steps(chosen))] if chosen and fit.model.free else []
+    scored = []
+    for c in pool:
+        base = fit.model.joined(c.start)
+        r = fitter.residuals(base)
+        flat = np.concatenate([(x * fitter.weights).ravel() for x in r])
+        columns, sizes = list(own), {}
+        for f in c.start.free:
+            x = fitter.residuals(base.moved({f: c.push.value(f)}))
+            column = np.concatenate([((a - b) * fitter.weights).ravel() for a, b in zip(r, x, strict=True)])
+            columns.append(column[:, None])
+        X = np.concatenate(columns, axis=1)
+        theta = np.linalg.lstsq(X, flat, rcond=1e-8)[0]
+        mine = theta[-len(c.start.free) :]
+        for f, k in zip(c.start.free, mine, strict=True):
+            sizes[f] = c.start.value(f) + float(np.clip(k, -30.0, 30.0)) * (c.push.value(f) - c.start.value(f))
+        left = float(np.sum((flat - X @ theta) ** 2))
+        if c.name == "grip_slip":  # a moment, not a size: the simulation itself is the answer
+            x = fitter.residuals(fit.model.joined(c.push))
+            left, sizes = fitter.rss(x), {}
+        push = c.push.moved(sizes) if sizes else c.push
+        if all(abs(push.value(f) - c.start.value(f)) < 1e-9 for f in c.start.free):
+            continue  # it would have to act the wrong way round
+        steps = {
+            f: (
+                0.3 * abs(push.value(f) - c.start.value(f)) + 1e-6
+                if c.name not in ("grip_slip",) and sizes
+                else c.steps[f]
+            )
+            for f in c.steps
+        }
+        steps = {f: max(s, 0.1 * abs(c.steps[f])) for f, s in steps.items()}
+        scored.append((left, replace(c, push=push, steps=steps)))
+    scored.sort(key=lambda pair: pair[0])
+    firsts: dict[str, Candidate] = {}
+    for _, c in scored:
+        firsts.setdefault(c.name, c)
+    order = list(firsts.values())
+    return order
+
+
+def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
+    """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
+    last = chosen[-1]
+    if last.name in ("added_mass", "snag"):
+        entry = next(e for e in fit.model.effects if e.name == last.name)
+        here = np.array([entry.parameters[a] for a in "xyz"])
+        places = scene.vertices[spread_vertices(scene.vertices, int(np.clip(len(scene.vertices) // 12, 12, 60)), set())]
+        near = places[np.argsort(np.linalg.norm(places - here, axis=1))[:9]]
+        best = fit
+        for place in near:
+            values = {**entry.parameters, **{a: float(x) for a, x in zip("xyz", place, strict=True)}}
+            model = _with(fit.model, EffectEntry(name=last.name, target=entry.target, parameters=values))
+            residuals = fitter.residuals(model)
+            if fitter.rss(residuals) < best.rss:
+                best = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
+        fit = best
+    if last.name == "snag":
+        free = (*fit.model.free, ("snag", "t0"), ("snag", "t1"))
+        steps = {**_steps(chosen), ("snag", "t0"): 0.15, ("snag", "t1"): 0.15}
+        timed = fitter.fit(replace(fit.model, free=free), steps, rounds=4)
+        fit = replace(timed, model=replace(timed.model, free=fit.model.free))
+    if last.name == "added_mass":
+        entry = next(e for e in fit.model.effects if e.name == last.name)
+        for factor in (0.5, 0.7, 1.4):
+            values = {**entry.parameters, "radius": entry.parameters["radius"] * factor}
+            other = fitter.fit(
+                _with(fit.model, EffectEntry(name=last.name, target=entry.target, parameters=values)),
+                _steps(chosen),
+                rounds=1,
+            )
+            fit = other if other.rss < fit.rss else fit
+    return fitter.fit(fit.model, _steps(chosen), rounds=3)
+
+
+def _with(model: ClothModel, entry: EffectEntry) -> ClothModel:
+    return replace(model, effects=tuple(entry if e.name == entry.name else e for e in model.effects))
+
+
+def _prune(
+    fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], worth: float, rows: int
+) -> tuple[ClothFit, list[Candidate]]:
+    """Take back what later rounds made unnecessary."""
+    changed = True
+    while changed and len(chosen) > 1:
+        changed = False
+        for c in list(chosen):
+            rest = [x for x in chosen if x is not c]
+            without = fitter.fit(fit.model.without(c.name), _steps(rest), rounds=2)
+            if (
+                worth * np.log(without.rss / fit.rss) < 10.0 * len(c.start.free)
+                or without.rss - fit.rss < MATERIAL * fit.rss
+            ):
+                fit, chosen, changed = without, rest, True
+                break
+    return fit, chosen
