@@ -127,7 +127,7 @@ class BulletWorld(World):
         size = (*BED_HALF, BED_THICKNESS / 2)
         bed = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=size), useMaximalCoordinates=1,
                                 basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2))
-        c.changeDynamics(bed, -1, lateralFriction=0.5)
+        c.changeDynamics(bed, -1, lateralFriction=1.0)
         floor = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)),
                                   useMaximalCoordinates=1, basePosition=(0, 0, -0.05))
         c.changeDynamics(floor, -1, lateralFriction=0.5)

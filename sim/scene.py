@@ -74,7 +74,7 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None) ->
     friction = rng.uniform(0.85, 1.15)
     who = replace(
         who, scale=who.scale * rng.uniform(0.98, 1.02),
-        pose={"left": _arm_pose(rng, 0.50, 0.70), "right": _arm_pose(rng, 0.60, 0.90)},
+        pose={"left": _arm_pose(rng, 0.50, 0.70), "right": _arm_pose(rng, 0.50, 0.75)},
         dry_friction=(who.dry_friction[0] * friction, who.dry_friction[1] * friction))
     middle = len(mesh.collar) // 2
     return Scene(
