@@ -54,7 +54,8 @@ class Cloth:
     def place(self, vertices: np.ndarray) -> None:
         """Put every vertex (V, 3) somewhere else [m], at rest."""
         self.client.resetMeshData(self.body, np.asarray(vertices, float).tolist())
-        self.client.resetBaseVelocity(self.body, [0.0, 0.0, 0.0])
+        # without the angular part only the mean velocity would go
+        self.client.resetBaseVelocity(self.body, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
 
     def vertices(self) -> np.ndarray:
         """(V, 3) positions in the map frame [m]."""

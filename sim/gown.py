@@ -47,7 +47,7 @@ class GownSpec:
     length: int = 18
     sleeve: int = 3
     mass: float = 0.45
-    elastic: float = 60.0
+    elastic: float = 45.0
     bending: float = 0.1
     damping: float = 0.006
     friction: float = 0.4
@@ -69,8 +69,8 @@ GOWNS: dict[str, GownSpec] = {
     spec.name: spec
     for spec in (
         GownSpec(name="medium"),
-        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=70.0, friction=0.35),
-        GownSpec(name="light", spacing=0.054, mass=0.40, elastic=50.0, damping=0.005, friction=0.45),
+        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=50.0, friction=0.35),
+        GownSpec(name="light", spacing=0.054, mass=0.41, elastic=40.0, damping=0.005, friction=0.45),
     )
 }
 

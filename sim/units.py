@@ -1,15 +1,16 @@
-"""The room's physics run in centiseconds: lengths in metres, masses in kilograms, time in 1/`PER_SECOND` seconds.
+"""The room's physics run in a tenth of a millisecond: metres, kilograms, and 1/`PER_SECOND` seconds.
 
-Bullet solves cloth damping and contacts together by conjugate residuals up to an absolute tolerance of 1e-8 in
-its own units.  In seconds that asks for far more than physics needs and the solver runs into its cap of 300
-iterations in every step with contact; with centiseconds as the unit the tolerance is met early, for 1.6 times the
-speed.  Milliseconds would double it, but then pinned vertices shake and a hanging gown pulls twice its weight
-(`tests/sim/test_handle.py`).  Everything that leaves `sim` is in SI units.
+Bullet solves cloth damping and contacts together by conjugate residuals up to an absolute residual of 1e-8 in
+its own units, or 300 iterations.  In seconds, contact never meets it: every step runs into the cap.  A smaller
+unit of time makes the same tolerance mean what physics needs, for three times the speed and the same motion
+(docs/assumptions.md).  The rigid solver's threshold compares squared velocities and must be scaled along, or
+pinned vertices shake.  Everything that leaves `sim` is in SI units.
 """
 
 from __future__ import annotations
 
-PER_SECOND = 100.0
+PER_SECOND = 1.0e4
+RESIDUAL = 1e-7 / PER_SECOND**2  # Bullet's own default, in these units
 
 
 def time(seconds: float) -> float:

@@ -24,7 +24,7 @@ def test_the_gown_hangs_on_its_hook_with_its_weight(world):
     assert load[2] == pytest.approx(-world.scene.gown.mass * GRAVITY, rel=0.25)  # it still swings a little
     frame = world.truth_frame()
     assert frame.vertices[world.scene.hang_vertex] == pytest.approx((*world.scene.rail_xy, 1.55), abs=0.03)
-    assert frame.vertices[:, 2].min() > 0.1
+    assert frame.vertices[:, 2].min() > 0.03
     assert not frame.gripper_closed.any()
 
 

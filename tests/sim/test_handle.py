@@ -13,7 +13,7 @@ from caretree.sim.gown import GOWNS, build_gown
 from caretree.sim.handle import Handle
 from pybullet_utils.bullet_client import BulletClient
 
-STEP = 0.002
+STEP = 0.0025
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def client():
     client = BulletClient(pybullet.DIRECT)
     client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
     client.setGravity(0, 0, units.force(-GRAVITY))
-    client.setPhysicsEngineParameter(numSubSteps=0)
+    client.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
     client.setTimeStep(units.time(STEP))
     yield client
     client.disconnect()
@@ -51,7 +51,7 @@ def hang(client, mass: float) -> tuple[np.ndarray, Cloth]:
 def test_a_hanging_gown_weighs_what_it_weighs(client, mass):
     load, cloth = hang(client, mass)
     assert load[2] == pytest.approx(-mass * GRAVITY, rel=0.02)
-    assert np.abs(load[:2]).max() < 0.25
+    assert np.abs(load[:2]).max() < 0.05 * mass * GRAVITY  # it still swings a little
     assert np.percentile(cloth.stretch(cloth.vertices()), 99) < 1.25
 
 
