@@ -118,7 +118,7 @@ class FallStudy(Study):
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
         scatter = float(instants.var(ddof=1)) / len(instants) if self.chosen.mode == "free" else 0.0
         error = float(np.sqrt(scatter + own.mean() ** 2))
-        if abs(mean) < 0.05 * step or abs(mean) < 3.0 * error:
+        if abs(mean) < 0.1 * step or abs(mean) < 4.0 * error:
             return None
         return mean, mean - 2.0 * error, mean + 2.0 * error
 

@@ -64,8 +64,9 @@ def bursts(logs: list[JointLog], left: list[np.ndarray], channel: int) -> list[B
 
 
 def burst_share(logs: list[JointLog], left: list[np.ndarray], channel: int, found: list[Burst]) -> float:
-    """Part of the leftover's energy inside the bursts."""
+    """Part of the leftover's energy inside the bursts; 0 where they are not three times as strong as the rest."""
     total = inside = 0.0
+    time = within = 0
     for log, series in zip(logs, left, strict=True):
         t = log.t[log.inner]
         energy = (series[:, channel] - np.median(series[:, channel])) ** 2
@@ -75,7 +76,9 @@ def burst_share(logs: list[JointLog], left: list[np.ndarray], channel: int, foun
                 rows |= (t >= b.t0) & (t <= b.t1)
         total += energy.sum()
         inside += energy[rows].sum()
-    return inside / (total + 1e-30)
+        time, within = time + len(rows), within + int(rows.sum())
+    share = inside / (total + 1e-30)
+    return share if share > 3.0 * within / max(time, 1) else 0.0
 
 
 def _turns(log: JointLog, channel: int, a: float, b: float) -> bool:

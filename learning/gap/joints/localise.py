@@ -9,8 +9,9 @@ from ..measurement import MeasurementSet
 from ..regions import intervals, phase_of, scan, state_region
 from .block import Block
 from .log import JointLog
-from .outcome import Outcome
+from .outcome import SURE, Outcome
 from .rigid import RigidModel
+from .thresholds import REMAINDER_SIZE
 from .workflow import Named
 
 ACTIVE = 0.05  # an effect acts where its load exceeds this part of its largest
@@ -55,7 +56,7 @@ def places(
     if outcome.verdict == "unknown":
         fitted = [log for log in logs if log.role != "heldout"]
         for r in outcome.remainders:
-            if r.p_value >= 0.01 or r.energy < 0.1 * outcome.floor[r.channel] ** 2:
+            if r.p_value >= SURE / len(channels) or r.energy < REMAINDER_SIZE * (r.base - r.energy):
                 continue
             for log, left in zip(fitted, outcome.left, strict=True):
                 energy = left[:, r.channel] ** 2

@@ -40,7 +40,10 @@ class Outcome:
     guess: str
 
 
-def judge(named: Named, logs: list[JointLog]) -> Outcome:
+SURE = 0.01  # level of the test on leftovers, all channels together
+
+
+def judge(named: Named, logs: list[JointLog], joints: tuple[str, ...], unit: str) -> Outcome:
     """Look at what the named effects leave and decide."""
     blocks = list(named.blocks)
     left = [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
@@ -61,15 +64,18 @@ def judge(named: Named, logs: list[JointLog]) -> Outcome:
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
     rest = np.mean(np.concatenate(calm) ** 2, axis=0)
     floor2 = np.array(
-        [max(rest[c] - (r.energy if r.p_value < 0.01 else 0.0), 0.05 * rest[c]) for c, r in enumerate(remainders)]
+        [
+            max(rest[c] - (r.energy if r.p_value < SURE / channels and r.kind != "time wave" else 0.0), 0.05 * rest[c])
+            for c, r in enumerate(remainders)
+        ]
     )
     if named.noise.source == "repeats":
         floor2 = np.minimum(named.noise.rms**2, np.maximum(rest, 1e-30))
     weight = 1.0 / floor2
     energy = np.array(
         [
-            r.energy if r.p_value < 0.01 and r.energy > REMAINDER_SIZE * floor2[c] else 0.0
-            for c, r in enumerate(remainders)
+            r.energy if r.p_value < SURE / channels and r.energy > REMAINDER_SIZE * (r.base - r.energy) else 0.0
+            for r in remainders
         ]
     )
     explained_energy = np.maximum(total - rest, 0.0)
@@ -90,7 +96,7 @@ def judge(named: Named, logs: list[JointLog]) -> Outcome:
         floor=np.sqrt(floor2),
         left=left,
         bursts=tuple(found),
-        contacts=_contacts(found, logs),
+        contacts=_contacts(found, joints, unit),
         remainders=remainders,
         guess=text,
     )
@@ -106,7 +112,7 @@ def _without(logs: list[JointLog], left: list[np.ndarray], found: list[Burst]) -
     return out
 
 
-def _contacts(found: list[Burst], logs: list[JointLog]) -> tuple[EffectFinding, ...]:
+def _contacts(found: list[Burst], joints: tuple[str, ...], unit: str) -> tuple[EffectFinding, ...]:
     """Bursts of one joint as a contact with its mean load."""
     out = []
     for c in sorted({b.channel for b in found}):
@@ -116,12 +122,12 @@ def _contacts(found: list[Burst], logs: list[JointLog]) -> tuple[EffectFinding, 
         out.append(
             EffectFinding(
                 name="contact",
-                target=f"joint {c + 1}",
+                target=joints[c],
                 size=float(max(b.strength for b in mine)),
                 parameters=(
                     Value(
                         name="load",
-                        unit="N m",
+                        unit=unit,
                         value=float(load.mean()),
                         low=float(load.mean() - spread),
                         high=float(load.mean() + spread),

@@ -21,6 +21,7 @@ WAVES = 60
 FOLDS = 6
 SHIFTS = 40
 STRETCHES = 24
+TRIED = {"position wave": 100, "time wave": 20}  # the period was picked from the same data
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,6 +31,7 @@ class Remainder:
     Attributes:
         channel: which.
         energy: mean square predicted out of sample, in the squared unit of the load.
+        base: mean square it was predicted from.
         p_value: chance that noise alone is predicted this well, over all kinds tried.
         kind: `state`, `position wave`, `time wave` or `drift`.
         detail: period or form, for the reader.
@@ -37,6 +39,7 @@ class Remainder:
 
     channel: int
     energy: float
+    base: float
     p_value: float
     kind: str
     detail: str
@@ -86,11 +89,16 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         gain, p = _predict(X, loud if kind == "time wave" else y, _interleaved(fold, edges) if within else fold, within)
         results.append(
             Remainder(
-                channel=channel, energy=max(gain, 0.0), p_value=min(1.0, len(kinds) * p), kind=kind, detail=detail
+                channel=channel,
+                energy=max(gain, 0.0),
+                base=float(np.mean((loud if kind == "time wave" else y) ** 2)),
+                p_value=min(1.0, len(kinds) * TRIED.get(kind, 1) * p),
+                kind=kind,
+                detail=detail,
             )
         )
     sure = [r for r in results if r.p_value < 0.01] or results
-    return max(sure, key=lambda r: r.energy)
+    return max(sure, key=lambda r: r.energy / max(r.base, 1e-30))
 
 
 def _interleaved(fold: np.ndarray, edges) -> np.ndarray:

@@ -1,0 +1,75 @@
+import numpy as np
+import pytest
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.study import open_study
+
+
+def solved(folder):
+    study = open_study(load_set(folder))
+    return study, *study.name()
+
+
+def test_nothing_is_named_where_nothing_is_missing(axis_set):
+    study, verdict, effects, recalibration, _ = solved(axis_set())
+    assert verdict == "adequate"
+    assert effects == recalibration == ()
+    assert study.find()[0] >= 0.05
+
+
+def test_a_wrong_mass_is_recalibration(axis_set):
+    _, verdict, effects, recalibration, _ = solved(axis_set(mass=8.0))
+    assert verdict == "recalibration"
+    assert effects == ()
+    assert recalibration[0].parameters[0].value == pytest.approx(2.0, abs=0.1)
+    assert "armature" in recalibration[0].equivalent
+
+
+@pytest.mark.parametrize(("name", "extra", "parameter", "value"), [
+    ("viscous_friction", lambda q, v, a: 6.0 * v, "coefficient", 6.0),
+    ("coulomb_friction", lambda q, v, a: 0.8 * np.sign(v), "level", 0.8),
+    ("offset", lambda q, v, a: 0.7 + 0 * v, "value", 0.7),
+    ("spring", lambda q, v, a: 12.0 * q, "stiffness", 12.0),
+])
+def test_a_single_effect_is_named_with_its_size(axis_set, name, extra, parameter, value):
+    study, verdict, effects, _, _ = solved(axis_set(extra))
+    assert verdict == "effects"
+    assert [f.name for f in effects] == [name]
+    found = next(p for p in effects[0].parameters if p.name == parameter)
+    assert found.value == pytest.approx(value, rel=0.1)
+    assert found.low < found.value < found.high
+    gap = study.show()[0]
+    assert gap.closed > 0.8
+
+
+def test_two_effects_are_named_together(axis_set):
+    _, _, effects, _, _ = solved(axis_set(lambda q, v, a: 8.0 * v + 1.0))
+    assert {f.name for f in effects} == {"viscous_friction", "offset"}
+
+
+def test_contact_is_placed_in_time(axis_set):
+    wall = 0.05
+    study, _, effects, _, _ = solved(axis_set(lambda q, v, a: 80.0 * np.maximum(q - wall, 0.0)))
+    assert [f.name for f in effects] == ["contact"]
+    both = either = 0
+    for episode in study.measured.episodes:
+        real = episode.columns["q"] > wall
+        found = np.zeros(len(real), dtype=bool)
+        for w in study.find()[2]:
+            if w.effect == "contact" and w.episode == episode.name:
+                found |= (episode.t >= w.t0) & (episode.t <= w.t1)
+        both, either = both + (real & found).sum(), either + (real | found).sum()
+    assert both / either > 0.7
+
+
+def test_an_effect_outside_the_bank_is_unknown(axis_set):
+    _, verdict, _, _, guess = solved(axis_set(lambda q, v, a: 1.5 * np.sin(90.0 * q)))
+    assert verdict == "unknown"
+    assert guess
+
+
+def test_placebo_does_not_help_and_the_smallest_size_is_smaller_than_the_found(axis_set):
+    study, _, effects, _, _ = solved(axis_set(lambda q, v, a: 6.0 * v))
+    placebos = study.show()[2]
+    assert placebos
+    assert all(p.ratio > 0.97 for p in placebos)
+    assert 0.0 < effects[0].smallest < 1.0

@@ -1,0 +1,39 @@
+import pytest
+from caretree.learning.gap.bench.score import interval, judge_case, table
+
+
+def case(hidden, said, kind="single", verdict="effects", equivalent=()):
+    truth = {"system": "axis", "seed": 1, "kind": kind, "intervals": [],
+             "effects": [{"name": n, "target": "axis", "size": 3.0} for n in hidden]}
+    return judge_case(truth, {"verdict": verdict, "where": [], "gap": {"closed": 0.9}, "effects": [
+        {"name": n, "target": "axis", "equivalent": list(equivalent)} for n in said]})
+
+
+def test_exact_set_counts_neither_more_nor_less():
+    assert case(["offset"], ["offset"])["exact"]
+    assert not case(["offset"], ["offset", "spring"])["exact"]
+    assert not case(["offset"], [])["exact"]
+    assert not case(["offset"], ["offset"], verdict="unknown")["exact"]
+
+
+def test_stated_equivalents_count_apart():
+    row = case(["asymmetric_friction"], ["coulomb_friction"], equivalent=["asymmetric_friction"])
+    assert not row["exact"]
+    assert row["up_to_equivalents"]
+
+
+def test_anything_said_where_nothing_is_hidden_is_a_false_alarm():
+    assert case([], ["offset"], kind="none")["false_alarm"]
+    assert case([], [], kind="none", verdict="unknown")["false_alarm"]
+    assert not case([], [], kind="none", verdict="adequate")["false_alarm"]
+
+
+def test_interval_is_exact():
+    low, high = interval(0, 20)
+    assert low == 0.0
+    assert high == pytest.approx(1 - 0.025 ** (1 / 20))
+
+
+def test_table_has_a_row_per_question():
+    rows = table([case(["offset"], ["offset"]), case([], [], kind="none", verdict="adequate")])
+    assert any(r[0].startswith("single effect, size >= 2") and r[2:4] == (1, 1) for r in rows)

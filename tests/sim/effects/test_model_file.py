@@ -1,0 +1,43 @@
+import pytest
+import yaml
+from caretree.sim.effects.effect import EffectError
+from caretree.sim.effects.model_file import load_model, save_model
+
+GOOD = {"system": "axis", "mass": 3.0, "recalibration": [],
+        "effects": [{"name": "viscous_friction", "target": "axis", "parameters": {"coefficient": 2.0}}]}
+
+
+def test_a_model_file_comes_back_as_written(tmp_path):
+    save_model(tmp_path / "model.yaml", GOOD)
+    model = load_model(tmp_path / "model.yaml")
+    assert model.system == "axis"
+    assert model.base == {"mass": 3.0}
+    assert model.effects[0].parameters == {"coefficient": 2.0}
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    ({"system": "boat"}, "system is 'boat'"),
+    ({"effects": [{"name": "magic", "parameters": {}}]}, "effect 'magic' does not exist for system axis"),
+    ({"effects": [{"name": "offset", "parameters": {"value": "much"}}]}, "parameters must be numbers"),
+    ({"effects": [{"name": "offset", "parameters": {}}]}, "it takes"),
+    ({"effects": [{"name": "air_drag", "parameters": {"coefficient": 1.0}}]}, "does not exist for system axis"),
+    ({"effects": ["offset"]}, "needs name, target and parameters"),
+])
+def test_a_file_that_does_not_fit_is_refused_in_one_sentence(tmp_path, change, words):
+    save_model(tmp_path / "model.yaml", {**GOOD, **change})
+    with pytest.raises(EffectError, match=words) as caught:
+        load_model(tmp_path / "model.yaml")
+    assert "\n" not in str(caught.value)
+    assert "model.yaml" in str(caught.value)
+
+
+def test_a_model_for_another_system_is_refused(tmp_path):
+    save_model(tmp_path / "model.yaml", GOOD)
+    with pytest.raises(EffectError, match="for system 'axis', it cannot be loaded into 'cloth'"):
+        load_model(tmp_path / "model.yaml").require("cloth")
+
+
+def test_other_yaml_is_refused(tmp_path):
+    (tmp_path / "model.yaml").write_text(yaml.safe_dump({"a": 1}))
+    with pytest.raises(EffectError, match="format"):
+        load_model(tmp_path / "model.yaml")
