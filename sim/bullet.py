@@ -28,6 +28,7 @@ from .errors import CaretreeError
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
+from .live_view import SIZE, LiveView
 from .person import PERSON_PARTS, Person
 from .person_force import ForceBalance
 from .recorder import FRAME_PERIOD, Recorder
@@ -72,7 +73,7 @@ class BulletWorld(World):
         gown: name of the gown; drawn from the seed when omitted.
         person: name of the person; drawn from the seed when omitted.
         model: model file of the gap workflow whose effects act on the gown.
-        view: open PyBullet's window on the room.
+        view: serve a live 3D view to the browser; its address is printed.
 
     Attributes:
         scene: what was drawn; truth, not for skills.
@@ -100,7 +101,7 @@ class BulletWorld(World):
         self._still_since = 0.0
         self._asleep = False
         self._moving_person: list[float] = []
-        self._client: Any = BulletClient(pybullet.GUI if view else pybullet.DIRECT)
+        self._client: Any = BulletClient(pybullet.DIRECT)
         self._build()
         self._robot_client: Any = BulletClient(pybullet.DIRECT)
         self._robot = self._stand(self.room.waypoints["start"])
@@ -111,6 +112,9 @@ class BulletWorld(World):
         self._force_limit = np.full(2, 30.0)
         self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
         self._balance = ForceBalance(self._person, self.scene.gown.mass, BED_TOP)
+        self._view = LiveView() if view else None
+        if self._view:
+            print(f"live view: {self._view.url}", flush=True)
         self._settle(SETTLE)
 
     def _build(self) -> None:
@@ -219,6 +223,8 @@ class BulletWorld(World):
 
     def close(self) -> None:
         """End both physics clients."""
+        if self._view:
+            self._view.close()
         self._client.disconnect()
         self._robot_client.disconnect()
 
@@ -339,6 +345,9 @@ class BulletWorld(World):
                 self._next_picture += PICTURE_PERIOD
                 renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
                 self._recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
+        if self._view:
+            renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
+            self._view.serve(lambda pose: renderer.render(pose, SIZE).rgb)
         self.timing["record"] += wall.perf_counter() - begin
 
     def _vertices_now(self) -> np.ndarray:
