@@ -15,7 +15,8 @@ from .camera import looking_at
 SIZE = (640, 480)
 TARGET = np.array((0.6, 0.5, 0.75))  # what the camera turns about [m]
 _PAGE = b"""<!doctype html><meta charset=utf-8><title>caretree, live</title>
-<style>body{margin:0;background:#222;color:#ddd;font:14px sans-serif;text-align:center}img{width:min(100vw,133vh);cursor:grab}</style>
+<style>body{margin:0;background:#222;color:#ddd;font:14px sans-serif;text-align:center}
+img{width:min(100vw,133vh);cursor:grab}</style>
 <img id=v draggable=false><div>drag: turn, wheel: zoom</div><script>
 let a=-100,e=35,d=3.9,v=document.getElementById('v'),b=false;
 function next(){v.src=`/frame?a=${a}&e=${e}&d=${d}&n=${Date.now()}`}
@@ -48,7 +49,7 @@ class LiveView:
         view = self
 
         class Handler(BaseHTTPRequestHandler):
-            def do_GET(self) -> None:  # noqa: N802 the base class calls it so
+            def do_GET(self) -> None:
                 url = urlparse(self.path)
                 if url.path == "/":
                     self._answer("text/html", _PAGE)

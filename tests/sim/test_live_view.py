@@ -8,7 +8,6 @@ import urllib.request
 
 import numpy as np
 import pytest
-
 from caretree.sim.live_view import TARGET, LiveView, orbit
 
 
