@@ -101,19 +101,22 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
                 ("mass",),
             )
         )
-    t0, t1 = _when(episodes, residuals)
+    marker, t0 = _onset(scene, episodes, residuals)
+    end = float(max(e.t[-1] for e in episodes))
+    caught = {a: float(x) for a, x in zip("xyz", scene.vertices[scene.markers[marker]], strict=True)}
     worst = {a: float(x) for a, x in zip("xyz", _worst_place(scene, residuals), strict=True)}
-    out.append(
-        _effect(
-            "snag",
-            "region",
-            {"stiffness": 0.0, **worst, "t0": t0, "t1": t1},
-            {"stiffness": 3.0, **worst, "t0": t0, "t1": t1},
-            ("stiffness",),
-        )
-    )
+    for place in (caught, worst) if worst != caught else (caught,):
+        for t1 in (t0 + 0.25 * (end - t0), t0 + 0.6 * (end - t0)):
+            out.append(
+                _effect(
+                    "snag",
+                    "region",
+                    {"stiffness": 0.0, **place, "t0": t0, "t1": t1},
+                    {"stiffness": 3.0, **place, "t0": t0, "t1": t1},
+                    ("stiffness",),
+                )
+            )
     if any(e.pins for e in episodes):
-        end = float(max(e.t[-1] for e in episodes))
         for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
             out.append(_effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",)))
     return out
@@ -130,14 +133,22 @@ def _worst_place(scene: ClothScene, residuals: list[np.ndarray]) -> np.ndarray:
     return scene.vertices[scene.markers[int(np.argmax(energy))]]
 
 
-def _when(episodes: list[ClothEpisode], residuals: list[np.ndarray]) -> tuple[float, float]:
-    """Onset and end of the largest disagreement, common to all episodes [s]."""
+def _onset(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[np.ndarray]) -> tuple[int, float]:
+    """Marker that leaves the model first, and when [s], from the episodes taken together."""
+    m = len(scene.markers)
     end = float(min(e.t[-1] for e in episodes))
-    grid = np.linspace(0.0, end, 80)
-    energy = np.sum(
-        [np.interp(grid, e.t, np.sqrt(np.sum(r**2, axis=1))) for e, r in zip(episodes, residuals, strict=True)], axis=0
-    )
-    quiet = float(np.quantile(energy, 0.1))
-    over = np.flatnonzero(energy > quiet + 0.15 * (energy.max() - quiet))
-    start = float(grid[over[0]]) if len(over) else 0.0
-    return max(0.0, start - 0.05), max(start + 0.1, float(grid[int(np.argmax(energy))]))
+    grid = np.linspace(0.0, end, 90)
+    energy = np.zeros((len(grid), m))
+    for e, r in zip(episodes, residuals, strict=True):
+        own = (r[:, : 3 * m] ** 2).reshape(len(r), m, 3).sum(axis=2)
+        energy += np.stack([np.interp(grid, e.t, column) for column in own.T], axis=1)
+    smooth = np.stack([np.convolve(c, np.ones(5) / 5.0, mode="same") for c in energy.T], axis=1)
+    quiet = float(np.median(smooth[2:10]))
+    over = smooth > 5.0 * quiet + 0.01 * float(smooth.max())
+    first = np.where(over.any(axis=0), np.argmax(over, axis=0), len(grid))
+    soonest = int(first.min())
+    if soonest >= len(grid):
+        return 0, 0.0
+    later = min(soonest + 6, len(grid) - 1)
+    marker = int(np.argmax(smooth[later]))
+    return marker, max(0.0, float(grid[soonest]) - 0.04)

@@ -17,6 +17,7 @@ from .scene import ClothEpisode, ClothScene
 from .simulate import Simulator
 
 ALPHA = 0.05
+SCREENED = 2  # episodes hypotheses are screened and verified on; the final fit uses all
 VERIFIED = 4  # candidates per round that are fitted by simulation
 MOST = 3  # effects and recalibrations at once
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
@@ -62,6 +63,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     first = ClothFitter(sim, episodes, np.ones(3 * m + (3 if episodes[0].load is not None else 0)))
     weights = _weights(first, m)
     fitter = ClothFitter(sim, episodes, weights)
+    some = ClothFitter(sim, episodes[:SCREENED], weights)
     plain = fitter.fit(ClothModel(), {})
     before = coherence(plain.residuals, pairs, m)
     rows = sum(r.size for r in plain.residuals)
@@ -74,24 +76,28 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         taken = {c.name for c in chosen}
         pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]
         say(f"round {len(chosen) + 1}: {len(pool)} hypotheses, {sim.runs} simulations so far")
-        ranked = _screen(sim, fitter, fit, chosen, pool)
+        part = some.fit(replace(fit.model, free=()), {})
+        part = replace(part, model=fit.model)
+        ranked = _screen(sim, some, part, chosen, pool)
         tried = []
         for k, c in enumerate(ranked[:VERIFIED]):
-            joined = fitter.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=2)
-            say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(fit.rss, 1e-30)):.3f} of the residual left")
+            joined = some.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=2)
+            say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(part.rss, 1e-30)):.3f} of the residual left")
             tried.append((c, joined))
         if not tried:
             break
         best = min(tried, key=lambda x: x[1].rss)
-        worth = rows / memory(best[1].residuals)
+        count = sum(r.size for r in best[1].residuals)
+        worth = count / memory(best[1].residuals)
         scored = [
-            Tried(added=c, fit=f, score=worth * np.log(f.rss / rows) + _price(len(pool), f.model)) for c, f in tried
+            Tried(added=c, fit=f, score=worth * np.log(f.rss / count) + _price(len(pool), f.model)) for c, f in tried
         ]
         scored.sort(key=lambda t: t.score - (3.0 if t.added.recalibration else 0.0))
         top = scored[0]
-        now = worth * np.log(fit.rss / rows) + _price(len(pool), fit.model)
-        drop = fit.rss - top.fit.rss
-        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss or drop < SHARE * (plain.rss - top.fit.rss):
+        now = worth * np.log(part.rss / count) + _price(len(pool), fit.model)
+        drop = part.rss - top.fit.rss
+        explained = plain.rss * count / rows - top.fit.rss
+        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss or drop < SHARE * explained:
             break
         chosen.append(top.added)
         rivals[top.added.name] = tuple(

@@ -222,7 +222,8 @@ def _run(
         )
     patch.attach(p, cloth)
     held: list[dict[str, Any] | None] = [
-        _hold(p, cloth, pin, scene, k == 0 and episode.load is not None) for k, pin in enumerate(episode.pins)
+        _hold(p, cloth, pin, scene, k == 0 and episode.load is not None, ph["mass"])
+        for k, pin in enumerate(episode.pins)
     ]
     release = [pin.release_t for pin in episode.pins]
     if patch.release_t is not None and release:
@@ -255,14 +256,16 @@ def _run(
     return np.clip(np.nan_to_num(out, nan=50.0), -50.0, 50.0)  # a blown-up run must lose, not crash
 
 
-def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool) -> dict[str, Any]:
+def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float) -> dict[str, Any]:
     """Pin vertices: to the world where they never move, else to a body that is dragged along."""
     start = scene.vertices[list(pin.vertices)].mean(axis=0)
+    mass = total * len(pin.vertices) / len(scene.vertices)
     if pin.path is None and not measured:
         return {
             "anchors": [p.createSoftBodyAnchor(cloth, int(i), -1, -1) for i in pin.vertices],
             "drive": None,
             "start": start,
+            "mass": mass,
         }
     body = p.createMultiBody(
         HAND, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.005] * 3), basePosition=start.tolist()
@@ -274,7 +277,7 @@ def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool) -> di
     drive = p.createConstraint(body, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], start.tolist())
     p.changeConstraint(drive, start.tolist(), maxForce=200.0)
     anchors = [p.createSoftBodyAnchor(cloth, int(i), body, -1) for i in pin.vertices]
-    return {"anchors": anchors, "drive": drive, "start": start}
+    return {"anchors": anchors, "drive": drive, "start": start, "mass": mass}
 
 
 def _load(p: Any, hold: dict[str, Any], gravity: tuple[float, float, float]) -> np.ndarray:
@@ -282,7 +285,8 @@ def _load(p: Any, hold: dict[str, Any], gravity: tuple[float, float, float]) -> 
     if hold["drive"] is None:
         return np.zeros(3)
     force = np.array(p.getConstraintState(hold["drive"])[:3])
-    return -(force + HAND * np.array(gravity))
+    # the constraint feels the free part of the cloth; the pinned vertices' own weight is carried too
+    return -(force + HAND * np.array(gravity)) + hold["mass"] * np.array(gravity)
 
 
 def _capsule(p: Any, c: np.ndarray) -> int:

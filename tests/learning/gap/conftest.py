@@ -26,8 +26,13 @@ def axis_set(tmp_path):
             q, v = np.sin(arg) @ amplitude, np.cos(arg) @ (amplitude * w)
             a = -np.sin(arg) @ (amplitude * w**2)
             force = 10.0 * a + extra(q, v, a) + noise * rng.normal(size=len(t))
-            np.savetxt(folder / f"e{k}.csv", np.column_stack([t, q, v, force]), delimiter=",", header="t,q,dq,force",
-                       comments="")
+            np.savetxt(
+                folder / f"e{k}.csv",
+                np.column_stack([t, q, v, force]),
+                delimiter=",",
+                header="t,q,dq,force",
+                comments="",
+            )
             listed.append({"file": f"e{k}.csv", "role": "heldout" if k == episodes - 1 else "fit"})
         (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "axis", "mass": mass, "episodes": listed}))
         return folder
@@ -53,8 +58,13 @@ def drop_set(tmp_path):
                 v += 1e-3 * a
             t = 0.033 * np.arange(len(heights))
             noise = 0.01 * np.random.default_rng([3, k]).normal(size=len(t))
-            np.savetxt(folder / f"d{k}.csv", np.column_stack([t, np.array(heights) + noise]), delimiter=",", header="t,h",
-                       comments="")
+            np.savetxt(
+                folder / f"d{k}.csv",
+                np.column_stack([t, np.array(heights) + noise]),
+                delimiter=",",
+                header="t,h",
+                comments="",
+            )
             listed.append({"file": f"d{k}.csv", "role": "heldout" if k == episodes - 1 else "fit"})
         (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "fall", "episodes": listed}))
         return folder

@@ -32,8 +32,16 @@ def test_the_four_steps_one_after_the_other_say_the_same(axis_set, tmp_path, cap
     assert json.loads((out / "verdict.json").read_text())["effects"][0]["name"] == "viscous_friction"
 
 
-@pytest.mark.parametrize("argv", [["run", "nowhere", "--out", "x"], ["name", "nowhere"], ["fetch", "moon", "--out", "x"],
-                                  ["bench", "--seeds", "a"], ["bench", "--system", "boat"]])
+@pytest.mark.parametrize(
+    "argv",
+    [
+        ["run", "nowhere", "--out", "x"],
+        ["name", "nowhere"],
+        ["fetch", "moon", "--out", "x"],
+        ["bench", "--seeds", "a"],
+        ["bench", "--system", "boat"],
+    ],
+)
 def test_bad_input_is_one_sentence_and_exit_2(argv, capsys):
     assert main(argv) == 2
     text = capsys.readouterr().err

@@ -40,8 +40,16 @@ def test_emps_friction_matches_the_published_coefficients(tmp_path):
 
 
 @real
-@pytest.mark.parametrize(("ball", "drag"), [("volleyball", True), ("whiffle_ball_1", True), ("bowling_ball", False),
-                                            ("golf_ball", False), ("baseball", False)])
+@pytest.mark.parametrize(
+    ("ball", "drag"),
+    [
+        ("volleyball", True),
+        ("whiffle_ball_1", True),
+        ("bowling_ball", False),
+        ("golf_ball", False),
+        ("baseball", False),
+    ],
+)
 def test_drag_is_found_on_light_balls_only(tmp_path, ball, drag):
     study = imported("falling_balls", tmp_path, ball)
     verdict, effects, _, _ = study.name()

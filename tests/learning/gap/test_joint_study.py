@@ -24,12 +24,15 @@ def test_a_wrong_mass_is_recalibration(axis_set):
     assert "armature" in recalibration[0].equivalent
 
 
-@pytest.mark.parametrize(("name", "extra", "parameter", "value"), [
-    ("viscous_friction", lambda q, v, a: 6.0 * v, "coefficient", 6.0),
-    ("coulomb_friction", lambda q, v, a: 0.8 * np.sign(v), "level", 0.8),
-    ("offset", lambda q, v, a: 0.7 + 0 * v, "value", 0.7),
-    ("spring", lambda q, v, a: 12.0 * q, "stiffness", 12.0),
-])
+@pytest.mark.parametrize(
+    ("name", "extra", "parameter", "value"),
+    [
+        ("viscous_friction", lambda q, v, a: 6.0 * v, "coefficient", 6.0),
+        ("coulomb_friction", lambda q, v, a: 0.8 * np.sign(v), "level", 0.8),
+        ("offset", lambda q, v, a: 0.7 + 0 * v, "value", 0.7),
+        ("spring", lambda q, v, a: 12.0 * q, "stiffness", 12.0),
+    ],
+)
 def test_a_single_effect_is_named_with_its_size(axis_set, name, extra, parameter, value):
     study, verdict, effects, _, _ = solved(axis_set(extra))
     assert verdict == "effects"

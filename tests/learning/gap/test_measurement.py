@@ -24,22 +24,25 @@ def test_phases_reach_every_episode(axis_set):
     assert all(e.phases[0].name == "reach" for e in load_set(folder).episodes)
 
 
-@pytest.mark.parametrize(("spoil", "words"), [
-    (lambda f: edit(f, system="boat"), ("measurement.yaml", "system is 'boat'", "arm, axis, fall, cloth")),
-    (lambda f: edit(f, episodes=[{"file": "e0.csv"}]), ("measurement.yaml", "one episode only")),
-    (lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "gone.csv"}]), ("gone.csv", "no such file")),
-    (lambda f: edit(f, mass=-2), ("mass is -2", "positive")),
-    (lambda f: (f / "measurement.yaml").write_text(""), ("measurement.yaml", "empty")),
-    (lambda f: (f / "measurement.yaml").write_text("a: [1"), ("measurement.yaml", "row", "not YAML")),
-    (lambda f: (f / "e1.csv").write_text(""), ("e1.csv", "empty")),
-    (lambda f: replace_cell(f, 5, 3, "nan"), ("e1.csv", "column 'force'", "row 6", "nan")),
-    (lambda f: replace_cell(f, 7, 1, "x"), ("e1.csv", "column 'q'", "row 8", "'x'")),
-    (lambda f: replace_cell(f, 9, 0, "-1"), ("e1.csv", "column 't'", "row 10", "does not increase")),
-    (lambda f: replace_cell(f, 4, 3, "1,2"), ("e1.csv", "row 5", "5 cells", "4 columns")),
-    (lambda f: replace_cell(f, 0, 3, "torque"), ("e1.csv", "column 'force' is missing", "row 1")),
-    (lambda f: scale(f, 1, 1000.0), ("e1.csv", "column 'q'", "row", "metres")),
-    (lambda f: scale(f, 0, 1000.0), ("e1.csv", "column 't'", "seconds")),
-])
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda f: edit(f, system="boat"), ("measurement.yaml", "system is 'boat'", "arm, axis, fall, cloth")),
+        (lambda f: edit(f, episodes=[{"file": "e0.csv"}]), ("measurement.yaml", "one episode only")),
+        (lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "gone.csv"}]), ("gone.csv", "no such file")),
+        (lambda f: edit(f, mass=-2), ("mass is -2", "positive")),
+        (lambda f: (f / "measurement.yaml").write_text(""), ("measurement.yaml", "empty")),
+        (lambda f: (f / "measurement.yaml").write_text("a: [1"), ("measurement.yaml", "row", "not YAML")),
+        (lambda f: (f / "e1.csv").write_text(""), ("e1.csv", "empty")),
+        (lambda f: replace_cell(f, 5, 3, "nan"), ("e1.csv", "column 'force'", "row 6", "nan")),
+        (lambda f: replace_cell(f, 7, 1, "x"), ("e1.csv", "column 'q'", "row 8", "'x'")),
+        (lambda f: replace_cell(f, 9, 0, "-1"), ("e1.csv", "column 't'", "row 10", "does not increase")),
+        (lambda f: replace_cell(f, 4, 3, "1,2"), ("e1.csv", "row 5", "5 cells", "4 columns")),
+        (lambda f: replace_cell(f, 0, 3, "torque"), ("e1.csv", "column 'force' is missing", "row 1")),
+        (lambda f: scale(f, 1, 1000.0), ("e1.csv", "column 'q'", "row", "metres")),
+        (lambda f: scale(f, 0, 1000.0), ("e1.csv", "column 't'", "seconds")),
+    ],
+)
 def test_bad_input_is_one_sentence_with_file_column_and_row(axis_set, spoil, words):
     folder = axis_set()
     spoil(folder)

@@ -3,10 +3,22 @@ from caretree.learning.gap.bench.score import interval, judge_case, table
 
 
 def case(hidden, said, kind="single", verdict="effects", equivalent=()):
-    truth = {"system": "axis", "seed": 1, "kind": kind, "intervals": [],
-             "effects": [{"name": n, "target": "axis", "size": 3.0} for n in hidden]}
-    return judge_case(truth, {"verdict": verdict, "where": [], "gap": {"closed": 0.9}, "effects": [
-        {"name": n, "target": "axis", "equivalent": list(equivalent)} for n in said]})
+    truth = {
+        "system": "axis",
+        "seed": 1,
+        "kind": kind,
+        "intervals": [],
+        "effects": [{"name": n, "target": "axis", "size": 3.0} for n in hidden],
+    }
+    return judge_case(
+        truth,
+        {
+            "verdict": verdict,
+            "where": [],
+            "gap": {"closed": 0.9},
+            "effects": [{"name": n, "target": "axis", "equivalent": list(equivalent)} for n in said],
+        },
+    )
 
 
 def test_exact_set_counts_neither_more_nor_less():

@@ -4,7 +4,9 @@ from caretree.sim.effects.effect import EffectError, JointMotion, Spread
 from caretree.sim.effects.joint_bank import JOINT_EFFECTS
 
 T = np.arange(0.0, 4.0, 0.01)
-MOTION = JointMotion(t=T, q=np.sin(T), dq=np.cos(T), ddq=-np.sin(T), load=2.0 * np.sin(T) + 1.0, measured=2.0 * np.sin(T) + 1.0)
+MOTION = JointMotion(
+    t=T, q=np.sin(T), dq=np.cos(T), ddq=-np.sin(T), load=2.0 * np.sin(T) + 1.0, measured=2.0 * np.sin(T) + 1.0
+)
 SPREAD = Spread(q=(-1.0, 1.0), speed=1.0, slow=1e-3, dt=0.01)
 
 

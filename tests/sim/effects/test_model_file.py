@@ -3,8 +3,12 @@ import yaml
 from caretree.sim.effects.effect import EffectError
 from caretree.sim.effects.model_file import load_model, save_model
 
-GOOD = {"system": "axis", "mass": 3.0, "recalibration": [],
-        "effects": [{"name": "viscous_friction", "target": "axis", "parameters": {"coefficient": 2.0}}]}
+GOOD = {
+    "system": "axis",
+    "mass": 3.0,
+    "recalibration": [],
+    "effects": [{"name": "viscous_friction", "target": "axis", "parameters": {"coefficient": 2.0}}],
+}
 
 
 def test_a_model_file_comes_back_as_written(tmp_path):
@@ -15,14 +19,17 @@ def test_a_model_file_comes_back_as_written(tmp_path):
     assert model.effects[0].parameters == {"coefficient": 2.0}
 
 
-@pytest.mark.parametrize(("change", "words"), [
-    ({"system": "boat"}, "system is 'boat'"),
-    ({"effects": [{"name": "magic", "parameters": {}}]}, "effect 'magic' does not exist for system axis"),
-    ({"effects": [{"name": "offset", "parameters": {"value": "much"}}]}, "parameters must be numbers"),
-    ({"effects": [{"name": "offset", "parameters": {}}]}, "it takes"),
-    ({"effects": [{"name": "air_drag", "parameters": {"coefficient": 1.0}}]}, "does not exist for system axis"),
-    ({"effects": ["offset"]}, "needs name, target and parameters"),
-])
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"system": "boat"}, "system is 'boat'"),
+        ({"effects": [{"name": "magic", "parameters": {}}]}, "effect 'magic' does not exist for system axis"),
+        ({"effects": [{"name": "offset", "parameters": {"value": "much"}}]}, "parameters must be numbers"),
+        ({"effects": [{"name": "offset", "parameters": {}}]}, "it takes"),
+        ({"effects": [{"name": "air_drag", "parameters": {"coefficient": 1.0}}]}, "does not exist for system axis"),
+        ({"effects": ["offset"]}, "needs name, target and parameters"),
+    ],
+)
 def test_a_file_that_does_not_fit_is_refused_in_one_sentence(tmp_path, change, words):
     save_model(tmp_path / "model.yaml", {**GOOD, **change})
     with pytest.raises(EffectError, match=words) as caught:

@@ -19,9 +19,15 @@ def state(seed=0):
     return pin.neutral(MODEL) + 0.3 * rng.normal(size=MODEL.nq), rng.normal(size=MODEL.nv), rng.normal(size=MODEL.nv)
 
 
-@pytest.mark.parametrize("effect", [("viscous_friction", JOINT, {"coefficient": 3.0}), ("offset", JOINT, {"value": 2.0}),
-                                    ("armature", JOINT, {"inertia": 0.5}),
-                                    ("payload", LAST, {"mass": 1.5, "mass_com_x": 0.0, "mass_com_y": 0.1, "mass_com_z": 0.2})])
+@pytest.mark.parametrize(
+    "effect",
+    [
+        ("viscous_friction", JOINT, {"coefficient": 3.0}),
+        ("offset", JOINT, {"value": 2.0}),
+        ("armature", JOINT, {"inertia": 0.5}),
+        ("payload", LAST, {"mass": 1.5, "mass_com_x": 0.0, "mass_com_y": 0.1, "mass_com_z": 0.2}),
+    ],
+)
 def test_forward_undoes_inverse(effect):
     q, dq, ddq = state()
     patched = arm(effect)
@@ -32,8 +38,10 @@ def test_forward_undoes_inverse(effect):
 def test_an_effect_changes_its_own_joint():
     q, dq, ddq = state(1)
     plain, heavy = arm(), arm(("viscous_friction", JOINT, {"coefficient": 3.0}))
-    change = (heavy.inverse(np.zeros(1), q[None], dq[None], ddq[None])
-              - plain.inverse(np.zeros(1), q[None], dq[None], ddq[None]))[0]
+    change = (
+        heavy.inverse(np.zeros(1), q[None], dq[None], ddq[None])
+        - plain.inverse(np.zeros(1), q[None], dq[None], ddq[None])
+    )[0]
     assert change[1] == pytest.approx(3.0 * dq[1])
     assert np.allclose(np.delete(change, 1), 0.0)
 
