@@ -69,7 +69,7 @@ GOWNS: dict[str, GownSpec] = {
     spec.name: spec
     for spec in (
         GownSpec(name="medium"),
-        GownSpec(name="large", spacing=0.057, mass=0.50, elastic=50.0, friction=0.35),
+        GownSpec(name="large", spacing=0.056, length=19, mass=0.49, elastic=46.0, friction=0.38),
         GownSpec(name="light", spacing=0.054, mass=0.41, elastic=40.0, damping=0.005, friction=0.45),
     )
 }

@@ -12,7 +12,7 @@ from .person import PERSONS, PersonSpec
 from .world import RoomMap
 
 BED_TOP = 0.60  # mattress surface above the floor [m]
-BED_HALF = np.array((0.45, 1.00))  # half width and half length [m]
+BED_HALF = np.array((0.50, 1.00))  # half width and half length [m]
 BED_THICKNESS = 0.12  # mattress and frame; below it the base of the robot fits like an over-bed table [m]
 RAIL_HEIGHT = 1.55  # of the hook [m]
 RAIL_NOMINAL = np.array((2.2, 2.4))  # [m]
@@ -102,7 +102,7 @@ def room_map() -> RoomMap:
     x, y = np.meshgrid(xs, ys)
     half = 0.50  # the base is 0.96 m x 0.79 m [m]
     free = (x > origin[0] + half) & (x < xs[-1] - half) & (y > origin[1] + half) & (y < ys[-1] - half)
-    free &= ~((np.abs(x) < BED_HALF[0] + 0.27) & (np.abs(y) < BED_HALF[1] + half))
+    free &= ~((np.abs(x) < BED_HALF[0] + 0.22) & (np.abs(y) < BED_HALF[1] + half))
     free &= ~((np.abs(x - RAIL_NOMINAL[0]) < 0.7) & (y > RAIL_NOMINAL[1] - 0.55))
     return RoomMap(
         free=free, origin=origin, resolution=RESOLUTION,

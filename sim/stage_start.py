@@ -10,7 +10,7 @@ from .cloth import Cloth
 from .handle import Handle
 
 LAID_COLLAR_Y = 0.12  # where the neckline comes to lie, just beyond the fingertips [m]
-LAID_CENTRE_X = 0.05  # [m]
+LAID_CENTRE_X = -0.03  # [m]
 _HANG_Y, _HANG_Z = 1.25, 1.28  # where the gown is held before it is laid [m]
 _PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # neckline's y, z [m]
 _SPEED = 0.25  # [m/s]
