@@ -24,12 +24,14 @@ from . import units
 from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
 from .camera import CAMERA_VIEWS, camera_intrinsics
 from .cloth import GRAVITY, Cloth
+from .effects.carriers import ClothPatch
+from .effects.gown_patch import gown_effects, gown_patch, loaded, recalibrated
 from .errors import CaretreeError
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
 from .live_view import SIZE, LiveView
-from .person import PERSON_PARTS, Person
+from .person import PERSON_PARTS, Person, trunk_capsules
 from .person_force import ForceBalance
 from .recorder import FRAME_PERIOD, Recorder
 from .robot.body import RobotBody
@@ -86,8 +88,8 @@ class BulletWorld(World):
 
     def __init__(self, *, seed: int = 0, gown: str | None = None, person: str | None = None, model: str | None = None,
                  view: bool = False) -> None:
-        if model is not None:
-            raise CaretreeError(f"--model {model}: the bullet world takes no model file yet")
+        self._effects = None if model is None else gown_effects(model)
+        self._patch: ClothPatch | None = None
         self.scene = draw_scene(seed, gown, person)
         self.room = room_map()
         self.time = _SteppedClock(self._advance_to)
@@ -128,7 +130,16 @@ class BulletWorld(World):
                          (np.sin(scene.hang_yaw), np.cos(scene.hang_yaw), 0.0), (0.0, 0.0, 1.0)))
         hung = scene.mesh.vertices @ turn.T
         hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
-        self._cloth = Cloth(c, scene.mesh, hung - hung[scene.hang_vertex] + hook, TIME_STEP)
+        start, mesh = hung - hung[scene.hang_vertex] + hook, scene.mesh
+        if self._effects is not None:
+            mesh = recalibrated(mesh, self._effects)
+            trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy)])
+            self._patch = gown_patch(self._effects, mesh, start, GRAVITY, {scene.hang_vertex}, trunk, units.PER_SECOND)
+            mesh = loaded(mesh, self._patch)
+            c.setGravity(*(units.force(g) for g in self._patch.settings.gravity))
+        self._cloth = Cloth(c, mesh, start, TIME_STEP)
+        if self._patch is not None:
+            self._patch.attach(c, self._cloth.body)
         size = (*BED_HALF, BED_THICKNESS / 2)
         bed = c.createMultiBody(0, c.createCollisionShape(c.GEOM_BOX, halfExtents=size), useMaximalCoordinates=1,
                                 basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2))
@@ -160,8 +171,12 @@ class BulletWorld(World):
             raise CaretreeError("a stage can only be prepared before the run begins")
         if stage == "C":
             self._hook.release()
+            if self._patch is not None:  # carriers cannot jump with the cloth
+                self._patch.detach()
             lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
             self._vertices = self._cloth.vertices()
+            if self._patch is not None:
+                self._patch.attach(self._client, self._cloth.body, self._vertices)
             self._robot = self._stand(self.room.waypoints["bed_right"])
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
 
@@ -269,10 +284,22 @@ class BulletWorld(World):
             self._handles[n].follow(self._hands[n])
         self._hook.before_step()
         self._move_person()
+        self._push_cloth()
         self._client.stepSimulation()
         for n in np.flatnonzero(held):
             if self._grips[n].kind == "arm":
                 self._handles[n].feel()
+
+    def _push_cloth(self) -> None:
+        """Let the effects of a model file act."""
+        if self._patch is None:
+            return
+        self._patch.apply(self.time.time)
+        if self._patch.release_t is not None and self.time.time >= self._patch.release_t:
+            holding = [grip for grip in self._grips if grip.kind == "cloth"]
+            if holding:  # it slips once
+                holding[0].release()
+                self._patch.release_t = None
 
     def _fingers(self) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
@@ -311,6 +338,7 @@ class BulletWorld(World):
         """Pass room time before the run: the gown comes to rest."""
         for _ in range(round(duration / TIME_STEP)):
             self._hook.before_step()
+            self._push_cloth()
             self._client.stepSimulation()
         self._vertices = self._cloth.vertices()
 

@@ -51,6 +51,7 @@ class ClothPatch:
         settings: ClothSettings,
         pinned: set[int] | None = None,
         capsules: np.ndarray | None = None,
+        per_second: float = 1.0,
     ) -> None:
         """Prepare the effects for a cloth in its start pose.
 
@@ -62,7 +63,9 @@ class ClothPatch:
             settings: as the world would load it.
             pinned: vertices that are held; they get no carrier.
             capsules: (K, 7) bodies cloth may cling to.
+            per_second: the world's units of time in a second; forces and velocities are converted.
         """
+        self._per_second = per_second
         self.effects = [(CLOTH_EFFECTS[e.name], e.parameters) for e in effects]
         for effect, values in self.effects:
             settings = effect.settings(settings, values)
@@ -74,6 +77,7 @@ class ClothPatch:
         self._carried = [(e, v) for e, v in self.effects if e.carried]
         self._capsules = np.zeros((0, 7)) if capsules is None else np.asarray(capsules, dtype=float)
         self._bodies: list[int] = []
+        self._anchors: list[int] = []
         self.vertices = np.zeros(0, dtype=int)
         if self._carried:
             count = int(np.clip(len(vertices) // 12, 12, 60))
@@ -98,27 +102,41 @@ class ClothPatch:
             (e.share(self._start, v) for e, v in self._carried if isinstance(e, AddedMass)), np.zeros(len(self._start))
         )
 
-    def attach(self, client: Any, cloth: int) -> None:
-        """Create the carriers and anchor them; added mass is mass of the carriers, so it has inertia too."""
+    def attach(self, client: Any, cloth: int, places: np.ndarray | None = None) -> None:
+        """Create the carriers and anchor them; added mass is mass of the carriers, so it has inertia too.
+
+        Args:
+            client: pybullet client the cloth lives in.
+            cloth: its body id.
+            places: (V, 3) where the vertices are now, if not in the start pose [m].
+        """
         self._client = client
         if not len(self.vertices):
             return
+        where = self._start if places is None else places[self.vertices]
         shape = client.createCollisionShape(client.GEOM_SPHERE, radius=RADIUS)
-        for k, (vertex, place) in enumerate(zip(self.vertices, self._start, strict=True)):
+        for k, (vertex, place) in enumerate(zip(self.vertices, where, strict=True)):
             body = client.createMultiBody(CARRIER_MASS + float(self._extra[k]), shape, basePosition=place.tolist())
             client.setCollisionFilterGroupMask(body, -1, 0, 0)
             client.changeDynamics(body, -1, linearDamping=0.0, angularDamping=0.0)
-            client.createSoftBodyAnchor(cloth, int(vertex), body, -1)
+            self._anchors.append(client.createSoftBodyAnchor(cloth, int(vertex), body, -1))
             self._bodies.append(body)
+
+    def detach(self) -> None:
+        """Remove the carriers, for instance before the cloth is put somewhere else."""
+        for anchor, body in zip(self._anchors, self._bodies, strict=True):
+            self._client.removeConstraint(anchor)
+            self._client.removeBody(body)
+        self._anchors, self._bodies = [], []
 
     def apply(self, t: float) -> None:
         """Apply the forces of one step at time `t` [s]."""
         pushing = [(e, v) for e, v in self._carried if not isinstance(e, AddedMass)]
-        if not pushing:
+        if not pushing or not self._bodies:
             return
         p = self._client
         x = np.array([p.getBasePositionAndOrientation(b)[0] for b in self._bodies])
-        v = np.array([p.getBaseVelocity(b)[0] for b in self._bodies])
+        v = np.array([p.getBaseVelocity(b)[0] for b in self._bodies]) * self._per_second
         state = CarrierState(
             t=t,
             x=x,
@@ -134,6 +152,7 @@ class ClothPatch:
         total = np.zeros_like(x)
         for effect, values in pushing:
             total += effect.forces(state, values)
+        total /= self._per_second**2
         for body, force, place in zip(self._bodies, total, x, strict=True):
             p.applyExternalForce(body, -1, force.tolist(), place.tolist(), p.WORLD_FRAME)
 
