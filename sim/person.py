@@ -26,6 +26,7 @@ from .world import SIDES, Side
 ARM_AXES = ("abduction", "elevation", "rotation", "flexion")
 PERSON_PARTS = ("trunk", "left_upper_arm", "left_forearm", "left_hand",
                 "right_upper_arm", "right_forearm", "right_hand")
+BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
 ARM_SHARE = 0.05  # of body mass, upper arm + forearm + hand (Winter, Biomechanics of Human Movement, table 4.1)
 
 
@@ -126,23 +127,29 @@ class Person:
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
             client.changeDynamics(self.body, link, jointDamping=0.0)
         self._swing = 0.0
+        self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
         self.resist()
 
     def resist(self) -> None:
-        """Set the joints' friction for their present speeds; every 10 ms or so.
+        """Set the joints' friction for their present angles and speeds; every 10 ms or so.
 
-        A velocity motor with target zero and a bounded torque is dry friction; a bound that grows with the speed
-        adds the viscous part.  (Bullet's own joint damping is explicit and shakes these light arms apart.)
+        Dry friction as a bristle: each joint is held at an angle with a bounded torque, and the angle is dragged
+        along when the joint is forced away from it.  The bound grows with the speed, which adds the viscous part.
+        (A velocity motor would creep by one step of gravity, 0.16 rad/s at the elbow; Bullet's own joint damping
+        is explicit and shakes these light arms apart.)
         """
-        dry = [self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)]
         joints = [j for side in SIDES for j in self.joints[side]]
-        speeds = [abs(state[1]) / units.rate(1.0) for state in self.client.getJointStates(self.body, joints)]
-        torques = [units.force(d + self.spec.viscous * v) for d, v in zip(dry, speeds, strict=True)]
-        targets = [units.rate(self._swing) if k == 0 else 0.0 for _ in SIDES for k in range(4)]
+        states = self.client.getJointStates(self.body, joints)
+        angles = np.array([state[0] for state in states])
+        speeds = np.array([state[1] for state in states]) / units.rate(1.0)
+        dry = np.array([self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)])
+        torques = dry + self.spec.viscous * np.abs(speeds)
         if self._swing:
-            torques = [3.0 * torque for torque in torques]
-        self.client.setJointMotorControlArray(self.body, joints, self.client.VELOCITY_CONTROL, targetVelocities=targets,
-                                              forces=torques)
+            torques, self._stuck[::4] = 3.0 * torques, angles[::4] + 0.02 * np.sign(self._swing)
+        self._stuck = np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE)
+        self.client.setJointMotorControlArray(
+            self.body, joints, self.client.POSITION_CONTROL, targetPositions=self._stuck.tolist(),
+            positionGains=[0.2] * 8, velocityGains=[1.0] * 8, forces=[units.force(t) for t in torques])
 
     def swing(self, speed: float) -> None:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
