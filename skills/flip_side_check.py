@@ -1,0 +1,40 @@
+"""Stage B: which side of the gown faces the robot before it is laid down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..perception.estimates import GownSide
+from .context import Context
+from .ports import Input, Output
+from .reasons import Reason
+from .skill import Skill, SkillFailure
+
+
+class FlipSideCheck(Skill):
+    """Looks at the gown between the hands; the printed outside must face the robot.
+
+    Inputs: `looks`, how many frames vote.  Outputs: `seen`, the last estimate.
+    """
+
+    commands = False
+    looks = Input(int, default=3)
+    seen = Output(GownSide)
+    reasons = (Reason.WRONG_SIDE, Reason.NOTHING_SEEN, Reason.SENSOR_LOST)
+
+    def steps(self) -> Iterator[None]:
+        """Look a few times and take the majority."""
+        votes = 0
+        for _ in range(self.looks):
+            side = self.context.perceive("gown_side", self.world.look("head"))
+            votes += 1 if side.outside else -1
+            yield
+        self.seen = side
+        if votes < 0:
+            raise SkillFailure(Reason.WRONG_SIDE, "the inside faces the robot")
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        context.perception.offer("gown_side", lambda frame: GownSide(stamp=frame.stamp, confidence=1.0, outside=True))
+        return cls("flip side check", context)

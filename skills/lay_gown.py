@@ -1,0 +1,65 @@
+"""Stage B: lay the unfolded gown on the person, outside up, neckline just beyond the fingertips of the resting arms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..sim.world import SIDES
+from .context import Context
+from .driving import drive_to
+from .hands import hand_now, move_hands, open_gripper
+from .ports import Input
+from .reasons import Reason
+from .skill import Skill
+
+LANE = 0.77  # x of the base beside the bed, its deck under the mattress edge [m]
+FACING = -np.pi / 2  # towards the head of the bed [rad]
+AHEAD = 0.55  # of the hands before the base's centre [m]
+BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
+# y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
+PATH = ((0.80, 1.15), (0.35, 1.00), (0.12, 0.87))
+CENTRE = 0.0  # x of the middle of the neckline [m]
+DRIVE, LOWER = 0.35, 0.25  # [m/s]
+
+
+class LayGown(Skill):
+    """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
+
+    Inputs: `width` between the two hands [m].  Expects the gown between both hands, outside facing the robot.
+    """
+
+    width = Input(float)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.PATH_BLOCKED, Reason.TIMEOUT)
+
+    def steps(self) -> Iterator[None]:
+        """Drive and lower in turn; then open, rise, drive back."""
+        self.note("lays the gown on the person")
+        yield from drive_to(self, np.array((LANE, BEGIN + AHEAD, FACING)), speed=0.4)
+        yield from self._hands_to(BEGIN, 1.28)
+        for y, z in PATH:
+            yield from drive_to(self, np.array((LANE, y + AHEAD, FACING)), speed=DRIVE, straight=True)
+            yield from self._hands_to(y, z)
+        for side in SIDES:
+            yield from open_gripper(self, side)
+        self.note("withdraws")
+        up = {side: hand_now(self, side) for side in SIDES}
+        for pose in up.values():
+            pose[:3, 3] += (0.0, 0.06, 0.22)
+        yield from move_hands(self, up, speed=0.3, free="any", retreat=True)
+        yield from drive_to(self, np.array((LANE, 1.6, FACING)), straight=True, retreat=True)
+
+    def _hands_to(self, y: float, z: float) -> Iterator[None]:
+        """Both hands to the ends of a neckline at (y, z), however they turn."""
+        goals = {}
+        for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
+            pose = hand_now(self, side)
+            pose[:3, 3] = CENTRE + sign * self.width / 2, y, z
+            goals[side] = pose
+        yield from move_hands(self, goals, speed=LOWER, free="any", way="either")
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        return cls("lay gown", context, width=0.8)
