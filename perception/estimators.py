@@ -7,10 +7,11 @@
 | hang_point | | GraspPoint `near_hang` |
 | collar_line | | CollarLine |
 | collar_corner | side, exclude, below | GraspPoint `collar_corner_*` |
-| pre_grasp | frames, poses_hand_in_map, exclude | PreGrasp |
-| layers | side, pose_hand_in_map, frames, poses_cloth_in_map | LayerCount |
+| pre_grasp | frames, poses_hand_in_map, exclude, distance | PreGrasp |
+| layers | side, pose_hand_in_map, frames, poses_cloth_in_map, opening | LayerCount |
 | gripped_cloth | pose_hand_in_map | Estimate: confidence that cloth is held |
 | sleeve_opening | side, near_in_map | SleeveOpening |
+| sleeve_strap | side, near_in_map | SleeveOpening |
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
 | head | | Head |
 | arm | side, grip_in_map, fraction | ArmPosture |
@@ -36,6 +37,7 @@ from .hanging import grasp_near_hang
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
 from .sleeve import sleeve_opening
+from .strap import sleeve_strap
 
 Estimator = Callable[..., Estimate]
 
@@ -57,12 +59,12 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
         return collar_corner(frame, side, **details)
 
     def pre_grasp(frame: Frame, poses_hand_in_map: Sequence[np.ndarray], frames: Sequence[Frame] = (),
-                  exclude: Sequence[np.ndarray] = ()) -> PreGrasp:
-        return pregrasp_proposal([*frames, frame], poses_hand_in_map, exclude)
+                  **details: Any) -> PreGrasp:
+        return pregrasp_proposal([*frames, frame], poses_hand_in_map, **details)
 
     def count(frame: Frame, side: Side, pose_hand_in_map: np.ndarray, frames: Sequence[Frame] = (),
-              poses_cloth_in_map: Sequence[np.ndarray] | None = None) -> LayerCount:
-        return layers([*frames, frame], side, pose_hand_in_map, poses_cloth_in_map)
+              **details: Any) -> LayerCount:
+        return layers([*frames, frame], side, pose_hand_in_map, **details)
 
     def near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
         return collar_near_shoulder(frame, side, shoulder_in_map, rng)
@@ -80,4 +82,5 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "collar_near_shoulder": near_shoulder, "head": head, "arm": arm}
+            "sleeve_opening": sleeve_opening, "sleeve_strap": sleeve_strap,
+            "collar_near_shoulder": near_shoulder, "head": head, "arm": arm}

@@ -1,0 +1,115 @@
+"""Lift one of the person's arms, slowly and square to it, so that a sleeve can be pulled over it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..perception.errors import PerceptionFailure
+from ..perception.estimates import ArmPosture
+from ..sim.world import SIDES, HandTwist, Side
+from .arc import Arc
+from .arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
+from .arm_path import UP, ArmPath
+from .context import Context
+from .hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
+from .ports import Input, Output
+from .reasons import Reason, SkillFailure
+from .scripted_person import offer_person
+from .skill import Skill
+from .tracking import Hold, watch_arm
+
+ABOVE = 0.12  # the open hand waits this far above the arm [m]
+DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
+_GAIN = 1.5  # of the correction towards the arc [1/s]
+_LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
+_TURN = 0.75  # share of the arm's turn that the hand makes with it
+_HEAVY, _HEAVIEST = 20.0, 28.0  # load from which the lift slows down, and at which it stands still [N]
+
+
+class LiftArm(Skill):
+    """Takes the upper arm just above the elbow from above and swings it up about the shoulder.
+
+    The hand moves on an arc: a straight line would pull the arm out of its joint.  Elbow and wrist of a person who
+    cannot move keep forearm and hand nearly in line.
+
+    Inputs: `side` of the person; `hand` that lifts; `pitch`, how far the whole arm points up in the end [rad];
+    `duration` of the lift of an arm that is not heavy [s]; `place` of the grip along the arm (0 shoulder, 1 elbow).
+    Output: `hold`, which hand holds the arm where.
+
+    When it fails after the fingers have closed, the arm is still held: recover with `ReleaseArm`.
+    """
+
+    side = Input(Side)
+    hand = Input(Side)
+    pitch = Input(float, default=float(np.deg2rad(35.0)))
+    duration = Input(float, default=6.5)
+    place = Input(float, default=0.95)
+    hold = Output(Hold)
+    reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
+               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.TIMEOUT, Reason.COMMAND_LOST)
+
+    def steps(self) -> Iterator[None]:
+        """Look, go over the arm, down, take it, swing it up."""
+        self.note(f"takes the {self.side} arm")
+        posture = watch_arm(self, self.side, period=0.0, patience=0.0)
+        yield from open_gripper(self, self.hand)
+        above = over_arm(posture, self.place, lift=ABOVE)
+        above = top_down_reachable(self, self.hand, above, (0.0, 0.25))
+        yield from move_hands(self, {self.hand: above}, way="any")
+        grip = above.copy()
+        grip[:3, 3] = ArmPath.of(posture).point(self.place) - DEEPER * UP
+        yield from move_hands(self, {self.hand: grip}, speed=0.12)
+        gap = yield from close_gripper(self, self.hand, force=FORCE)
+        if gap < ARM_MIN:
+            yield from open_gripper(self, self.hand, OPEN)
+            yield from move_hands(self, {self.hand: above}, retreat=True)
+            raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
+        self.context.guard.declare_grip(self.hand, "arm")
+        self.hold = Hold(self.hand, self.place)
+        self.note(f"lifts the {self.side} arm")
+        yield from self._swing(posture)
+
+    def _swing(self, posture: ArmPosture) -> Iterator[None]:
+        """Follow an arc about the tracked shoulder, a little further on every tick, slower under a heavy arm."""
+        n = SIDES.index(self.hand)
+        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3])
+        rise = max(self.pitch - ArmPath.of(posture).pitch, 0.0)
+        end = self.now() + 4.0 * self.duration
+        last, raised = self.now(), 0.0
+        while raised < rise:
+            if lost_arm(self, self.hand):
+                raise SkillFailure(Reason.ARM_SLIPPED, f"{raised / rise:.0%} of the way up")
+            if self.now() > end:
+                raise SkillFailure(Reason.TIMEOUT, f"{raised / rise:.0%} of the way up")
+            seen = self.world.observe()
+            step, last = seen.time - last, seen.time
+            load = seen.wrench_hand_in_map[n, :3]
+            ease = float(np.clip((_HEAVIEST - np.linalg.norm(load)) / (_HEAVIEST - _HEAVY), 0.0, 1.0))
+            wanted, tangent = arc.at(raised)
+            behind = wanted + arc.offset - seen.pose_hand_in_map[n, :3, 3]
+            ease *= float(np.clip(2.0 - np.linalg.norm(behind) / _LATE, 0.0, 1.0))
+            rate = rise / self.duration * ease * min(1.0, 0.2 + raised / 0.1, 0.2 + (rise - raised) / 0.1)
+            raised += rate * step
+            give = arc.give_way(load, tangent, step)
+            if np.linalg.norm(behind) > _LAG:
+                raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand is {np.linalg.norm(behind):.2f} m behind")
+            linear = rate * arc.radius * tangent + give + _GAIN * behind
+            # turning with the arm keeps the hand nearly square to it, and its own arm out of the way of the other hand
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, _TURN * rate * arc.axis)))
+            try:
+                watch_arm(self, self.side, hold=self.hold)
+            except PerceptionFailure:
+                self.note(f"lifts the {self.side} arm, which it cannot see")
+            yield
+        yield from self.wait(0.3)
+        watch_arm(self, self.side, hold=self.hold, period=0.0)
+        if lost_arm(self, self.hand):
+            raise SkillFailure(Reason.ARM_SLIPPED, "at the top")
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        return cls("lift arm", context, side="right", hand="left")

@@ -1,0 +1,71 @@
+"""Stage C: bring the sleeve from where it lay to the fingertips, its armhole hanging open towards the hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .arm_path import UP, ArmPath
+from .bedside import outwards
+from .context import Context
+from .hands import cloth_load, hand_now, move_hands
+from .holding import holding
+from .ports import Input
+from .reasons import Reason, SkillFailure
+from .scripted_person import offer_person
+from .skill import Skill
+from .strap_approach import presenting_place
+from .strap_grip import StrapGrip, presenting
+from .tracking import Hold, watch_arm
+
+RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
+SPEED = 0.25  # [m/s]
+BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
+HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
+
+
+class PresentSleeve(Skill):
+    """Raises the sleeve, carries it to a place beyond the fingertips and turns it there, never over the arm.
+
+    Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.
+
+    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `beyond`, how far in front
+    of the fingertips the sleeve is turned [m].
+    """
+
+    grip = Input(StrapGrip)
+    hold = Input(Hold, default=None)
+    beyond = Input(float, default=0.25)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
+               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
+
+    def steps(self) -> Iterator[None]:
+        """Up, then beyond the fingertips."""
+        arm, hand = self.grip.arm, self.grip.hand
+        self.note(f"brings the {arm} sleeve to the fingertips")
+        self.context.guard.declare_grip(hand, "cloth")
+        raised = hand_now(self, hand)
+        raised[:3, 3] += RAISE * UP + ASIDE * outwards(arm)
+        yield from holding(self, self.hold, move_hands(self, {hand: raised}, speed=SPEED, way="either"))
+        if np.linalg.norm(cloth_load(self, hand)) < HELD:
+            raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
+        path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
+        goal = presenting(self.grip, path.direction(2.5), presenting_place(path, self.beyond))
+        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=SPEED, way="either"))
+        yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
+        if np.linalg.norm(cloth_load(self, hand)) < HELD:
+            raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
+        path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
+        place = path.moved(3.0, BEFORE)
+        start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
+        goal = presenting(self.grip, path.direction(2.5), start)
+        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=SPEED, way="either"))
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+        return cls("present sleeve", context, grip=grip)
+

@@ -1,0 +1,115 @@
+"""Stage C: pull a sleeve along the arm, first keeping the force low, then following the arm as it is tracked."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
+from .arm_path import ArmPath
+from .context import Context
+from .holding import ease_hold
+from .motion.drive import PathFollower
+from .ports import Input
+from .pull_law import PullLaw
+from .reasons import Reason, SkillFailure
+from .scripted_person import offer_person
+from .skill import Skill
+from .strap_grip import StrapGrip, presenting
+from .tracking import Hold, watch_arm
+
+SPEED_AT_HAND, SPEED = 0.08, 0.11  # over the person's hand, and further up the arm [m/s]
+BASE_SPEED = 0.05  # of the base that comes along [m/s]
+CAUGHT = 8.0  # a sleeve that pulls harder than this and does not come on is caught [N]
+STUCK_FOR = 1.6  # ... for this long [s]
+ADVANCE = 0.01  # the way that counts as coming on [m]
+LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
+_RING_PERIOD = 0.5  # between two looks at the armhole [s]
+
+
+class PullAlongArm(Skill):
+    """Leads the strap above the arm's axis towards the shoulder until it is at `until`.
+
+    Inputs: `grip`, how the strap is held; `until`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
+    0 shoulder, below 0 past it towards the neck); `hold`, the hand that holds the arm, or None; `stand`, base
+    pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of the pull.
+    """
+
+    grip = Input(StrapGrip)
+    until = Input(float)
+    hold = Input(Hold, default=None)
+    stand = Input(np.ndarray, default=None)
+    law = Input(PullLaw, default=PullLaw())
+    reasons = (Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.ARM_SLIPPED,
+               Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT)
+
+    def steps(self) -> Iterator[None]:
+        """Steer anew on every tick."""
+        self.note(f"pulls the {self.grip.arm} sleeve up")
+        n = SIDES.index(self.grip.hand)
+        follower = None if self.stand is None else self._drift()
+        window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
+        place: float | None = None
+        travelled, self._aside, self._ring_at = 0.0, 0.0, -np.inf
+        while True:
+            path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
+            seen = self.world.observe()
+            hand, load = seen.pose_hand_in_map[n], seen.wrench_hand_in_map[n, :3]
+            before, place = place, path.place_of(hand[:3, 3], place)
+            if before is not None:
+                travelled += np.sign(before - place) * path.distance(before, place)
+            if place <= self.until:
+                break
+            window.append((seen.time, travelled, float(np.linalg.norm(load))))
+            while window[0][0] < seen.time - STUCK_FOR:
+                window.popleft()
+            self._judge(window)
+            self._look_at_ring(path, place)
+            ease_hold(self, self.hold)
+            speed = SPEED_AT_HAND if place > 1.9 else SPEED
+            linear = self.law.velocity(path, place, hand[:3, 3], self._aside, speed, load)
+            wanted = presenting(self.grip, path.direction(place), hand[:3, 3])
+            twist = np.concatenate((linear, self.law.turn(wanted, hand)))
+            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
+            if follower is not None:
+                self._drive(follower, seen)
+            self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
+            yield
+
+    def _judge(self, window: deque[tuple[float, float, float]]) -> None:
+        """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""
+        times, way, load = np.array(window).T
+        if times[-1] - times[0] < 0.9 * STUCK_FOR:
+            return
+        moved = float(way[-1] - way[0])
+        if moved < ADVANCE and load.mean() > CAUGHT:
+            raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{load.mean():.1f} N and {moved * 100:.1f} cm in {STUCK_FOR} s")
+        if moved < ADVANCE:
+            raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand came on {moved * 100:.1f} cm in {STUCK_FOR} s")
+        if load.max() < LOST:
+            raise SkillFailure(Reason.CLOTH_SLIPPED, f"at most {load.max():.2f} N on the {self.grip.hand} hand")
+
+    def _look_at_ring(self, path: ArmPath, place: float) -> None:
+        """Shift the grip so that the armhole, as far as it is seen, stays centred on the arm."""
+        if self.now() - self._ring_at < _RING_PERIOD or place < 1.0:
+            return
+        self._ring_at = self.now()
+
+    def _drift(self) -> PathFollower:
+        here = self.world.observe().pose_base_in_map
+        return PathFollower(np.stack((here[:2], self.stand[:2])), float(self.stand[2]), speed=BASE_SPEED)
+
+    def _drive(self, follower: PathFollower, seen: Observation) -> None:
+        if not follower.done(seen.pose_base_in_map):
+            command = follower.command(seen.pose_base_in_map)
+            velocity = command.velocity * (1.0, 1.0, 0.3)
+            self.world.send(BaseVelocity(velocity=velocity, duration=command.duration))
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+        return cls("pull along arm", context, grip=grip, until=1.45)

@@ -1,0 +1,80 @@
+"""Let a held arm go: lower it first or leave it where the gown carries it, open, and draw the hand away."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..sim.robot import model
+from ..sim.world import SIDES, HandTwist, Side
+from .arm_grip import lost_arm
+from .arm_path import UP
+from .context import Context
+from .hands import hand_now, move_arms, open_gripper
+from .ports import Input
+from .reasons import Reason
+from .scripted_person import offer_person
+from .skill import Skill
+
+_SPEED = 0.04  # of lowering [m/s]
+_RESTS = 4.0  # an arm that loads the hand with less than this lies on the bed [N]
+_LONGEST = 0.35  # lowering never goes further than this [m]
+_CLEAR, _BACK_SPEED = 0.16, 0.12  # the open hand draws back by this before it goes anywhere else [m], [m/s]
+
+
+class ReleaseArm(Skill):
+    """Ends a hold of the person's arm, whatever state it is in; a hand that holds nothing just opens and withdraws.
+
+    Inputs: `hand`; `lower`, whether to bring the arm down first; `ready`, whether the hand then goes back to its
+    ready posture.
+    """
+
+    hand = Input(Side)
+    lower = Input(bool, default=False)
+    ready = Input(bool, default=False)
+    reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
+
+    def steps(self) -> Iterator[None]:
+        """Lower if asked to, open, up and away."""
+        if self.lower and not lost_arm(self, self.hand):
+            self.note("lowers the arm")
+            yield from self._lower()
+        self.note("lets the arm go")
+        yield from open_gripper(self, self.hand)
+        yield from self._withdraw()
+        if self.ready:
+            yield from move_arms(self, model.READY, sides=(self.hand,), retreat=True)
+
+    def _withdraw(self) -> Iterator[None]:
+        """Draw the open hand back the way it points, which needs no plan and so cannot fail for want of one."""
+        back = -hand_now(self, self.hand)[:3, 2]
+        if back[2] < 0.3:  # a hand that does not point down anyway goes up
+            back = UP
+        end = self.now() + _CLEAR / _BACK_SPEED
+        while self.now() < end:
+            twist = np.append(_BACK_SPEED * back, np.zeros(3))
+            self.world.send(HandTwist(side=self.hand, twist_in_map=twist), retreat=True)
+            yield
+        yield from self.wait(0.3)
+
+    def _lower(self) -> Iterator[None]:
+        """Go straight down until the bed carries the arm."""
+        n = SIDES.index(self.hand)
+        start, begin = self.world.observe(), self.now()
+        floor = max(start.pose_hand_in_map[n, 2, 3] - _LONGEST, self.world.room.bed[1, 2] + 0.05)
+        while self.now() - begin < _LONGEST / _SPEED + 2.0:
+            seen = self.world.observe()
+            if seen.pose_hand_in_map[n, 2, 3] <= floor or lost_arm(self, self.hand):
+                return
+            # it hangs on the hand with several newtons until the bed takes it over
+            if self.now() - begin > 1.0 and -seen.wrench_hand_in_map[n, 2] < _RESTS:
+                return
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(-_SPEED * UP, np.zeros(3))), retreat=True)
+            yield
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        return cls("release arm", context, hand="left", lower=True)

@@ -1,0 +1,103 @@
+"""From where to take a strap: the way in that the arm can make, and from which it can then present the sleeve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..perception.cloud import unit
+from ..perception.estimates import SleeveOpening
+from ..sim.robot.kinematics import default_kinematics
+from ..sim.world import SIDES, Side
+from .arm_path import UP, ArmPath
+from .bedside import outwards
+from .hands import collision_checker
+from .motion.errors import Unreachable
+from .motion.ik import hand_pose, solve_ik
+from .skill import Skill
+from .strap_grip import presenting, strap_grip
+
+DEPTH = 0.014  # of the fingertips below the cloth [m]
+STANDOFF = 0.10  # the straight way in [m]
+BEYOND = 0.25  # from the fingertip to where the sleeve is presented first [m]
+_TILTS = np.deg2rad((25.0, 40.0, 55.0, 75.0))  # of the approach below the horizontal
+_SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction
+_BENT = 0.15  # what a radian of turning between grasp and presenting counts, in radians of room to the joint limits
+
+
+@dataclass(frozen=True, kw_only=True)
+class WayIn:
+    """Hand poses (4, 4) in the map before and around a strap, and where the sleeve can be presented then."""
+
+    before: np.ndarray
+    inside: np.ndarray
+    presented: np.ndarray
+
+
+def presenting_place(path: ArmPath, beyond: float = BEYOND) -> np.ndarray:
+    """(3,) place straight before the fingertips, where the sleeve is held towards the hand [m]."""
+    return path.points[3] + beyond * unit(path.direction(2.5) * (1.0, 1.0, 0.0))
+
+
+def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmPath) -> WayIn:
+    """The best way to take a strap.
+
+    Args:
+        skill: that asks.
+        arm: the wearer's side of the sleeve.
+        hand: that takes it.
+        strap: where it is.
+        path: of the arm that is to be dressed, where it is now.
+
+    Raises:
+        Unreachable: no way in leads to a grasp with which the sleeve could be presented.
+    """
+    seen, kinematics, checker = skill.world.observe(), default_kinematics(), collision_checker(skill)
+    n, base = SIDES.index(hand), seen.pose_base_in_map
+    limits = kinematics.limits[hand]
+
+    def accept(q: np.ndarray) -> bool:
+        arms = seen.arm_positions.copy()
+        arms[n] = q
+        return checker.free(base, arms)
+
+    best: tuple[float, WayIn] | None = None
+    problem: Unreachable | None = None
+    for approach in _approaches(strap, arm):
+        for sign in (1.0, -1.0):
+            inside = hand_pose(strap.position_in_map + DEPTH * approach, approach, sign * strap.closing_in_map)
+            before = inside.copy()
+            before[:3, 3] -= (DEPTH + STANDOFF) * approach
+            grip = strap_grip(arm, hand, strap, inside)
+            presented = presenting(grip, path.direction(2.5), presenting_place(path))
+            try:
+                q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=6, accept=accept)
+                q1 = solve_ik(kinematics, hand, inside, base, q0, seeds=2, accept=accept)
+                q2 = solve_ik(kinematics, hand, presented, base, q1, seeds=8, accept=accept)
+            except Unreachable as stop:
+                problem = stop
+                continue
+            room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
+            score = min(room, 0.4) - _BENT * float(np.abs(q2 - q1).max())
+            if best is None or score > best[0]:
+                best = (score, WayIn(before=before, inside=inside, presented=presented))
+        if best is not None and best[0] > -_BENT * 2.6:
+            break  # a flatter approach holds the strap more squarely: steeper ones only if they must be
+    if best is None:
+        assert problem is not None
+        raise problem
+    return best[1]
+
+
+def _approaches(strap: SleeveOpening, arm: Side) -> list[np.ndarray]:
+    """Unit vectors into the cloth, the one most square to it first, all from the robot's side and from above."""
+    towards_bed = -outwards(arm)
+    flat = strap.approach_in_map * (1.0, 1.0, 0.0)
+    heading = unit(flat) if np.linalg.norm(flat) > 0.3 and flat @ towards_bed > 0.0 else towards_bed
+    side = np.cross(UP, towards_bed)
+    turn = np.clip(np.arctan2(heading @ side, heading @ towards_bed), -_SIDEWAYS, _SIDEWAYS)
+    heading = np.cos(turn) * towards_bed + np.sin(turn) * side
+    square = float(np.arctan2(-strap.approach_in_map[2], max(float(strap.approach_in_map @ heading), 1e-6)))
+    tilts = sorted(_TILTS, key=lambda tilt: abs(tilt - square))
+    return [np.cos(tilt) * heading - np.sin(tilt) * UP for tilt in tilts]

@@ -1,0 +1,125 @@
+"""Where the person is while the robot works: the arms tracked from the head camera, the guard told of every change.
+
+    posture = watch_arm(self, "right")                       # looks when the last look is older than PERIOD
+    posture = watch_arm(self, "right", hold=Hold("left", 0.9))  # the left hand holds the arm near the elbow
+    see_person(self)                                         # both arms, head and trunk, as far as they are seen
+
+A look costs about 20 ms of computing, so skills that tick faster share one look for several ticks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..perception.errors import PerceptionFailure, Problem
+from ..perception.estimates import ArmPosture, Head
+from ..sim.world import SIDES, Frame, Side
+from .skill import Skill
+
+PERIOD = 0.25  # between two looks [s]
+PATIENCE = 3.0  # an arm that cannot be seen is taken to be where it was for this long [s]
+_ARM_RADIUS, _TRUNK_RADIUS, _HEAD_RADIUS = 0.05, 0.16, 0.11  # [m]
+_CROWN_TO_SHOULDER, _TRUNK, _LEGS = 0.31, 0.55, 0.85  # along the body [m]
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A robot hand that holds the person's arm at a place: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip."""
+
+    hand: Side
+    place: float
+
+
+@dataclass
+class Watch:
+    """What was seen of the person last, shared by the skills of a run.
+
+    Attributes:
+        arms: latest posture by the person's side.
+        seen: when that arm was last seen or felt [s].
+        looked: when the camera was last asked [s].
+    """
+
+    arms: dict[Side, ArmPosture] = field(default_factory=dict)
+    seen: dict[Side, float] = field(default_factory=dict)
+    looked: float = -np.inf
+
+
+def watch_of(skill: Skill) -> Watch:
+    """The run's memory of the person."""
+    return skill.context.memory.of(Watch, Watch)
+
+
+def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: float = PERIOD,
+              patience: float = PATIENCE) -> ArmPosture:
+    """Posture of one arm, no older than `period` [s] when the arm can be seen.
+
+    Args:
+        skill: that asks.
+        side: of the person.
+        hold: the hand that holds this arm, if one does.
+        period: between two looks; 0 looks at once [s].
+        patience: how long an arm that cannot be seen counts as staying where it was [s].
+
+    Raises:
+        PerceptionFailure: it was never found, or has been lost for longer than `patience`.
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    watch, now = watch_of(skill), skill.now()
+    if side not in watch.arms or now - watch.looked >= period:
+        watch.looked = now
+        try:
+            _take(skill, skill.world.look("head"), side, hold)
+        except PerceptionFailure:
+            if now - watch.seen.get(side, -np.inf) > patience:
+                raise
+    return watch.arms[side]
+
+
+def see_person(skill: Skill) -> list[Side]:
+    """Look once and tell the guard of everything that is seen; returns the arms found.
+
+    Raises:
+        PerceptionFailure: nobody is seen at all.
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    frame, found = skill.world.look("head"), []
+    watch_of(skill).looked = skill.now()
+    for side in SIDES:
+        try:
+            _take(skill, frame, side, None)
+            found.append(side)
+        except PerceptionFailure:
+            continue
+    try:
+        _tell_body(skill, skill.context.perceive("head", frame))
+    except PerceptionFailure:
+        if not found:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "person") from None
+    return found
+
+
+def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
+    """Update one arm from a frame and tell the guard."""
+    details = {}
+    if hold is not None:
+        n = SIDES.index(hold.hand)
+        details = {"grip_in_map": skill.world.observe().pose_hand_in_map[n, :3, 3], "fraction": hold.place}
+    posture = skill.context.perceive("arm", frame, side=side, **details)
+    watch = watch_of(skill)
+    watch.arms[side], watch.seen[side] = posture, skill.now()
+    skill.context.guard.update_person(posture.points_in_map, part=f"{side} arm", radius=_ARM_RADIUS)
+
+
+def _tell_body(skill: Skill, head: Head) -> None:
+    crown, middle = head.crown_in_map, head.middle
+    level = skill.world.room.bed[1, 2] + 0.11
+    shoulders = crown[1] + _CROWN_TO_SHOULDER
+    trunk = np.array([(middle, shoulders + down, level) for down in (0.0, _TRUNK, _TRUNK + _LEGS)])
+    skill.context.guard.update_person(trunk, part="trunk", radius=_TRUNK_RADIUS)
+    face = [crown + (0.0, _HEAD_RADIUS, 0.0), (middle, shoulders, level)]
+    skill.context.guard.update_person(np.array(face), part="head", radius=_HEAD_RADIUS)
