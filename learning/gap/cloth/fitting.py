@@ -15,6 +15,7 @@ from ....sim.effects.model_file import EffectEntry
 from .scene import ClothEpisode
 from .simulate import Simulator
 
+IDLE = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 Free = tuple[str, str]  # (effect name or "physics", parameter)
 
 
@@ -26,11 +27,18 @@ class ClothModel:
         effects: entries, in order.
         physics: changed physics parameters.
         free: parameters that are fitted.
+        carried: the recording shows the mark of carriers (they damp a swing a little), so every run has them.
     """
 
     effects: tuple[EffectEntry, ...] = ()
     physics: dict[str, float] = field(default_factory=dict)
     free: tuple[Free, ...] = ()
+    carried: bool = False
+
+    @property
+    def acting(self) -> tuple[EffectEntry, ...]:
+        """Effects to simulate, with idle carriers where the model has them."""
+        return (*self.effects, IDLE) if self.carried else self.effects
 
     def value(self, which: Free) -> float:
         """Value of one free parameter."""
@@ -51,7 +59,7 @@ class ClothModel:
                 if (e.name, p.name) in changes:
                     values[p.name] = float(np.clip(changes[(e.name, p.name)], p.lower, p.upper))
             effects.append(EffectEntry(name=e.name, target=e.target, parameters=values))
-        return ClothModel(effects=tuple(effects), physics=physics, free=self.free)
+        return replace(self, effects=tuple(effects), physics=physics)
 
     def joined(self, other: ClothModel) -> ClothModel:
         """Both models' effects and physics."""
@@ -59,6 +67,7 @@ class ClothModel:
             effects=(*self.effects, *other.effects),
             physics={**self.physics, **other.physics},
             free=(*self.free, *other.free),
+            carried=self.carried or other.carried,
         )
 
     def without(self, name: str) -> ClothModel:
@@ -67,12 +76,13 @@ class ClothModel:
             effects=tuple(e for e in self.effects if e.name != name),
             physics={k: v for k, v in self.physics.items() if k != name},
             free=tuple(f for f in self.free if name not in f),
+            carried=self.carried,
         )
 
 
 def predict(sim: Simulator, model: ClothModel, episodes: list[ClothEpisode]) -> list[np.ndarray]:
     """Markers (and load) of every episode under a model."""
-    return [sim.run(e, model.effects, model.physics) for e in episodes]
+    return [sim.run(e, model.acting, model.physics) for e in episodes]
 
 
 def measured(episode: ClothEpisode) -> np.ndarray:

@@ -20,6 +20,7 @@ ALPHA = 0.05
 SCREENED = 2  # episodes hypotheses are screened and verified on; the final fit uses all
 VERIFIED = 4  # candidates per round that are fitted by simulation
 MOST = 3  # effects and recalibrations at once
+CARRIED = 0.8  # carriers are taken as given where they alone bring the squares below this part
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained
 SAME = 12.0  # criterion within which two explanations fit alike
@@ -66,9 +67,14 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     some = ClothFitter(sim, episodes[:SCREENED], weights)
     plain = fitter.fit(ClothModel(), {})
     before = coherence(plain.residuals, pairs, m)
+    start = plain
+    carried = fitter.fit(ClothModel(carried=True), {})
+    if carried.rss < CARRIED * plain.rss:
+        start = carried  # recorded in a world whose cloth already has carriers
+        before = coherence(start.residuals, pairs, m)
     rows = sum(r.size for r in plain.residuals)
     chosen: list[Candidate] = []
-    fit, rivals = plain, {}
+    fit, rivals = start, {}
     worth = rows / memory(plain.residuals)
     after = before
     while len(chosen) < MOST and after.p_value < 0.01 and after.shared > 0.03 * after.floor**2:
@@ -96,7 +102,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         top = scored[0]
         now = worth * np.log(part.rss / count) + _price(len(pool), fit.model)
         drop = part.rss - top.fit.rss
-        explained = plain.rss * count / rows - top.fit.rss
+        explained = start.rss * count / rows - top.fit.rss
         if now - top.score <= 0 or drop < MATERIAL * top.fit.rss or drop < SHARE * explained:
             break
         chosen.append(top.added)
@@ -148,7 +154,7 @@ def _screen(
     for c in pool:
         for f in c.start.free:
             model = fit.model.joined(c.start.moved({f: c.push.value(f)}))
-            runs += [(e, model.effects, model.physics) for e in fitter.episodes]
+            runs += [(e, model.acting, model.physics) for e in fitter.episodes]
     sim.ahead(runs)
     own = [fitter._columns(fit.model, fit.residuals, _steps(chosen))] if chosen and fit.model.free else []
     scored = []

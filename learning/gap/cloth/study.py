@@ -208,7 +208,7 @@ class ClothStudy(Study):
     def show(self) -> tuple[Gap, Gap | None, tuple[Placebo, ...], dict[str, str]]:
         """See `Study.show`."""
         model = self.found.fit.model
-        self.sim.ahead([(e, m.effects, m.physics) for e in self.heldout for m in (ClothModel(), model)])
+        self.sim.ahead([(e, m.acting, m.physics) for e in self.heldout for m in (ClothModel(), model)])
         fitter = self._fitter(self.heldout)
         before, after = fitter.residuals(ClothModel()), fitter.residuals(model)
         m = len(self.scene.markers)

@@ -56,11 +56,25 @@ def generic_columns(log: JointLog, channel: int, scale: np.ndarray) -> np.ndarra
         if 0 <= j < log.q.shape[1]
         for i, name in ((1, "dq"), (2, "ddq"))
     ]
-    centres = np.linspace(float(np.quantile(q, 0.02)), float(np.quantile(q, 0.98)), 9)
-    spots = [np.exp(-(((q - c) / (0.8 * (centres[1] - centres[0]) + 1e-9)) ** 2)) for c in centres]
-    spots += [s * x for x in spots]
+    return log.shared(np.column_stack([*plain, *around, waves]))
+
+
+PLACES = 9
+
+
+def place_columns(log: JointLog, channel: int, scale: np.ndarray) -> np.ndarray:
+    """Bumps over the range of a joint, alone and in the direction of motion, (T_inner, 18)."""
+    q = (log.q[:, channel] - scale[0, 0, channel]) / scale[0, 1, channel]
+    centres = np.linspace(-1.8, 1.8, PLACES)
+    bumps = np.exp(-(((q[:, None] - centres) / (0.8 * (centres[1] - centres[0]))) ** 2))
+    return log.shared(np.concatenate([bumps, bumps * log.motion(channel).direction[:, None]], axis=1))
+
+
+def past_columns(log: JointLog, channel: int) -> np.ndarray:
+    """States that remember the way, alone and with the load, (T_inner, 5)."""
+    angle, u = log.q[:, channel], log.rigid[:, channel]
     past = [wind_up(angle, part * (np.ptp(angle) + 1e-9)) for part in (0.01, 0.04, 0.15)]
-    return log.shared(np.column_stack([*plain, *around, waves, *spots, *past, *(z * u for z in past[:2])]))
+    return log.shared(np.column_stack([*past, past[0] * u, past[1] * u]))
 
 
 def wind_up(q: np.ndarray, distance: float) -> np.ndarray:

@@ -10,11 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 from scipy.stats import t as student
 
-from .generic import clock_columns, generic_columns, scales
+from .generic import clock_columns, generic_columns, past_columns, place_columns, scales
 from .gram import fold_edges
 from .log import JointLog
+from .noise import autocorrelation, estimate_noise
 
 RIDGES = (1e-3, 1e-1, 3.0)
 WAVES = 60
@@ -60,6 +62,11 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
     scale = scales(logs)
     kinds = {
         "state": (np.concatenate([generic_columns(log, channel, scale) for log in logs]), "a function of the state"),
+        "place": (
+            np.concatenate([place_columns(log, channel, scale) for log in logs]),
+            "bound to a place, or friction that differs from place to place",
+        ),
+        "past": (np.concatenate([past_columns(log, channel) for log in logs]), "a memory of the way travelled"),
         "drift": (
             np.concatenate([clock_columns(log, channel) for log in logs]),
             "slow in time, alone or with the state",
@@ -87,6 +94,8 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
     for kind, (X, detail) in kinds.items():
         within = kind in ("time wave", "drift")
         gain, p = _predict(X, loud if kind == "time wave" else y, _interleaved(fold, edges) if within else fold, within)
+        if kind == "drift":
+            gain, p = _wald(X, y, [len(x) for x in left])
         results.append(
             Remainder(
                 channel=channel,
@@ -99,6 +108,23 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         )
     sure = [r for r in results if r.p_value < 0.01] or results
     return max(sure, key=lambda r: r.energy / max(r.base, 1e-30))
+
+
+def _wald(X: np.ndarray, y: np.ndarray, lengths: list[int]) -> tuple[float, float]:
+    """Mean square a few columns remove in sample, less what chance removes, and its p-value under coloured noise."""
+    X = X / (np.sqrt(np.mean(X**2, axis=0)) + 1e-12)
+    u, s, _ = np.linalg.svd(X, full_matrices=False)
+    u = u[:, s > 1e-4 * s[0]]
+    after = y - u @ (u.T @ y)
+    ends = np.cumsum(lengths)[:-1]
+    parts = [x[:, None] for x in np.split(after, ends)]
+    noise = estimate_noise(parts, "residual")
+    acf = autocorrelation(np.split(u, ends), noise.acf.shape[1])
+    widening = float(noise.widening(acf, 0).max())
+    before = float(y @ y)
+    gain = len(y) * np.log(before / max(float(after @ after), 1e-30)) / widening
+    removed = (before - float(after @ after) * (1.0 + u.shape[1] * widening / len(y))) / len(y)
+    return removed, float(chi2.sf(gain, u.shape[1]))
 
 
 def _interleaved(fold: np.ndarray, edges) -> np.ndarray:
