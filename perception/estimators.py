@@ -14,6 +14,7 @@
 | sleeve_strap | side, near_in_map | SleeveOpening |
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
 | head | | Head |
+| chest_cover | shoulders_in_map | Cover |
 | arm | side, grip_in_map, fraction | ArmPosture |
 
 `frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
@@ -30,10 +31,12 @@ import numpy as np
 from ..sim.world import SIDES, Frame, RoomMap, Side
 from .arm_tracker import ArmTracker
 from .collar import collar_corner, collar_line, collar_near_shoulder
-from .estimates import ArmPosture, Estimate, GraspPoint, LayerCount, PreGrasp
+from .cover import chest_cover
+from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreGrasp
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
 from .hanging import grasp_near_hang
+from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
 from .sleeve import sleeve_opening
@@ -72,6 +75,9 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def head(frame: Frame) -> Estimate:
         return head_seen(frame, room.bed)
 
+    def cover(frame: Frame, shoulders_in_map: np.ndarray) -> Cover:
+        return chest_cover(frame, room.bed, shoulders_in_map)
+
     def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0) -> ArmPosture:
         """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip."""
         tracker = trackers[side]
@@ -82,5 +88,5 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "sleeve_strap": sleeve_strap,
-            "collar_near_shoulder": near_shoulder, "head": head, "arm": arm}
+            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "sleeve_strap": sleeve_strap,
+            "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

@@ -15,7 +15,7 @@ BED_TOP = 0.60  # mattress surface above the floor [m]
 BED_HALF = np.array((0.50, 1.00))  # half width and half length [m]
 BED_THICKNESS = 0.12  # mattress and frame; below it the base of the robot fits like an over-bed table [m]
 RAIL_HEIGHT = 1.55  # of the hook [m]
-RAIL_NOMINAL = np.array((2.2, 2.4))  # [m]
+RAIL_NOMINAL = np.array((2.7, 0.4))  # [m]
 RESOLUTION = 0.05  # of the occupancy map [m]
 
 
@@ -30,7 +30,7 @@ class Scene:
         person: size, arm pose, joint stiffness.
         bed_xy: middle of the bed in the map frame, off the nominal place by at most 2 cm [m].
         rail_xy: the hook in the map frame [m].
-        hang_vertex: vertex of the neckline that hangs on the hook.
+        hang_vertex: vertex of the neckline, within 11 cm of its middle, that hangs on the hook.
         hang_yaw: direction in which the gown's outside faces, against the map's y [rad].
     """
 
@@ -81,7 +81,7 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None) ->
         seed=seed, gown=spec, mesh=mesh, person=who,
         bed_xy=(float(rng.uniform(-0.02, 0.02)), float(rng.uniform(-0.02, 0.02))),
         rail_xy=(float(RAIL_NOMINAL[0] + rng.uniform(-0.1, 0.1)), float(RAIL_NOMINAL[1] + rng.uniform(-0.05, 0.05))),
-        hang_vertex=int(mesh.collar[middle + rng.integers(-4, 5)]),
+        hang_vertex=int(mesh.collar[middle + rng.integers(-2, 3)]),
         hang_yaw=float(rng.uniform(-0.4, 0.4) + (np.pi if rng.random() < 0.5 else 0.0)))
 
 
@@ -103,9 +103,10 @@ def room_map() -> RoomMap:
     half = 0.50  # the base is 0.96 m x 0.79 m [m]
     free = (x > origin[0] + half) & (x < xs[-1] - half) & (y > origin[1] + half) & (y < ys[-1] - half)
     free &= ~((np.abs(x) < BED_HALF[0] + 0.22) & (np.abs(y) < BED_HALF[1] + half))
-    free &= ~((np.abs(x - RAIL_NOMINAL[0]) < 0.7) & (y > RAIL_NOMINAL[1] - 0.55))
+    free &= ~((np.abs(x - RAIL_NOMINAL[0]) < 0.9) & (np.abs(y - RAIL_NOMINAL[1]) < 0.5))
     return RoomMap(
         free=free, origin=origin, resolution=RESOLUTION,
-        waypoints={"start": (2.2, 0.3, np.pi / 2), "rail": (2.2, 1.65, np.pi / 2), "lay": (0.8, 1.6, -np.pi / 2),
+        waypoints={"start": (2.7, -1.5, np.pi / 2), "rail": (2.7, -0.35, np.pi / 2),
+                   "rail_back": (2.7, 1.15, -np.pi / 2), "lay": (0.8, 1.6, -np.pi / 2),
                    "bed_right": (1.25, -0.25, np.pi), "bed_left": (-1.25, -0.25, 0.0)},
         bed=np.array(((-BED_HALF[0], -BED_HALF[1], BED_TOP - BED_THICKNESS), (BED_HALF[0], BED_HALF[1], BED_TOP))))

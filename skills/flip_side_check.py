@@ -14,11 +14,13 @@ from .skill import Skill, SkillFailure
 class FlipSideCheck(Skill):
     """Looks at the gown between the hands; the printed outside must face the robot.
 
-    Inputs: `looks`, how many frames vote.  Outputs: `seen`, the last estimate.
+    Inputs: `looks`, how many frames vote; `sure`, the confidence from which a sight of the inside counts (sleeves
+    and folds always show some of it).  Outputs: `seen`, the last estimate.
     """
 
     commands = False
     looks = Input(int, default=3)
+    sure = Input(float, default=0.6)
     seen = Output(GownSide)
     reasons = (Reason.WRONG_SIDE, Reason.NOTHING_SEEN, Reason.SENSOR_LOST)
 
@@ -27,7 +29,7 @@ class FlipSideCheck(Skill):
         votes = 0
         for _ in range(self.looks):
             side = self.context.perceive("gown_side", self.world.look("head"))
-            votes += 1 if side.outside else -1
+            votes += -1 if not side.outside and side.confidence > self.sure else 1
             yield
         self.seen = side
         if votes < 0:
