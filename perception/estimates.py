@@ -149,3 +149,10 @@ class Head(Estimate):
 
     crown_in_map: np.ndarray
     middle: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cover(Estimate):
+    """How much of the trunk's front lies under the gown.  share: 0 to 1."""
+
+    share: float

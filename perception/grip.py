@@ -17,7 +17,8 @@ from .errors import PerceptionFailure, Problem
 from .estimates import Estimate, LayerCount
 
 _NEAR = 0.045  # cloth held by the fingers is this close to the point between them [m]
-_PAD = np.array((0.014, 0.0425, 0.019))  # half size of the swept volume in the hand frame: width, opening, depth [m]
+_PAD_HALF_WIDTH = 0.014  # of the swept volume, across the pads [m]
+_PAD_DEPTH = (-0.038, 0.006)  # of the swept volume, along the approach from the fingertips: the pads are 38 mm long [m]
 _APART = 0.012  # points farther from each other are on different sheets [m]
 _FEWEST = 4  # points of a sheet
 
@@ -45,7 +46,7 @@ def gripped_cloth(frame: Frame, pose_hand_in_map: np.ndarray) -> Estimate:
 
 
 def layers(frames: Sequence[Frame], side: Side, pose_hand_in_map: np.ndarray,
-           poses_cloth_in_map: Sequence[np.ndarray] | None = None) -> LayerCount:
+           poses_cloth_in_map: Sequence[np.ndarray] | None = None, opening: float = 0.085) -> LayerCount:
     """Count the sheets of cloth in the volume between open fingers: 0, 1 or 2 (two or more).
 
     Points of several views are put together.  A sheet hidden in all of them is not counted, so one layer is
@@ -56,6 +57,7 @@ def layers(frames: Sequence[Frame], side: Side, pose_hand_in_map: np.ndarray,
         side: which hand.
         pose_hand_in_map: (4, 4) of the open hand around the cloth, from the joint angles.
         poses_cloth_in_map: (4, 4) at each frame of what carries the cloth (the other hand), if that moved in between.
+        opening: of the fingers [m].
 
     Raises:
         PerceptionFailure: no gown in any of the frames.
@@ -70,10 +72,8 @@ def layers(frames: Sequence[Frame], side: Side, pose_hand_in_map: np.ndarray,
     everything = np.vstack(clouds)
     if not len(everything):
         raise PerceptionFailure(Problem.NOTHING_SEEN, "gown")
-    local = (everything - pose_hand_in_map[:3, 3]) @ pose_hand_in_map[:3, :3]
-    inside = local[(np.abs(local) < _PAD).all(axis=1)]
-    views = sum(bool((np.abs((c - pose_hand_in_map[:3, 3]) @ pose_hand_in_map[:3, :3]) < _PAD).all(axis=1).any())
-                for c in clouds if len(c))
+    inside = _between(everything, pose_hand_in_map, opening)
+    views = sum(len(_between(cloud, pose_hand_in_map, opening)) > 0 for cloud in clouds)
     stamp = frames[-1].stamp
     if len(inside) < _FEWEST:
         return LayerCount(stamp=stamp, confidence=0.8, side=side, layers=0)
@@ -84,6 +84,14 @@ def layers(frames: Sequence[Frame], side: Side, pose_hand_in_map: np.ndarray,
     # rendered gowns, 144 volumes: of those counted as one 85 % (one view) to 89 % (six) were, of those as two 95 %
     confidence = min(0.89, 0.84 + 0.01 * views) if sheets == 1 else 0.95
     return LayerCount(stamp=stamp, confidence=confidence, side=side, layers=min(sheets, 2))
+
+
+def _between(points: np.ndarray, pose_hand_in_map: np.ndarray, opening: float) -> np.ndarray:
+    """Those of `points` (n, 3) that fingers `opening` apart take when they close, in the hand frame (k, 3) [m]."""
+    local = (points - pose_hand_in_map[:3, 3]) @ pose_hand_in_map[:3, :3]
+    low, high = _PAD_DEPTH
+    return local[(np.abs(local[:, 0]) < _PAD_HALF_WIDTH) & (np.abs(local[:, 1]) < opening / 2)
+                 & (local[:, 2] > low) & (local[:, 2] < high)]
 
 
 def _gown_points(frame: Frame) -> np.ndarray:

@@ -25,13 +25,14 @@ _HELD = 0.12  # nearer than this to the holding fingers nothing can be grasped [
 
 
 def pregrasp_proposal(frames: Sequence[Frame], poses_hand_in_map: Sequence[np.ndarray],
-                      exclude: Sequence[np.ndarray] = ()) -> PreGrasp:
+                      exclude: Sequence[np.ndarray] = (), distance: tuple[float, float] = (_HELD, np.inf)) -> PreGrasp:
     """Choose view, corner and primitive.
 
     Args:
         frames: views of the head camera, oldest first.
         poses_hand_in_map: (4, 4) of the holding hand at each frame, from the joint angles.
         exclude: points (3,) in the frame of the holding hand that were tried in vain [m].
+        distance: least and greatest distance of the corner from the holding hand [m].
 
     Raises:
         PerceptionFailure: no view shows an end of the binding.
@@ -44,7 +45,8 @@ def pregrasp_proposal(frames: Sequence[Frame], poses_hand_in_map: Sequence[np.nd
             continue
         for c in candidates:
             in_hand = pose[:3, :3].T @ (c.position_in_map - pose[:3, 3])
-            if np.linalg.norm(in_hand) > _HELD and all(np.linalg.norm(in_hand - e) > _SAME for e in exclude):
+            wanted = all(np.linalg.norm(in_hand - place) > _SAME for place in exclude)
+            if wanted and distance[0] < np.linalg.norm(in_hand) < distance[1]:
                 found.append((view, c, in_hand))
     if not found:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "corner of the neck binding in any view")

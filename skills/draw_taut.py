@@ -1,4 +1,4 @@
-"""Stage B: the two hands that hold the collar's corners draw apart until the neckline is taut."""
+"""Stage B: stretch the gown by the two corners of its neckline until the neckline is straight."""
 
 from __future__ import annotations
 
@@ -6,57 +6,73 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.robot.kinematics import planar_pose
-from ..sim.world import SIDES, HandTwist
+from ..sim.robot.kinematics import default_kinematics, planar_pose
+from ..sim.world import Side
 from .context import Context
-from .hands import cloth_load, hand_now, move_hands
+from .hands import hand_now, move_hands
+from .motion.ik import hand_pose
+from .motion.reach import plan_hand_line
 from .ports import Input, Output
-from .reasons import Reason
-from .skill import Skill, SkillFailure
+from .reasons import Reason, SkillFailure
+from .skill import Skill
 
-AHEAD, HEIGHT, START = 0.62, 1.36, 0.30  # where the hands begin: before the base, above the floor, half apart [m]
-SPEED = 0.08  # of each hand when it draws [m/s]
-SLACK_WEIGHT = 0.8  # a hand that carries less has lost the gown [N]
+AHEAD, HEIGHT = 0.72, 1.28  # where the hands meet, in base [m]
+SLACK = 0.62  # distance of the hands at which no gown's neckline is taut yet [m]
+WIDEST = 0.95  # no gown's neckline is longer [m]
+SHORTEST = 0.70  # a neckline that is taut already here is not held by both its corners [m]
 
 
 class DrawTaut(Skill):
-    """Raises both hands before the chest and draws them apart until the cloth between them pulls back.
+    """Brings both hands to the same height and draws them apart until the neckline pulls.
 
-    Inputs: `pull`, the horizontal load at which the neckline counts as taut [N]; `widest`, where to stop at the
-    latest [m].  Outputs: `width` between the hands [m].
+    Inputs: `tension`, along the neckline, that ends the motion [N]; `speed` of each hand meanwhile [m/s].
+    Output: `width`, the distance of the hands then [m].
     """
 
-    pull = Input(float, default=1.2)
-    widest = Input(float, default=0.92)
+    tension = Input(float, default=1.2)
+    speed = Input(float, default=0.06)
     width = Output(float)
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED,
+               Reason.MULTI_LAYER)
 
     def steps(self) -> Iterator[None]:
-        """Raise, draw, settle."""
-        self.note("draws the gown taut")
-        base = planar_pose(self.world.observe().pose_base_in_map)
-        goals = {}
-        for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-            pose = hand_now(self, side)
-            pose[:3, 3] = (base @ np.array((AHEAD, sign * START, HEIGHT, 1.0)))[:3]
-            goals[side] = pose
-        yield from move_hands(self, goals, speed=0.35, free="any", way="any")
-        outwards = {"left": base[:3, 1], "right": -base[:3, 1]}
-        while True:
-            apart = hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]
-            width = float(np.linalg.norm(apart))
-            loads = {side: cloth_load(self, side) for side in SIDES}
-            light = [side for side in SIDES if np.linalg.norm(loads[side]) < SLACK_WEIGHT]
-            if light and width > 2 * START + 0.1:
-                raise SkillFailure(Reason.CLOTH_SLIPPED, f"the {light[0]} hand carries nothing")
-            if width > self.widest or min(-loads[side] @ outwards[side] for side in SIDES) > self.pull:
-                break
-            for side in SIDES:
-                self.world.send(HandTwist(side=side, twist_in_map=np.append(SPEED * outwards[side], np.zeros(3))))
+        """Bring the hands up, draw, stop in time, look."""
+        self.note("brings the hands to the same height")
+        yield from move_hands(self, self._goals(SLACK), speed=0.3, free="approach", way="any")
+        yield from self.wait(0.5)
+        at_rest = self._tension()
+        self.note("draws the neckline taut")
+        seen = self.world.observe()
+        self.world.send(plan_hand_line(default_kinematics(), self._goals(WIDEST), seen.arm_positions,
+                                       seen.pose_base_in_map, free="approach", hand_speed=self.speed))
+        while self._tension() - at_rest < self.tension:
+            if self._width() > WIDEST - 0.01:
+                raise SkillFailure(Reason.CLOTH_SLIPPED, f"the hands are {self._width():.2f} m apart and nothing pulls")
             yield
         self.world.stop()
-        yield from self.wait(0.5)
+        yield from self.until(self.context.guard.still, timeout=2.0, reason=Reason.MOTION_BLOCKED)
+        width = self._width()
+        if width < SHORTEST:
+            raise SkillFailure(Reason.MULTI_LAYER, f"the neckline pulls at {width:.2f} m already")
+        self.note(f"taut at {width:.2f} m")
         self.width = width
+
+    def _goals(self, width: float) -> dict[Side, np.ndarray]:
+        """Hand poses `width` apart, pointing down, closing across the robot's view."""
+        base = planar_pose(self.world.observe().pose_base_in_map)
+        return {side: base @ hand_pose(np.array((AHEAD, sign * width / 2, HEIGHT)), np.array((0.0, 0.0, -1.0)),
+                                       np.array((1.0, 0.0, 0.0)))
+                for side, sign in (("left", 1.0), ("right", -1.0))}
+
+    def _width(self) -> float:
+        return float(np.linalg.norm(hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]))
+
+    def _tension(self) -> float:
+        """How hard the cloth pulls the hands together, of both hands the lesser [N]."""
+        forces = self.world.observe().wrench_hand_in_map[:, :3]
+        across = hand_now(self, "right")[:3, 3] - hand_now(self, "left")[:3, 3]
+        across /= np.linalg.norm(across)
+        return float(min(forces[0] @ across, -forces[1] @ across))
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -25,12 +25,15 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .strap_approach import way_in
 from .strap_grip import StrapGrip, strap_grip
-from .tracking import Hold, watch_arm
+from .tracking import Hold, careful, watch_arm
 
 DISTANCE = 0.29  # from the hand's camera to the strap it looks at [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
 HEADWARD = np.array((0.0, -0.05, 0.0))  # from an armhole to its strap, in a gown laid with its collar headward [m]
-_VIEWS = np.deg2rad((52.0, 68.0, 40.0))  # the hand points that far below the horizontal when it looks
+# The hand points that far below the horizontal when it looks, its camera 35 degrees less: at a sleeve that lies on
+# the bed, and at one that hangs over its edge.
+_VIEWS_LYING, _VIEWS_HANGING = np.deg2rad((97.0, 80.0, 65.0)), np.deg2rad((52.0, 68.0, 40.0))
+_HANGS = 0.03  # a sleeve this far below the mattress hangs over the edge [m]
 
 
 class GraspSleeve(Skill):
@@ -61,7 +64,7 @@ class GraspSleeve(Skill):
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")
         way = way_in(self, self.side, self.hand, strap, ArmPath.of(watch_arm(self, self.side, hold=self.hold)))
-        yield from move_hands(self, {self.hand: way.before}, speed=0.25, way="either")
+        yield from move_hands(self, {self.hand: way.before}, speed=careful(self, 0.3), way="either")
         yield from open_gripper(self, self.hand, OPENING)
         yield from move_hands(self, {self.hand: way.inside}, speed=0.12, way="either")
         pose = hand_now(self, self.hand)
@@ -77,10 +80,11 @@ class GraspSleeve(Skill):
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""
         problem: PerceptionFailure | MotionError | None = None
-        for tilt in _VIEWS:
+        hangs = far.position_in_map[2] < self.world.room.bed[1, 2] - _HANGS
+        for tilt in _VIEWS_HANGING if hangs else _VIEWS_LYING:
             pose = self._seeing(far.position_in_map + HEADWARD, tilt)
             try:
-                yield from move_hands(self, {self.hand: pose}, way="any")
+                yield from move_hands(self, {self.hand: pose}, way="any", speed=careful(self, 0.5))
             except MotionError as stop:
                 problem = problem or stop
                 continue

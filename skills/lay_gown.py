@@ -20,7 +20,7 @@ AHEAD = 0.55  # of the hands before the base's centre [m]
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
 PATH = ((0.80, 1.15), (0.35, 1.00), (0.12, 0.87))
-CENTRE = 0.0  # x of the middle of the neckline [m]
+CENTRE, NEAREST = 0.0, 0.40  # x of the middle of the neckline, and of the near hand at least [m]
 DRIVE, LOWER = 0.35, 0.25  # [m/s]
 
 
@@ -55,7 +55,7 @@ class LayGown(Skill):
         goals = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
             pose = hand_now(self, side)
-            pose[:3, 3] = CENTRE + sign * self.width / 2, y, z
+            pose[:3, 3] = max(CENTRE, NEAREST - self.width / 2) + sign * self.width / 2, y, z
             goals[side] = pose
         yield from move_hands(self, goals, speed=LOWER, free="any", way="either")
 

@@ -18,14 +18,14 @@ from .ports import Input, Output
 from .reasons import Reason, SkillFailure
 from .scripted_person import offer_person
 from .skill import Skill
-from .tracking import Hold, watch_arm
+from .tracking import Hold, careful, watch_arm
 
 ABOVE = 0.12  # the open hand waits this far above the arm [m]
 DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
 _GAIN = 1.5  # of the correction towards the arc [1/s]
 _LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
 _TURN = 0.75  # share of the arm's turn that the hand makes with it
-_HEAVY, _HEAVIEST = 20.0, 28.0  # load from which the lift slows down, and at which it stands still [N]
+_HEAVY, _HEAVIEST = 26.0, 29.5  # load from which the lift slows down, and at which it stands still [N]
 
 
 class LiftArm(Skill):
@@ -44,8 +44,8 @@ class LiftArm(Skill):
     side = Input(Side)
     hand = Input(Side)
     pitch = Input(float, default=float(np.deg2rad(35.0)))
-    duration = Input(float, default=6.5)
-    place = Input(float, default=0.95)
+    duration = Input(float, default=5.5)
+    place = Input(float, default=1.0)
     hold = Output(Hold)
     reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
                Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.TIMEOUT, Reason.COMMAND_LOST)
@@ -57,7 +57,7 @@ class LiftArm(Skill):
         yield from open_gripper(self, self.hand)
         above = over_arm(posture, self.place, lift=ABOVE)
         above = top_down_reachable(self, self.hand, above, (0.0, 0.25))
-        yield from move_hands(self, {self.hand: above}, way="any")
+        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, 0.5))
         grip = above.copy()
         grip[:3, 3] = ArmPath.of(posture).point(self.place) - DEEPER * UP
         yield from move_hands(self, {self.hand: grip}, speed=0.12)

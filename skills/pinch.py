@@ -29,7 +29,8 @@ _ROLLS = np.deg2rad((0, 180, 30, -30, 210, 150, 60, -60, 240, 120, 90, -90))  # 
 
 
 def reach_in(skill: Skill, side: Side, position: np.ndarray, approach: np.ndarray, closing: np.ndarray, *,
-             opening: float = OPEN, standoff: float = STANDOFF, speed: float = SPEED) -> Iterator[None]:
+             opening: float = OPEN, standoff: float = STANDOFF, depth: float = DEPTH,
+             speed: float = SPEED) -> Iterator[None]:
     """Bring open fingers around a place, at first in front of it and then straight in.
 
     Args:
@@ -40,27 +41,35 @@ def reach_in(skill: Skill, side: Side, position: np.ndarray, approach: np.ndarra
         closing: (3,) along which the fingers should close; the nearest roll that the arm can take is used.
         opening: of the fingers on the way in [m].
         standoff: where to begin the straight way [m].
+        depth: how far the fingertips go beyond the place [m].
         speed: of the hand until there; half of it on the straight way [m/s].
 
     Raises:
         MotionError: out of reach.
         SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
     """
-    before, inside = _poses(skill, side, position, approach, closing, standoff)
+    before, inside = grasp_poses(skill, side, position, approach, closing, standoff=standoff, depth=depth)
     skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
     yield from move_hands(skill, {side: before}, speed=speed, way="any")
     yield from open_gripper(skill, side, opening)
     yield from move_hands(skill, {side: inside}, speed=speed / 2)
 
 
-def _poses(skill: Skill, side: Side, position: np.ndarray, approach: np.ndarray, closing: np.ndarray,
-           standoff: float) -> tuple[np.ndarray, np.ndarray]:
-    """Hand poses before and around the cloth, with the first roll at which the arm reaches both."""
+def grasp_poses(skill: Skill, side: Side, position: np.ndarray, approach: np.ndarray, closing: np.ndarray, *,
+                sweep: np.ndarray | float = 0.0, standoff: float = STANDOFF,
+                depth: float = DEPTH) -> tuple[np.ndarray, np.ndarray]:
+    """Hand poses (4, 4) in front of and around the cloth, with the first roll at which the arm reaches both.
+
+    Arguments are those of `reach_in`; `sweep` (3,) is where the hand will go on from there [m].
+
+    Raises:
+        Unreachable: with no roll.
+    """
     seen, n = skill.world.observe(), SIDES.index(side)
     kinematics, checker = default_kinematics(), collision_checker(skill)
+    arms = seen.arm_positions.copy()
 
     def accept(q: np.ndarray) -> bool:
-        arms = seen.arm_positions.copy()
         arms[n] = q
         return checker.free(seen.pose_base_in_map, arms)
 
@@ -68,10 +77,14 @@ def _poses(skill: Skill, side: Side, position: np.ndarray, approach: np.ndarray,
     for roll in _ROLLS:
         turned = np.cos(roll) * closing + np.sin(roll) * across
         before = hand_pose(position - standoff * approach, approach, turned)
-        inside = hand_pose(position + DEPTH * approach, approach, turned)
+        inside = hand_pose(position + depth * approach, approach, turned)
         try:
-            q = solve_ik(kinematics, side, before, seen.pose_base_in_map, seen.arm_positions[n], seeds=6, accept=accept)
-            solve_ik(kinematics, side, inside, seen.pose_base_in_map, q, seeds=2, accept=accept)
+            q = solve_ik(kinematics, side, before, seen.pose_base_in_map, seen.arm_positions[n], seeds=5, accept=accept)
+            q = solve_ik(kinematics, side, inside, seen.pose_base_in_map, q, seeds=2, accept=accept)
+            if np.any(sweep):
+                swept = inside.copy()
+                swept[:3, 3] += sweep
+                solve_ik(kinematics, side, swept, seen.pose_base_in_map, q, seeds=2, accept=accept)
         except Unreachable as stop:
             unreachable = stop
             continue

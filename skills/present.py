@@ -49,7 +49,9 @@ def presented(side: Side, angle: float) -> np.ndarray:
 
 
 def present(skill: Skill, side: Side, angle: float, *, speed: float = SPEED) -> Iterator[None]:
-    """Hold a hand up, turned by `angle` about the vertical [rad]; a hand that is up already turns where it is.
+    """Hold a hand up, turned by `angle` about the vertical [rad], and the other arm out of the way.
+
+    A hand that is up already turns where it is.
 
     Raises:
         MotionError: something is in the way.
@@ -59,9 +61,7 @@ def present(skill: Skill, side: Side, angle: float, *, speed: float = SPEED) -> 
     q = seen.arm_positions[SIDES.index(side)]
     here = turned_by(side, q)
     if here is None:
-        arms = seen.arm_positions.copy()
-        arms[SIDES.index(side)] = presented(side, angle)
-        yield from move_arms(skill, arms, sides=(side,), speed=speed)
+        yield from move_arms(skill, presenting(side, angle), speed=speed)
         return
     between = np.linspace(here, angle, int(np.ceil(abs(angle - here) / _STEP)) + 1)[1:]
     points = np.array([q, *(presented(side, turn) for turn in between)])

@@ -17,10 +17,10 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .strap_approach import presenting_place
 from .strap_grip import StrapGrip, presenting
-from .tracking import Hold, watch_arm
+from .tracking import Hold, careful, watch_arm
 
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
-SPEED = 0.25  # [m/s]
+SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
@@ -47,12 +47,12 @@ class PresentSleeve(Skill):
         self.context.guard.declare_grip(hand, "cloth")
         raised = hand_now(self, hand)
         raised[:3, 3] += RAISE * UP + ASIDE * outwards(arm)
-        yield from holding(self, self.hold, move_hands(self, {hand: raised}, speed=SPEED, way="either"))
+        yield from holding(self, self.hold, move_hands(self, {hand: raised}, speed=careful(self, SPEED), way="either"))
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
         goal = presenting(self.grip, path.direction(2.5), presenting_place(path, self.beyond))
-        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=SPEED, way="either"))
+        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
@@ -60,7 +60,7 @@ class PresentSleeve(Skill):
         place = path.moved(3.0, BEFORE)
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
-        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=SPEED, way="either"))
+        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -11,16 +11,18 @@ from ..sim.world import SIDES, HandTwist, Side
 from .arm_grip import lost_arm
 from .arm_path import UP
 from .context import Context
-from .hands import hand_now, move_arms, open_gripper
+from .hands import move_arms, open_gripper
 from .ports import Input
 from .reasons import Reason
+from .retreat import withdraw
 from .scripted_person import offer_person
 from .skill import Skill
+from .tracking import careful
 
 _SPEED = 0.04  # of lowering [m/s]
 _RESTS = 4.0  # an arm that loads the hand with less than this lies on the bed [N]
 _LONGEST = 0.35  # lowering never goes further than this [m]
-_CLEAR, _BACK_SPEED = 0.16, 0.12  # the open hand draws back by this before it goes anywhere else [m], [m/s]
+_CLEAR = 0.16  # the open hand draws back by this before it goes anywhere else [m]
 
 
 class ReleaseArm(Skill):
@@ -42,21 +44,10 @@ class ReleaseArm(Skill):
             yield from self._lower()
         self.note("lets the arm go")
         yield from open_gripper(self, self.hand)
-        yield from self._withdraw()
+        yield from withdraw(self, [self.hand], _CLEAR)
         if self.ready:
-            yield from move_arms(self, model.READY, sides=(self.hand,), retreat=True)
-
-    def _withdraw(self) -> Iterator[None]:
-        """Draw the open hand back the way it points, which needs no plan and so cannot fail for want of one."""
-        back = -hand_now(self, self.hand)[:3, 2]
-        if back[2] < 0.3:  # a hand that does not point down anyway goes up
-            back = UP
-        end = self.now() + _CLEAR / _BACK_SPEED
-        while self.now() < end:
-            twist = np.append(_BACK_SPEED * back, np.zeros(3))
-            self.world.send(HandTwist(side=self.hand, twist_in_map=twist), retreat=True)
-            yield
-        yield from self.wait(0.3)
+            yield from move_arms(self, model.READY, sides=(self.hand,), speed=careful(self, 0.5),
+                                 retreat=True)
 
     def _lower(self) -> Iterator[None]:
         """Go straight down until the bed carries the arm."""

@@ -21,7 +21,7 @@ from .strap_grip import presenting, strap_grip
 DEPTH = 0.014  # of the fingertips below the cloth [m]
 STANDOFF = 0.10  # the straight way in [m]
 BEYOND = 0.25  # from the fingertip to where the sleeve is presented first [m]
-_TILTS = np.deg2rad((25.0, 40.0, 55.0, 75.0))  # of the approach below the horizontal
+_TILTS = np.deg2rad((25.0, 40.0, 55.0, 72.0, 88.0))  # of the approach below the horizontal
 _SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction
 _BENT = 0.15  # what a radian of turning between grasp and presenting counts, in radians of room to the joint limits
 

@@ -14,7 +14,7 @@ from .ports import Input, Output
 from .reasons import Reason
 from .skill import Skill, SkillFailure
 
-AHEAD, HEIGHT, START = 0.62, 1.36, 0.30  # where the hands begin: before the base, above the floor, half apart [m]
+AHEAD, HEIGHT, START = 0.62, 1.36, 0.19  # where the hands begin: before the base, above the floor, half apart [m]
 SPEED = 0.08  # of each hand when it draws [m/s]
 SLACK_WEIGHT = 0.8  # a hand that carries less has lost the gown [N]
 

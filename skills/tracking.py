@@ -9,17 +9,23 @@ A look costs about 20 ms of computing, so skills that tick faster share one look
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..perception.cloud import project
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture, Head
 from ..sim.world import SIDES, Frame, Side
+from .arm_path import ArmPath
 from .skill import Skill
 
 PERIOD = 0.25  # between two looks [s]
-PATIENCE = 3.0  # an arm that cannot be seen is taken to be where it was for this long [s]
+PATIENCE = 30.0  # an arm under the gown is taken to stay where it was for this long [s]
+_VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
+_BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
+NEAR_SPEED, _NEAR = 0.13, 0.34  # of a hand this near to the person; the guard's limits are 0.135 and 0.30 [m/s], [m]
 _ARM_RADIUS, _TRUNK_RADIUS, _HEAD_RADIUS = 0.05, 0.16, 0.11  # [m]
 _CROWN_TO_SHOULDER, _TRUNK, _LEGS = 0.31, 0.55, 0.85  # along the body [m]
 
@@ -40,11 +46,13 @@ class Watch:
         arms: latest posture by the person's side.
         seen: when that arm was last seen or felt [s].
         looked: when the camera was last asked [s].
+        parts: what the guard was told, chains of points (n, 3) with a radius [m].
     """
 
     arms: dict[Side, ArmPosture] = field(default_factory=dict)
     seen: dict[Side, float] = field(default_factory=dict)
     looked: float = -np.inf
+    parts: dict[str, tuple[np.ndarray, float]] = field(default_factory=dict)
 
 
 def watch_of(skill: Skill) -> Watch:
@@ -71,12 +79,26 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
     watch, now = watch_of(skill), skill.now()
     if side not in watch.arms or now - watch.looked >= period:
         watch.looked = now
+        frame = skill.world.look("head")
         try:
-            _take(skill, skill.world.look("head"), side, hold)
+            if side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE:
+                raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
+            _take(skill, frame, side, hold)
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
+
+
+def visible_share(frame: Frame, posture: ArmPosture) -> float:
+    """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm."""
+    path = ArmPath.of(posture)
+    axis = np.array([path.point(float(place)) for place in np.linspace(0.3, 3.0, 28)])
+    u, v, depth = project(frame, axis).T
+    height, width = frame.depth.shape
+    inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
+    seen = frame.depth[np.where(inside, np.round(v), 0).astype(int), np.where(inside, np.round(u), 0).astype(int)]
+    return float((inside & (seen > depth - _BEHIND)).mean())
 
 
 def see_person(skill: Skill) -> list[Side]:
@@ -112,7 +134,7 @@ def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
     posture = skill.context.perceive("arm", frame, side=side, **details)
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
-    skill.context.guard.update_person(posture.points_in_map, part=f"{side} arm", radius=_ARM_RADIUS)
+    _tell(skill, f"{side} arm", posture.points_in_map, _ARM_RADIUS)
 
 
 def _tell_body(skill: Skill, head: Head) -> None:
@@ -120,6 +142,31 @@ def _tell_body(skill: Skill, head: Head) -> None:
     level = skill.world.room.bed[1, 2] + 0.11
     shoulders = crown[1] + _CROWN_TO_SHOULDER
     trunk = np.array([(middle, shoulders + down, level) for down in (0.0, _TRUNK, _TRUNK + _LEGS)])
-    skill.context.guard.update_person(trunk, part="trunk", radius=_TRUNK_RADIUS)
-    face = [crown + (0.0, _HEAD_RADIUS, 0.0), (middle, shoulders, level)]
-    skill.context.guard.update_person(np.array(face), part="head", radius=_HEAD_RADIUS)
+    _tell(skill, "trunk", trunk, _TRUNK_RADIUS)
+    _tell(skill, "head", np.array((crown + (0.0, _HEAD_RADIUS, 0.0), (middle, shoulders, level))), _HEAD_RADIUS)
+
+
+def _tell(skill: Skill, part: str, points: np.ndarray, radius: float) -> None:
+    skill.context.guard.update_person(points, part=part, radius=radius)
+    watch_of(skill).parts[part] = points, radius
+
+
+def careful(skill: Skill, fast: float) -> Callable[[np.ndarray], float]:
+    """A limit on a hand's speed [m/s] by its place (3,): `fast` in the open, slow near the person.
+
+    Planned with it, a motion is slow only where it must be; the guard would slow all of it.
+    """
+    parts = list(watch_of(skill).parts.values())
+
+    def limit(place: np.ndarray) -> float:
+        near = any(_gap(place, points) < radius + _NEAR for points, radius in parts)
+        return min(fast, NEAR_SPEED) if near or not parts else fast
+
+    return limit
+
+
+def _gap(place: np.ndarray, points: np.ndarray) -> float:
+    """Distance from a place (3,) to a chain of points (n, 3) [m]."""
+    start, edge = points[:-1], np.diff(points, axis=0)
+    share = np.clip(np.einsum("ij,ij->i", place - start, edge) / np.maximum((edge**2).sum(axis=1), 1e-12), 0.0, 1.0)
+    return float(np.linalg.norm(start + share[:, None] * edge - place, axis=1).min())

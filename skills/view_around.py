@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,8 +15,34 @@ from .present import present
 from .reasons import Reason
 from .skill import Skill
 
-STEP = np.deg2rad(30.0)  # from the paper
-FIRST = np.deg2rad(-75.0)  # yaw of the hand at the first view, against the base
+# Turns of the hand [degrees], 30 apart as in the paper.  The second round is for what the first did not show.
+ROUNDS = ((-75, -45, -15, 15, 45, 75), (145, 115, 90, -90, -115, -145))
+
+
+SAME_PLACE = 0.05  # [m]
+
+
+@dataclass
+class Attempts:
+    """What was done with the gown since a hand last took it.
+
+    Attributes:
+        rounds: of looking at it from all sides.
+        places: (3,) in the frame of the holding hand that were grasped at in vain [m].
+    """
+
+    rounds: int = 0
+    places: list[np.ndarray] = field(default_factory=list)
+
+    def given_up(self) -> tuple[np.ndarray, ...]:
+        """Places that were tried twice."""
+        return tuple(a for n, a in enumerate(self.places)
+                     if any(np.linalg.norm(a - b) < SAME_PLACE for b in self.places[:n]))
+
+    def forget(self) -> None:
+        """Start anew, because the gown hangs differently."""
+        self.rounds = 0
+        self.places.clear()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +61,13 @@ class Views:
 
 
 class ViewAround(Skill):
-    """Holds the gown up in front of the head camera and looks after every 30 degrees of a turn.
+    """Holds the gown up in front of the head camera and looks at it six times while it turns.
 
-    Inputs: `side`, the hand that holds the gown; `count`, how many views; `settle`, how long the cloth may swing
-    out before each [s].  Output: `views`.
+    Inputs: `side`, the hand that holds the gown; `settle`, how long the cloth may swing out before each look [s].
+    Output: `views`.  When it looks again at a gown held as before, it shows the other side first.
     """
 
     side = Input(Side)
-    count = Input(int, default=6)
     settle = Input(float, default=0.4)
     views = Output(Views)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.SENSOR_LOST,
@@ -50,10 +75,13 @@ class ViewAround(Skill):
 
     def steps(self) -> Iterator[None]:
         """Bring the hand up, then turn, wait and look in turn."""
+        attempts = self.context.memory.of(Attempts, Attempts, name=self.side)
+        turns = np.deg2rad(ROUNDS[attempts.rounds % len(ROUNDS)])
+        attempts.rounds += 1
         frames, poses = [], []
-        for k in range(self.count):
-            self.note(f"looks at the gown, view {k + 1} of {self.count}")
-            yield from present(self, self.side, FIRST + k * STEP)
+        for k, turn in enumerate(turns):
+            self.note(f"looks at the gown, view {k + 1} of {len(turns)}")
+            yield from present(self, self.side, float(turn))
             if k == 0:
                 yield from look_towards(self, hand_now(self, self.side)[:3, 3])
             yield from self.wait(self.settle)
@@ -64,4 +92,4 @@ class ViewAround(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        return cls("view around", context, side="right", count=2)
+        return cls("view around", context, side="right")

@@ -1,0 +1,41 @@
+"""Let go with one hand and draw it back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..sim.world import Side
+from .context import Context
+from .hands import open_gripper
+from .motion.errors import MotionError
+from .pinch import back_off
+from .ports import Input
+from .reasons import Reason
+from .skill import Skill
+
+
+class Release(Skill):
+    """Opens the fingers of one hand, then draws it back along its own approach as far as the arm can.
+
+    Inputs: `side`, the hand; `distance` to draw it back at most [m].
+    """
+
+    side = Input(Side)
+    distance = Input(float, default=0.15)
+    reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
+
+    def steps(self) -> Iterator[None]:
+        """Open, draw back."""
+        self.note(f"the {self.side} hand lets go")
+        yield from open_gripper(self, self.side)
+        for share in (1.0, 0.5, 0.25):
+            try:
+                yield from back_off(self, self.side, share * self.distance)
+                return
+            except MotionError:  # too far for this arm: less will do
+                continue
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        return cls("release", context, side="left")

@@ -1,0 +1,128 @@
+"""The dressing tree: stages A to D, each with its precondition, retries and recoveries, under one fail-safe.
+
+A  take the gown down: go to the side of the rail that shows the outside, take both shoulders, lift it off
+B  unfold it and lay it on the person, outside up, arms bare
+C  dress the right arm, drive round the foot of the bed, dress the left arm
+D  draw the collar to the neck on both sides
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from py_trees.behaviour import Behaviour
+
+from ..sim.world import SIDES, Side
+from ..skills.bedside import LIFTING, PULLING, stance
+from ..skills.context import Context
+from ..skills.flip_side_check import FlipSideCheck
+from ..skills.grasp_sleeve import GraspSleeve
+from ..skills.lay_gown import LayGown
+from ..skills.lift_arm import LiftArm
+from ..skills.look_at_person import LookAtPerson
+from ..skills.navigate import Navigate
+from ..skills.ports import Key
+from ..skills.present_sleeve import PresentSleeve
+from ..skills.pull_along_arm import PullAlongArm
+from ..skills.reasons import Reason
+from ..skills.release_arm import ReleaseArm
+from ..skills.retreat import Retreat
+from ..skills.spread import Spread
+from ..skills.stretch_neckline import StretchNeckline
+from ..skills.take_down import TakeDown
+from ..skills.take_shoulder import TakeShoulder
+from .composers import fallback, sequence
+from .decorators import RecoverBy, Retry, Stage, Timeout
+
+HEAD_END = -0.1  # where the armhole ends up, beyond the shoulder [share of the upper arm]
+PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
+
+
+def take_down(context: Context) -> Behaviour:
+    """Stage A."""
+    find_outside = fallback(
+        "find the outside",
+        FlipSideCheck("outside to the front", context, seen=Key("rail_side")),
+        Navigate("go behind the rail", context, goal="rail_back"))
+    shoulders = [Retry(f"take the {sleeve} shoulder, again", TakeShoulder(
+        f"take the {sleeve} shoulder", context, hand=hand, sleeve=sleeve, grasp=Key(f"{sleeve}_shoulder")), attempts=2)
+        for hand, sleeve in (("left", "right"), ("right", "left"))]
+    return Stage("A take down", None, Timeout("A in time", sequence(
+        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside, *shoulders,
+        TakeDown("lift it off the hook", context, load=Key("gown_load"))), seconds=150.0))
+
+
+def unfold(context: Context) -> Behaviour:
+    """Stage B."""
+    width = Key("neckline_width")
+    return Stage("B unfold", _holds_gown, Timeout("B in time", sequence(
+        "unfold and lay", StretchNeckline("stretch the neckline", context, width=width),
+        FlipSideCheck("outside to the robot", context, seen=Key("gown_side"), sure=0.9),
+        LayGown("lay it on the person", context, width=width)), seconds=120.0))
+
+
+def dress_arm(context: Context, arm: Side) -> Behaviour:
+    """Half of stage C."""
+    lifting, pulling = LIFTING[arm], PULLING[arm]
+    hold, grip = Key(f"{arm}_hold"), Key(f"{arm}_grip")
+
+    def look(name: str) -> Behaviour:
+        return LookAtPerson(f"{name} the {arm} arm", context, side=arm, posture=Key(f"{arm}_posture"))
+
+    def let_go(name: str) -> Behaviour:
+        return sequence(f"{name}, {arm}", ReleaseArm(f"{name}: lower the {arm} arm", context, hand=lifting, lower=True),
+                        Retreat(f"{name}: free hands, {arm}", context, hands="both", back=0.0))
+
+    lift_and_pull = sequence(
+        f"lift and pull, {arm}",
+        Navigate(f"stand by the {arm} arm", context, goal=stance(arm, "lift")),
+        look("look at"),
+        LiftArm(f"lift the {arm} arm", context, side=arm, hand=lifting, hold=hold),
+        GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
+        PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold),
+        PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, until=PAST_WRIST),
+        ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
+        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, until=HEAD_END,
+                     stand=stance(arm, "shoulder")))
+    recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
+        (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
+        (Reason.ARM_SLIPPED, "slipped arm"), (Reason.GRASP_MISSED, "missed grasp"), (Reason.ARM_LOST, "lost arm"),
+        (Reason.NOTHING_SEEN, "nothing seen"), (Reason.UNREACHABLE, "out of reach"),
+        (Reason.MOTION_BLOCKED, "blocked motion"), (Reason.FORCE_LIMIT, "too much force"))}
+    return sequence(f"dress the {arm} arm",
+                    RecoverBy(f"lift and pull again, {arm}", lift_and_pull, recoveries, attempts=2),
+                    Retreat(f"leave the {arm} arm", context, back=0.25))
+
+
+def dress(context: Context) -> Behaviour:
+    """Stage C."""
+    go_round = Navigate("drive round the foot of the bed", context, goal="bed_left")
+    return Stage("C dress", None, Timeout("C in time", sequence(
+        "dress both arms", Retreat("bring the arms back", context, clear=0.05),
+        Navigate("go to the right side", context, goal="bed_right"),
+        dress_arm(context, "right"), go_round, dress_arm(context, "left")), seconds=400.0))
+
+
+def spread(context: Context) -> Behaviour:
+    """Stage D: on the left, where the robot stands, then on the right."""
+    sides = []
+    for side, waypoint in (("left", "bed_left"), ("right", "bed_right")):
+        sides += [Navigate(f"go to the {side} shoulder", context, goal=waypoint),
+                  Navigate(f"stand by the {side} shoulder", context, goal=stance(side, "shoulder")),
+                  LookAtPerson(f"look at the {side} shoulder", context, side=side, posture=Key(f"{side}_near")),
+                  Retry(f"spread again, {side}", Spread(f"spread to the {side} shoulder", context, side=side,
+                                                        hand=PULLING[side], grasp=Key(f"{side}_collar")), attempts=2),
+                  Retreat(f"leave the {side} shoulder", context, back=0.3)]
+    return Stage("D spread", None, Timeout("D in time", sequence("spread the gown", *sides), seconds=150.0))
+
+
+def make_safe(context: Context) -> Behaviour:
+    """What is owed whenever a stage fails: lower a held arm, let go, back off, stop."""
+    return sequence("make safe",
+                    *(ReleaseArm(f"safe: {side} hand lowers the arm", context, hand=side, lower=True)
+                      for side in SIDES),
+                    Retreat("safe: let go and back off", context, back=0.2, ready=False))
+
+
+def _holds_gown(context: Context) -> bool:
+    """Both hands together carry what a gown weighs [N]."""
+    return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > 2.5)
