@@ -9,8 +9,10 @@ import numpy as np
 from ..regions import intervals
 from .log import JointLog
 
+SHORT = 0.3  # [s]
 LONGEST = 0.35  # a burst may last this part of an episode
-PEAK = 6.0  # smoothed leftover over its robust deviation before anything counts as a burst
+END = 0.05  # bursts this close to either end of a log may be the filter's
+PEAK = 8.0  # smoothed leftover over its robust deviation before anything counts as a burst
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +51,8 @@ def bursts(logs: list[JointLog], left: list[np.ndarray], channel: int) -> list[B
         span = t[-1] - t[0]
         for a, b in intervals(np.abs(z) > 3.0, t, 0.02 * span, 0.0):
             rows = (t >= a) & (t <= b)
-            if np.abs(z[rows]).max() > PEAK and b - a < LONGEST * span and not _turns(log, channel, a, b):
+            inside = a > t[0] + END * span and b < t[-1] - END * span
+            if np.abs(z[rows]).max() > PEAK and inside and b - a < LONGEST * span and not _turns(log, channel, a, b):
                 out.append(
                     Burst(
                         episode=log.name,
@@ -82,8 +85,8 @@ def burst_share(logs: list[JointLog], left: list[np.ndarray], channel: int, foun
 
 
 def _turns(log: JointLog, channel: int, a: float, b: float) -> bool:
-    """Whether the joint reverses right at a burst: then it is friction or play, not a contact."""
-    rows = (log.t >= a - 0.05) & (log.t <= b + 0.05)
-    v = log.dq[rows, channel]
-    slow = 3.0 * log.slow[channel]
-    return bool(v.max() > slow and v.min() < -slow) or bool(np.abs(v).min() < log.slow[channel])
+    """Whether a short burst sits on a reversal of the joint: then it is friction or play, not a contact."""
+    if b - a > SHORT:
+        return False
+    v = log.dq[(log.t >= a - 0.05) & (log.t <= b + 0.05), channel]
+    return bool(v.max() > 0.0 > v.min())

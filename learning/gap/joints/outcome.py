@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ class Outcome:
         p_value: of the leftover, where it speaks for a missing effect; else 1.
         floor: (C,) noise floor: repeats, or what no prediction removes.
         left: residual after the effects, per log.
-        bursts: contacts in time.
+        bursts: contacts in time, in held-out logs too.
         contacts: the same as findings.
         remainders: per channel.
         guess: formula for an unknown effect, or "".
@@ -43,23 +43,30 @@ class Outcome:
 SURE = 0.01  # level of the test on leftovers, all channels together
 
 
-def judge(named: Named, logs: list[JointLog], joints: tuple[str, ...], unit: str) -> Outcome:
+def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: tuple[str, ...], unit: str) -> Outcome:
     """Look at what the named effects leave and decide."""
     blocks = list(named.blocks)
     left = [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
     channels = left[0].shape[1]
+    broad = [log.wide() for log in logs]
+    wide = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad]
     found: list[Burst] = []
     for c in range(channels):
-        mine = bursts(logs, left, c)
-        total = np.mean(np.concatenate([log.residual[log.inner][:, c] for log in logs]) ** 2)
-        rest = np.mean(np.concatenate([x[:, c] for x in left]) ** 2)
-        share = burst_share(logs, left, c, mine) if mine else 0.0
+        # a short contact is broader in frequency than the motion, so bursts are looked for without the shared filter
+        mine = [replace(b, episode=b.episode.rstrip("~")) for b in bursts(broad, wide, c)]
+        total = np.mean(np.concatenate([w.residual[w.inner][:, c] for w in broad]) ** 2)
+        rest = np.mean(np.concatenate([x[:, c] for x in wide]) ** 2)
+        share = burst_share(logs, wide, c, mine) if mine else 0.0
         # next to a large effect, a burst may be no more than that effect's own form being a little wrong
         if share > BURST_SHARE and share * rest > REMAINDER * (total - rest + share * rest):
             found += mine
+    kept = [log.wide() for log in heldout]
+    spare = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in kept]
+    seen = list(found)  # the same channels in the held-out logs, to say where; nothing is fitted to them
+    for c in sorted({b.channel for b in found}):
+        seen += [replace(b, episode=b.episode.rstrip("~")) for b in bursts(kept, spare, c)]
     calm = _without(logs, left, found)
-    broad = [log.wide() for log in logs]
-    wide = _without(logs, [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad], found)
+    wide = _without(logs, wide, found)
     remainders = tuple(leftover(logs, calm, wide, c) for c in range(channels))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
     rest = np.mean(np.concatenate(calm) ** 2, axis=0)
@@ -95,7 +102,7 @@ def judge(named: Named, logs: list[JointLog], joints: tuple[str, ...], unit: str
         p_value=min(p, 1.0),
         floor=np.sqrt(floor2),
         left=left,
-        bursts=tuple(found),
+        bursts=tuple(seen),
         contacts=_contacts(found, joints, unit),
         remainders=remainders,
         guess=text,

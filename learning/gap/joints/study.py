@@ -139,7 +139,7 @@ class JointStudy(Study):
     @cached_property
     def outcome(self) -> Outcome:
         """What the search's result amounts to, after a look at what it leaves."""
-        return judge(self.named, self.fitted, self.model.joints, self.unit)
+        return judge(self.named, self.fitted, self.heldout, self.model.joints, self.unit)
 
     @cached_property
     def resampled(self) -> Resampled:

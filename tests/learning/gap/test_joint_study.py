@@ -76,3 +76,24 @@ def test_placebo_does_not_help_and_the_smallest_size_is_smaller_than_the_found(a
     assert placebos
     assert all(p.ratio > 0.97 for p in placebos)
     assert 0.0 < effects[0].smallest < 1.0
+
+
+def test_a_contact_at_a_time_is_named_and_placed(axis_set):
+    folder = axis_set(noise=0.1)
+    truth = {}
+    for k in range(3):
+        file = folder / f"e{k}.csv"
+        data = np.loadtxt(file, delimiter=",", skiprows=1)
+        start = 2.0 + 1.1 * k
+        inside = (data[:, 0] > start) & (data[:, 0] < start + 0.6)
+        data[:, 3] += np.where(inside, 2.0 * np.sin(np.pi * (data[:, 0] - start) / 0.6), 0.0)
+        truth[f"e{k}"] = (start, start + 0.6)
+        np.savetxt(file, data, delimiter=",", header="t,q,dq,force", comments="")
+    study, verdict, effects, _, _ = solved(folder)
+    assert verdict == "effects"
+    assert [(f.name, f.target) for f in effects] == [("contact", "axis")]
+    places = [w for w in study.find()[2] if w.effect == "contact"]
+    assert {w.episode for w in places} == set(truth)
+    for w in places:
+        a, b = truth[w.episode]
+        assert (min(w.t1, b) - max(w.t0, a)) / (max(w.t1, b) - min(w.t0, a)) > 0.7
