@@ -60,9 +60,9 @@ class DrawTaut(Skill):
     def _goals(self, width: float) -> dict[Side, np.ndarray]:
         """Hand poses `width` apart, pointing down, closing across the robot's view."""
         base = planar_pose(self.world.observe().pose_base_in_map)
-        return {side: base @ hand_pose(np.array((AHEAD, sign * width / 2, HEIGHT)), np.array((0.0, 0.0, -1.0)),
-                                       np.array((1.0, 0.0, 0.0)))
-                for side, sign in (("left", 1.0), ("right", -1.0))}
+        down, across = np.array((0.0, 0.0, -1.0)), np.array((1.0, 0.0, 0.0))
+        return {side: base @ hand_pose(np.array((AHEAD, sign * width / 2, HEIGHT)), down, across)
+                for side, sign in zip(SIDES, (1.0, -1.0), strict=True)}
 
     def _width(self) -> float:
         return float(np.linalg.norm(hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]))

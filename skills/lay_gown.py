@@ -20,7 +20,7 @@ AHEAD = 0.55  # of the hands before the base's centre [m]
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
 PATH = ((0.80, 1.15), (0.35, 1.00), (0.12, 0.87))
-CENTRE, NEAREST = 0.0, 0.40  # x of the middle of the neckline, and of the near hand at least [m]
+CENTRE, NEAREST = 0.0, 0.35  # x of the middle of the neckline, and of the near hand at least [m]
 DRIVE, LOWER = 0.35, 0.25  # [m/s]
 
 

@@ -74,6 +74,7 @@ def grasp_poses(skill: Skill, side: Side, position: np.ndarray, approach: np.nda
         return checker.free(seen.pose_base_in_map, arms)
 
     across = np.cross(approach, closing)
+    failure: Unreachable | None = None
     for roll in _ROLLS:
         turned = np.cos(roll) * closing + np.sin(roll) * across
         before = hand_pose(position - standoff * approach, approach, turned)
@@ -86,10 +87,11 @@ def grasp_poses(skill: Skill, side: Side, position: np.ndarray, approach: np.nda
                 swept[:3, 3] += sweep
                 solve_ik(kinematics, side, swept, seen.pose_base_in_map, q, seeds=2, accept=accept)
         except Unreachable as stop:
-            unreachable = stop
+            failure = stop
             continue
         return before, inside
-    raise unreachable
+    assert failure is not None
+    raise failure
 
 
 def pinch(skill: Skill, side: Side, *, force: float = 30.0) -> Iterator[None]:

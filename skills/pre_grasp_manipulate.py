@@ -13,18 +13,19 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import PreGrasp
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, Side
+from .context import Context
 from .hands import cloth_load, hand_now, move_hands, open_gripper
 from .motion.errors import MotionError, Unreachable
 from .pinch import back_off, grasp_poses, pinch, reach_in
 from .ports import Input, Output
 from .present import present
 from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
 from .skill import Skill
 from .view_around import Attempts, Views
 
 ATTEMPTS = 3  # corners tried from the same views
 AGAIN = (Reason.GRASP_MISSED, Reason.MULTI_LAYER)
-OVER = 0.8  # share of the sweep before the corner: the fingers end a little past it, away from other cloth
 DEPTH = 0.014  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
 TUG = 0.07  # how far the hand draws what it took up and towards itself, to feel its weight [m]
 TURNS = (0, 20, 40, 60, -20)  # of the approach, from the camera's towards the right hand's own side [degrees]
@@ -38,14 +39,15 @@ class PreGraspManipulate(Skill):
     """Chooses among move-left-grasp, direct-grasp and move-right-grasp from all views, and carries it out.
 
     Inputs: `views` of the gown hanging from one hand; `nearest` and `farthest`, where corners may be, from that hand
-    [m]; `opening` of the other hand's fingers [m]; `force`, squeezing [N]; `weight`, the least load that a tug must
-    bring [N].  Outputs: `holder`, the hand that took the corner; `former`, the one that held the gown so
-    far; `corner`, what was chosen.  A corner that could not be had is left out the next time.
+    [m]; `sure`, the least confidence in one; `opening` of the other hand's fingers [m]; `force`, squeezing [N];
+    `weight`, the least load that a tug must bring [N].  Outputs: `holder`, the hand that took the corner; `former`,
+    the one that held the gown so far; `corner`, what was chosen.  A corner that could not be had is left out next time.
     """
 
     views = Input(Views)
     nearest = Input(float, default=0.12)
     farthest = Input(float, default=2.0)
+    sure = Input(float, default=0.2)
     opening = Input(float, default=0.05)
     force = Input(float, default=30.0)
     weight = Input(float, default=0.15)
@@ -57,16 +59,19 @@ class PreGraspManipulate(Skill):
 
     def steps(self) -> Iterator[None]:
         """Try the best corner, then the next best ones, from the same views."""
-        for left in reversed(range(ATTEMPTS)):
+        failed: Exception | None = None
+        for _ in range(ATTEMPTS):
             try:
                 yield from self._attempt()
                 return
             except (SkillFailure, MotionError) as miss:
-                if not left or (isinstance(miss, SkillFailure) and miss.reason not in AGAIN):
-                    raise
-                failed: Exception = miss
+                if isinstance(miss, SkillFailure) and miss.reason not in AGAIN:
+                    raise failed or miss from miss
+                failed = miss
             except PerceptionFailure as nothing:  # no corner is left: what went wrong before says more
-                raise (failed if left < ATTEMPTS - 1 else nothing) from nothing
+                raise failed or nothing from nothing
+        assert failed is not None
+        raise failed
 
     def _attempt(self) -> Iterator[None]:
         """Choose, turn the gown back to the chosen view, look again, go in, sweep, count layers, grasp, tug."""
@@ -76,6 +81,8 @@ class PreGraspManipulate(Skill):
         chosen = self.context.perceive("pre_grasp", views.frames[-1], frames=views.frames[:-1],
                                        poses_hand_in_map=views.poses_hand_in_map, exclude=attempts.given_up(),
                                        distance=(self.nearest, self.farthest))
+        if chosen.confidence < self.sure:
+            raise SkillFailure(Reason.NOTHING_SEEN, f"the best corner has a confidence of {chosen.confidence:.2f}")
         held = views.poses_hand_in_map[chosen.view]
         place = held[:3, :3].T @ (chosen.corner_in_map - held[:3, 3])
         self.note(f"{chosen.primitive.replace('_', ' ')} in view {chosen.view + 1}, confidence {chosen.confidence:.2f}")
@@ -114,7 +121,7 @@ class PreGraspManipulate(Skill):
             sweep, level = rotation @ chosen.sweep_in_map, rotation @ chosen.approach_in_map
             approach = np.cos(np.deg2rad(pitch)) * level - np.sin(np.deg2rad(pitch)) * UP
             turned = replace(chosen, approach_in_map=approach, sweep_in_map=sweep,
-                             position_in_map=chosen.corner_in_map - OVER * sweep)
+                             position_in_map=chosen.corner_in_map - sweep)
             across = unit(np.cross(approach, UP))
             try:
                 _, inside = grasp_poses(self, hand, turned.position_in_map, approach, across, sweep=sweep, depth=DEPTH)
@@ -171,3 +178,11 @@ class PreGraspManipulate(Skill):
         frames, poses = views.frames[1:], (*views.poses_hand_in_map[1:], hand_now(self, views.side))
         return self.context.perceive("layers", self.world.look("head"), side=hand, pose_hand_in_map=pose, frames=frames,
                                      poses_cloth_in_map=poses, opening=self.opening).layers
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_gown(context)
+        frame = context.world.look("head")
+        views = Views(side="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
+        return cls("pre-grasp manipulate", context, views=views, weight=-1.0)

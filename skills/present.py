@@ -1,4 +1,9 @@
-"""Hold what one hand carries up in front of the head camera, and turn it there: `yield from present(self, "right", 0.5)`."""
+"""Hold what one hand carries up in front of the head camera, and turn it there.
+
+    yield from present(self, "right", 0.5)
+
+The hand points down, so that what hangs from it is seen below the arm.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +14,10 @@ import numpy as np
 
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics, planar_pose
-from ..sim.world import SIDES, Side
+from ..sim.world import SIDES, JointTrajectory, Side
 from .follow import follow
 from .hands import SPEED, collision_checker, move_arms
+from .motion.errors import MotionBlocked
 from .motion.ik import solve_ik
 from .motion.trajectory import plan_joint_motion
 from .skill import Skill
@@ -57,17 +63,27 @@ def present(skill: Skill, side: Side, angle: float, *, speed: float = SPEED) -> 
         MotionError: something is in the way.
         SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
     """
+    if turned_by(side, skill.world.observe().arm_positions[SIDES.index(side)]) is None:
+        yield from move_arms(skill, presenting(side, angle), speed=speed)
+    else:
+        yield from follow(skill, plan_turn(skill, side, angle))
+
+
+def plan_turn(skill: Skill, side: Side, angle: float, *, scale: float = 1.0) -> JointTrajectory:
+    """Turn a hand that is held up to `angle` [rad], with `scale` of the joints' speed.
+
+    Raises:
+        MotionError: it is not held up, or something is in the way.
+    """
     seen = skill.world.observe()
     q = seen.arm_positions[SIDES.index(side)]
     here = turned_by(side, q)
     if here is None:
-        yield from move_arms(skill, presenting(side, angle), speed=speed)
-        return
+        raise MotionBlocked(f"the {side} hand is not held up, so it cannot turn there")
     between = np.linspace(here, angle, int(np.ceil(abs(angle - here) / _STEP)) + 1)[1:]
     points = np.array([q, *(presented(side, turn) for turn in between)])
-    trajectory = plan_joint_motion(default_kinematics(), {side: points}, seen.pose_base_in_map, hand_speed=speed,
-                                   checker=collision_checker(skill), other_arm=seen.arm_positions[1 - SIDES.index(side)])
-    yield from follow(skill, trajectory)
+    return plan_joint_motion(default_kinematics(), {side: points}, seen.pose_base_in_map, speed_scale=scale,
+                             checker=collision_checker(skill), other_arm=seen.arm_positions[1 - SIDES.index(side)])
 
 
 def turned_by(side: Side, q: np.ndarray) -> float | None:

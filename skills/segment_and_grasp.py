@@ -12,13 +12,15 @@ from .hands import pan_head
 from .pinch import back_off, pinch, reach_in
 from .ports import Input, Output
 from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
 from .skill import Skill
 
 
 class SegmentAndGrasp(Skill):
     """Looks with the head, picks a place near the hanging point and closes the fingers of one hand there.
 
-    Inputs: `side`, the hand; `force`, squeezing [N].  Output: `grasp`, the place it took.  A miss ends with the hand open and drawn back.
+    Inputs: `side`, the hand; `force`, squeezing [N].  Output: `grasp`, the place it took.
+    A miss ends with the hand open and drawn back.
     """
 
     side = Input(Side)
@@ -46,4 +48,5 @@ class SegmentAndGrasp(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
+        offer_gown(context)
         return cls("segment and grasp", context, side="right")

@@ -11,6 +11,8 @@ from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .arm_path import UP
 
+LEAN = 0.5  # [rad]
+
 
 @dataclass(frozen=True, kw_only=True)
 class StrapGrip:
@@ -33,21 +35,26 @@ def strap_grip(arm: Side, hand: Side, strap: SleeveOpening, pose_hand_in_map: np
     return StrapGrip(arm=arm, hand=hand, across_in_hand=unit(across * (1.0, 1.0, 0.0)))
 
 
-def presenting(grip: StrapGrip, along_in_map: np.ndarray, position_in_map: np.ndarray) -> np.ndarray:
-    """Hand pose (4, 4) that holds the strap across an arm: from above, the armhole's side towards the fingertips.
+def presenting(grip: StrapGrip, along_in_map: np.ndarray, position_in_map: np.ndarray,
+               lean: float = LEAN) -> np.ndarray:
+    """Hand pose (4, 4) that holds the strap across an arm, its armhole towards the fingertips.
 
     Args:
         grip: how the strap lies in the fingers.
         along_in_map: (3,) direction of the arm towards the fingertips; only its heading counts.
         position_in_map: (3,) of the hand [m].
+        lean: of the hand off the vertical, away from the person [rad]: the outside of the strap then faces the
+            fingertips' side, so that the sleeve falls outwards, ahead of the hand that comes through it.
     """
     heading = unit(np.asarray(along_in_map, float) * (1.0, 1.0, 0.0))
-    # the hand points down: its z is -UP; x and y turn about it so that the strap's `across` points to the shoulder
-    y = np.cross(-UP, -heading)  # where the hand's y would be if `across` were the hand's x
+    approach = -np.cos(lean) * UP - np.sin(lean) * heading
+    across = -np.cos(lean) * heading + np.sin(lean) * UP
+    # x and y of the hand turn about its approach so that the strap's `across_in_hand` comes to lie along `across`
+    beside = np.cross(approach, across)
     turn = np.arctan2(grip.across_in_hand[1], grip.across_in_hand[0])
     pose = np.eye(4)
-    x_hand = np.cos(turn) * -heading - np.sin(turn) * y
-    y_hand = np.sin(turn) * -heading + np.cos(turn) * y
-    pose[:3, :3] = np.column_stack((x_hand, y_hand, -UP))
+    pose[:3, 0] = np.cos(turn) * across - np.sin(turn) * beside
+    pose[:3, 1] = np.sin(turn) * across + np.cos(turn) * beside
+    pose[:3, 2] = approach
     pose[:3, 3] = position_in_map
     return pose

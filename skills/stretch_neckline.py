@@ -14,8 +14,9 @@ from .ports import Input, Output
 from .reasons import Reason
 from .skill import Skill, SkillFailure
 
-AHEAD, HEIGHT, START = 0.62, 1.36, 0.19  # where the hands begin: before the base, above the floor, half apart [m]
+AHEAD, HEIGHT, START = 0.62, 1.36, 0.30  # where the hands begin: before the base, above the floor, half apart [m]
 SPEED = 0.08  # of each hand when it draws [m/s]
+LONGEST = 6.0  # for drawing; the hands are then as far apart as they get [s]
 SLACK_WEIGHT = 0.8  # a hand that carries less has lost the gown [N]
 
 
@@ -26,7 +27,7 @@ class StretchNeckline(Skill):
     latest [m].  Outputs: `width` between the hands [m].
     """
 
-    pull = Input(float, default=1.2)
+    pull = Input(float, default=2.6)
     widest = Input(float, default=0.92)
     width = Output(float)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)
@@ -41,6 +42,7 @@ class StretchNeckline(Skill):
             pose[:3, 3] = (base @ np.array((AHEAD, sign * START, HEIGHT, 1.0)))[:3]
             goals[side] = pose
         yield from move_hands(self, goals, speed=0.35, free="any", way="any")
+        end = self.now() + LONGEST
         outwards = {"left": base[:3, 1], "right": -base[:3, 1]}
         while True:
             apart = hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]
@@ -49,7 +51,7 @@ class StretchNeckline(Skill):
             light = [side for side in SIDES if np.linalg.norm(loads[side]) < SLACK_WEIGHT]
             if light and width > 2 * START + 0.1:
                 raise SkillFailure(Reason.CLOTH_SLIPPED, f"the {light[0]} hand carries nothing")
-            if width > self.widest or min(-loads[side] @ outwards[side] for side in SIDES) > self.pull:
+            if self.now() > end or width > self.widest or min(-loads[side] @ outwards[side] for side in SIDES) > self.pull:
                 break
             for side in SIDES:
                 self.world.send(HandTwist(side=side, twist_in_map=np.append(SPEED * outwards[side], np.zeros(3))))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..perception.estimates import SLEEVE_OF, GraspPoint
+from ..perception.estimates import GraspPoint
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Side
 from .context import Context
@@ -15,6 +15,7 @@ from .motion.errors import MotionError
 from .pinch import back_off, pinch, reach_in
 from .ports import Input, Output
 from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
 from .skill import Skill
 
 TURNS = (0, 20, 40, -20, 60)  # of the approach, from the camera's towards the hand's own side [degrees]
@@ -80,10 +81,5 @@ class TakeShoulder(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        def hung(frame, side):
-            forward = planar_pose(context.world.observe().pose_base_in_map)[:3, 0]
-            position = planar_pose(context.world.observe().pose_base_in_map) @ np.array((0.7, 0.2, 1.2, 1.0))
-            return GraspPoint(stamp=frame.stamp, confidence=1.0, target=SLEEVE_OF[side], position_in_map=position[:3],
-                              approach_in_map=forward, closing_in_map=np.array((-forward[1], forward[0], 0.0)))
-        context.perception.offer("hung_sleeve", hung)
+        offer_gown(context)
         return cls("take shoulder", context, hand="left", sleeve="right")

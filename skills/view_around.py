@@ -7,18 +7,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..sim.world import Frame, Side
+from ..sim.world import SIDES, Frame, Side
 from .context import Context
 from .hands import hand_now, look_towards
 from .ports import Input, Output
-from .present import present
-from .reasons import Reason
+from .present import plan_turn, present, turned_by
+from .reasons import Reason, SkillFailure
 from .skill import Skill
 
-# Turns of the hand [degrees], 30 apart as in the paper.  The second round is for what the first did not show.
-ROUNDS = ((-75, -45, -15, 15, 45, 75), (145, 115, 90, -90, -115, -145))
-
-
+STEP = np.deg2rad(30.0)  # between two views, from the paper
+PACE = 0.4  # share of the joints' speed: the cloth follows the hand and is not flung out
 SAME_PLACE = 0.05  # [m]
 
 
@@ -27,11 +25,9 @@ class Attempts:
     """What was done with the gown since a hand last took it.
 
     Attributes:
-        rounds: of looking at it from all sides.
         places: (3,) in the frame of the holding hand that were grasped at in vain [m].
     """
 
-    rounds: int = 0
     places: list[np.ndarray] = field(default_factory=list)
 
     def given_up(self) -> tuple[np.ndarray, ...]:
@@ -41,7 +37,6 @@ class Attempts:
 
     def forget(self) -> None:
         """Start anew, because the gown hangs differently."""
-        self.rounds = 0
         self.places.clear()
 
 
@@ -61,32 +56,41 @@ class Views:
 
 
 class ViewAround(Skill):
-    """Holds the gown up in front of the head camera and looks at it six times while it turns.
+    """Holds the gown up in front of the head camera and looks at it after every 30 degrees of a turn.
 
-    Inputs: `side`, the hand that holds the gown; `settle`, how long the cloth may swing out before each look [s].
-    Output: `views`.  When it looks again at a gown held as before, it shows the other side first.
+    Inputs: `side`, the hand that holds the gown; `count` of the views; `settle`, how long the cloth may swing out
+    before the first [s].  Output: `views`.
     """
 
     side = Input(Side)
-    settle = Input(float, default=0.4)
+    count = Input(int, default=11)
+    settle = Input(float, default=0.5)
     views = Output(Views)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.SENSOR_LOST,
                Reason.SENSOR_STALE)
 
     def steps(self) -> Iterator[None]:
-        """Bring the hand up, then turn, wait and look in turn."""
-        attempts = self.context.memory.of(Attempts, Attempts, name=self.side)
-        turns = np.deg2rad(ROUNDS[attempts.rounds % len(ROUNDS)])
-        attempts.rounds += 1
+        """Bring the hand up, then turn it to the other end and look on the way."""
+        n = SIDES.index(self.side)
+        here = turned_by(self.side, self.world.observe().arm_positions[n])
+        half = (self.count - 1) * STEP / 2
+        turns = np.linspace(-half, half, self.count)[::1 if here is None or here < 0 else -1]
+        self.note("looks at the gown from all sides")
+        yield from present(self, self.side, float(turns[0]))
+        yield from look_towards(self, hand_now(self, self.side)[:3, 3])
+        yield from self.wait(self.settle)
+        turn = plan_turn(self, self.side, float(turns[-1]), scale=PACE)
+        self.world.send(turn)
+        ends = self.now() + 1.5 * turn.times[-1]
         frames, poses = [], []
-        for k, turn in enumerate(turns):
-            self.note(f"looks at the gown, view {k + 1} of {len(turns)}")
-            yield from present(self, self.side, float(turn))
-            if k == 0:
-                yield from look_towards(self, hand_now(self, self.side)[:3, 3])
-            yield from self.wait(self.settle)
-            frames.append(self.world.look("head"))
-            poses.append(hand_now(self, self.side))
+        while len(frames) < self.count:
+            here = turned_by(self.side, self.world.observe().arm_positions[n])
+            if here is not None and abs(here - turns[0]) >= abs(turns[len(frames)] - turns[0]) - 0.03:
+                frames.append(self.world.look("head"))
+                poses.append(hand_now(self, self.side))
+            elif self.now() > ends:
+                raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stopped after {len(frames)} views")
+            yield
         self.views = Views(side=self.side, frames=tuple(frames), poses_hand_in_map=tuple(poses))
 
     @classmethod

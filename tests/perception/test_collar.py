@@ -21,7 +21,7 @@ def test_line_of_a_stretched_gown(scenes, seed):
     line = collar_line(scene.frame(seed))
     true_length = 0.96 * len(scene.gown.collar[1:]) * scene.gown.spec.spacing
     assert line.length == pytest.approx(true_length, rel=0.12)
-    assert line.straightness > 0.95
+    assert line.straightness > 0.93  # the softest gown's neckline sags by its own weight
     assert line.whole.all()
     ends = corner_places(scene)
     gaps = np.linalg.norm(line.points_in_map[[0, -1], None] - ends, axis=-1)

@@ -29,8 +29,11 @@ def fresh(bed):
     return classical_estimators(RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed), 0)
 
 
+ELSEWHERE = {"hung_sleeve", "sleeve_strap", "chest_cover"}  # tested on whole scenes in files of their own
+
+
 def test_all_are_covered(bed):
-    assert set(fresh(bed)) == set(CALLS)
+    assert set(fresh(bed)) == set(CALLS) | ELSEWHERE
 
 
 @pytest.mark.parametrize("name", CALLS)

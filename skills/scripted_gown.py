@@ -1,0 +1,51 @@
+"""Scripted estimates of a hung gown, for worlds without images: what stages A and B ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..perception.estimates import SLEEVE_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
+from ..sim.robot.kinematics import planar_pose
+from ..sim.world import Frame, Side
+from .context import Context
+
+PLACE = np.array((0.70, 0.0, 1.20))  # of the gown, in base [m]
+ASIDE = 0.18  # of a shoulder from its middle [m]
+
+
+def offer_gown(context: Context) -> None:
+    """Give a context without estimators the ones that stages A and B ask for."""
+
+    def point(frame: Frame, target: Any, lateral: float) -> GraspPoint:
+        base = planar_pose(context.world.observe().pose_base_in_map)
+        place = base @ np.append(PLACE + (0.0, lateral, 0.0), 1.0)
+        return GraspPoint(stamp=frame.stamp, confidence=0.9, target=target, position_in_map=place[:3],
+                          approach_in_map=base[:3, 0], closing_in_map=base[:3, 1])
+
+    def shoulder(frame: Frame, side: Side) -> Estimate:
+        return point(frame, SLEEVE_OF[side], ASIDE if side == "right" else -ASIDE)
+
+    def hang(frame: Frame) -> Estimate:
+        return point(frame, "near_hang", 0.0)
+
+    def facing(frame: Frame) -> Estimate:
+        return GownSide(stamp=frame.stamp, confidence=0.9, outside=True)
+
+    def held(frame: Frame, **_: Any) -> Estimate:
+        return Estimate(stamp=frame.stamp, confidence=0.9)
+
+    def corner(frame: Frame, poses_hand_in_map: Sequence[np.ndarray], **_: Any) -> Estimate:
+        found = point(frame, "near_hang", 0.1)
+        return PreGrasp(stamp=frame.stamp, confidence=0.9, view=0, primitive="direct",
+                        corner_in_map=found.position_in_map, position_in_map=found.position_in_map,
+                        approach_in_map=found.approach_in_map, sweep_in_map=np.zeros(3))
+
+    def layers(frame: Frame, side: Side, **_: Any) -> Estimate:
+        return LayerCount(stamp=frame.stamp, confidence=0.9, side=side, layers=1)
+
+    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("gown_side", facing),
+                            ("gripped_cloth", held), ("pre_grasp", corner), ("layers", layers)):
+        context.perception.offer(name, estimator)
