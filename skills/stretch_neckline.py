@@ -51,7 +51,8 @@ class StretchNeckline(Skill):
             light = [side for side in SIDES if np.linalg.norm(loads[side]) < SLACK_WEIGHT]
             if light and width > 2 * START + 0.1:
                 raise SkillFailure(Reason.CLOTH_SLIPPED, f"the {light[0]} hand carries nothing")
-            if self.now() > end or width > self.widest or min(-loads[side] @ outwards[side] for side in SIDES) > self.pull:
+            pulled = min(-loads[side] @ outwards[side] for side in SIDES)
+            if self.now() > end or width > self.widest or pulled > self.pull:
                 break
             for side in SIDES:
                 self.world.send(HandTwist(side=side, twist_in_map=np.append(SPEED * outwards[side], np.zeros(3))))
