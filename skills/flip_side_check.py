@@ -26,12 +26,13 @@ class FlipSideCheck(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look a few times and take the majority."""
-        votes = 0
+        votes, side = 0, None
         for _ in range(self.looks):
             side = self.context.perceive("gown_side", self.world.look("head"))
             votes += -1 if not side.outside and side.confidence > self.sure else 1
             yield
-        self.seen = side
+        if side is not None:
+            self.seen = side
         if votes < 0:
             raise SkillFailure(Reason.WRONG_SIDE, "the inside faces the robot")
 

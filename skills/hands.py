@@ -14,7 +14,7 @@ cannot be reached raise Unreachable or MotionBlocked, which a skill passes on as
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Literal
 
 import numpy as np
@@ -32,6 +32,7 @@ from .reasons import Reason, SkillFailure
 from .skill import Skill
 
 Way = Literal["line", "any", "either"]
+Speed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one by the hand's place (3,)
 SPEED = 0.4  # of a hand away from the person [m/s]
 OPEN = model.GRIPPER_STROKE
 _RESTS = 0.0005  # fingers that move less than this from tick to tick have come to rest [m]
@@ -54,7 +55,7 @@ def collision_checker(skill: Skill) -> CollisionChecker:
     return skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
 
 
-def move_hands(skill: Skill, goals: Mapping[Side, np.ndarray], *, speed: float = SPEED, free: FreeAxis = "none",
+def move_hands(skill: Skill, goals: Mapping[Side, np.ndarray], *, speed: Speed = SPEED, free: FreeAxis = "none",
                way: Way = "line", retreat: bool = False, patience: float = 2.0) -> Iterator[None]:
     """Bring one or both hands to poses.
 
@@ -111,7 +112,7 @@ def move_along(skill: Skill, paths: Mapping[Side, np.ndarray], *, speed: float =
     yield from follow(skill, trajectory, retreat=retreat)
 
 
-def move_arms(skill: Skill, target: np.ndarray, *, sides: tuple[Side, ...] = SIDES, speed: float = SPEED,
+def move_arms(skill: Skill, target: np.ndarray, *, sides: tuple[Side, ...] = SIDES, speed: Speed = SPEED,
               retreat: bool = False) -> Iterator[None]:
     """Bring the arms on `sides` to joint angles `target` (2, 7) [rad], such as `model.READY`, by a free way."""
     seen = skill.world.observe()

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.world import SIDES
+from ..sim.world import SIDES, Side
 from .context import Context
 from .driving import drive_to
 from .hands import hand_now, move_hands, open_gripper
@@ -44,7 +44,7 @@ class LayGown(Skill):
         for side in SIDES:
             yield from open_gripper(self, side)
         self.note("withdraws")
-        up = {side: hand_now(self, side) for side in SIDES}
+        up: dict[Side, np.ndarray] = {side: hand_now(self, side) for side in SIDES}
         for pose in up.values():
             pose[:3, 3] += (0.0, 0.06, 0.22)
         yield from move_hands(self, up, speed=0.3, free="any", retreat=True)
@@ -52,7 +52,7 @@ class LayGown(Skill):
 
     def _hands_to(self, y: float, z: float) -> Iterator[None]:
         """Both hands to the ends of a neckline at (y, z), however they turn."""
-        goals = {}
+        goals: dict[Side, np.ndarray] = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
             pose = hand_now(self, side)
             pose[:3, 3] = max(CENTRE, NEAREST - self.width / 2) + sign * self.width / 2, y, z

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
+from ..sim.world import JointTrajectory
 from .context import Context
 from .driving import SPEED, drive_to
 from .follow import follow
@@ -35,12 +36,13 @@ class Navigate(Skill):
     def steps(self) -> Iterator[None]:
         """Send the arms off, drive, then see that both have arrived."""
         self.note(f"drives to {self.goal}" if isinstance(self.goal, str) else "drives")
-        arms = None
+        arms, arrives = None, self.now()
         if self.arms is not None:
             seen = self.world.observe()
             arms = plan_arms(default_kinematics(), self.arms, seen.arm_positions, seen.pose_base_in_map,
                              hand_speed=self.hand_speed, checker=collision_checker(self))
             sent = self.world.send(arms)
+            assert isinstance(sent, JointTrajectory)
             arrives = self.now() + float(sent.times[-1])
         yield from drive_to(self, self.goal, speed=self.speed)
         if arms is not None:

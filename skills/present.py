@@ -90,9 +90,10 @@ def turned_by(side: Side, q: np.ndarray) -> float | None:
     """By how much the hand of an arm (7,) is turned [rad], or None when it is not held up."""
     pose = default_kinematics().pose_hand_in_base(side, q)
     angle = float(np.arctan2(-pose[0, 1], pose[1, 1]))
-    if abs(angle) > RANGE or np.abs(presented(side, angle) - q).max() > 0.1:
+    if abs(angle) > RANGE + 0.03:
         return None
-    return angle
+    angle = float(np.clip(angle, -RANGE, RANGE))
+    return angle if np.abs(presented(side, angle) - q).max() < 0.1 else None
 
 
 @lru_cache(maxsize=256)

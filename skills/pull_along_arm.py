@@ -30,15 +30,15 @@ _RING_PERIOD = 0.5  # between two looks at the armhole [s]
 
 
 class PullAlongArm(Skill):
-    """Leads the strap above the arm's axis towards the shoulder until it is at `until`.
+    """Leads the strap above the arm's axis towards the shoulder until it is at `upto`.
 
-    Inputs: `grip`, how the strap is held; `until`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
+    Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
     0 shoulder, below 0 past it towards the neck); `hold`, the hand that holds the arm, or None; `stand`, base
     pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of the pull.
     """
 
     grip = Input(StrapGrip)
-    until = Input(float)
+    upto = Input(float)
     hold = Input(Hold, default=None)
     stand = Input(np.ndarray, default=None)
     law = Input(PullLaw, default=PullLaw())
@@ -60,7 +60,7 @@ class PullAlongArm(Skill):
             before, place = place, path.place_of(hand[:3, 3], place)
             if before is not None:
                 travelled += np.sign(before - place) * path.distance(before, place)
-            if place <= self.until:
+            if place <= self.upto:
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:
@@ -112,4 +112,4 @@ class PullAlongArm(Skill):
         """For the law tests."""
         offer_person(context)
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-        return cls("pull along arm", context, grip=grip, until=1.45)
+        return cls("pull along arm", context, grip=grip, upto=1.45)

@@ -79,9 +79,9 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         LiftArm(f"lift the {arm} arm", context, side=arm, hand=lifting, hold=hold),
         GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
         PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold),
-        PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, until=PAST_WRIST),
+        PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, upto=PAST_WRIST),
         ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, until=HEAD_END,
+        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END,
                      stand=stance(arm, "shoulder")))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
@@ -105,7 +105,8 @@ def dress(context: Context) -> Behaviour:
 def spread(context: Context) -> Behaviour:
     """Stage D: on the left, where the robot stands, then on the right."""
     sides = []
-    for side, waypoint in (("left", "bed_left"), ("right", "bed_right")):
+    order: tuple[tuple[Side, str], ...] = (("left", "bed_left"), ("right", "bed_right"))
+    for side, waypoint in order:
         sides += [Navigate(f"go to the {side} shoulder", context, goal=waypoint),
                   Navigate(f"stand by the {side} shoulder", context, goal=stance(side, "shoulder")),
                   LookAtPerson(f"look at the {side} shoulder", context, side=side, posture=Key(f"{side}_near")),
