@@ -36,6 +36,7 @@ from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreG
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
 from .hanging import grasp_near_hang
+from .held_armhole import held_armhole
 from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
@@ -88,5 +89,6 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "sleeve_strap": sleeve_strap,
+            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "held_armhole": held_armhole,
+            "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

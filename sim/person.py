@@ -52,7 +52,7 @@ class PersonSpec:
     lengths: tuple[float, float, float] = (0.28, 0.25, 0.17)
     pose: dict[str, tuple[float, float, float, float]] = field(default_factory=lambda: {
         "left": (0.75, -0.12, -1.3, 0.5), "right": (0.75, -0.12, -1.3, 0.5)})
-    dry_friction: tuple[float, float] = (2.7, 1.3)
+    dry_friction: tuple[float, float] = (2.4, 1.2)
     viscous: float = 4.0
 
     def __post_init__(self) -> None:
@@ -71,8 +71,8 @@ PERSONS: dict[str, PersonSpec] = {
     spec.name: spec
     for spec in (
         PersonSpec(),
-        PersonSpec(name="small", scale=0.93, mass=15.5, dry_friction=(2.3, 1.1), viscous=3.0),
-        PersonSpec(name="stiff", scale=1.03, mass=19.5, dry_friction=(3.4, 1.7), viscous=5.0),
+        PersonSpec(name="small", scale=0.93, mass=15.5, dry_friction=(2.0, 1.0), viscous=3.0),
+        PersonSpec(name="stiff", scale=1.03, mass=19.5, dry_friction=(2.8, 1.5), viscous=5.0),
     )
 }
 

@@ -11,11 +11,12 @@ from .bedside import outwards
 from .context import Context
 from .hands import cloth_load, hand_now, move_hands
 from .holding import holding
+from .motion.errors import MotionError
 from .ports import Input
 from .reasons import Reason, SkillFailure
 from .scripted_person import offer_person
 from .skill import Skill
-from .strap_approach import presenting_place
+from .strap_approach import BEYOND, presenting_place
 from .strap_grip import StrapGrip, presenting
 from .tracking import Hold, careful, watch_arm
 
@@ -30,13 +31,11 @@ class PresentSleeve(Skill):
 
     Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.
 
-    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `beyond`, how far in front
-    of the fingertips the sleeve is turned [m].
+    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None.
     """
 
     grip = Input(StrapGrip)
     hold = Input(Hold, default=None)
-    beyond = Input(float, default=0.25)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
                Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
 
@@ -51,8 +50,7 @@ class PresentSleeve(Skill):
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
-        goal = presenting(self.grip, path.direction(2.5), presenting_place(path, self.beyond))
-        yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
+        yield from holding(self, self.hold, self._carry_out(path))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
@@ -61,6 +59,17 @@ class PresentSleeve(Skill):
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
         yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
+
+    def _carry_out(self, path: ArmPath) -> Iterator[None]:
+        """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
+        for beyond in BEYOND:
+            goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
+            try:
+                yield from move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
+                return
+            except MotionError as stop:
+                problem = stop
+        raise problem
 
     @classmethod
     def example(cls, context: Context) -> Skill:

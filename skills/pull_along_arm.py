@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..perception.errors import PerceptionFailure
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .arm_path import ArmPath
 from .context import Context
@@ -26,7 +27,10 @@ CAUGHT = 8.0  # a sleeve that pulls harder than this and does not come on is cau
 STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
-_RING_PERIOD = 0.5  # between two looks at the armhole [s]
+_RING_PERIOD = 0.2  # between two looks at the armhole [s]
+_CENTRED = 0.035  # an armhole whose middle is this near to the arm's axis lets the hand in [m]
+_ASIDE = 0.14  # the farthest that the grip goes to the side for it [m]
+_PATIENCE = 4.0  # how long the hand is waited for before it [s]
 
 
 class PullAlongArm(Skill):
@@ -52,7 +56,8 @@ class PullAlongArm(Skill):
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
-        travelled, self._aside, self._ring_at = 0.0, 0.0, -np.inf
+        travelled, self._aside, self._ring_at, self._off = 0.0, 0.0, -np.inf, 0.0
+        begun = self.now()
         while True:
             path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
             seen = self.world.observe()
@@ -66,10 +71,13 @@ class PullAlongArm(Skill):
             while window[0][0] < seen.time - STUCK_FOR:
                 window.popleft()
             self._judge(window)
-            self._look_at_ring(path, place)
+            self._look_at_ring(path, place, hand[:3, 3])
             ease_hold(self, self.hold)
             speed = SPEED_AT_HAND if place > 1.9 else SPEED
             linear = self.law.velocity(path, place, hand[:3, 3], self._aside, speed, load)
+            if place > 3.0 and abs(self._off) > _CENTRED and seen.time < begun + _PATIENCE:
+                along = path.direction(place)  # centre the armhole before the hand enters it
+                linear = linear - 0.8 * (linear @ along) * along
             wanted = presenting(self.grip, path.direction(place), hand[:3, 3])
             twist = np.concatenate((linear, self.law.turn(wanted, hand)))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
@@ -91,11 +99,17 @@ class PullAlongArm(Skill):
         if load.max() < LOST:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"at most {load.max():.2f} N on the {self.grip.hand} hand")
 
-    def _look_at_ring(self, path: ArmPath, place: float) -> None:
-        """Shift the grip so that the armhole, as far as it is seen, stays centred on the arm."""
-        if self.now() - self._ring_at < _RING_PERIOD or place < 1.0:
+    def _look_at_ring(self, path: ArmPath, place: float, grip: np.ndarray) -> None:
+        """Shift the grip so that the armhole, as far as it is seen, is centred on the arm until the hand is through."""
+        if self.now() - self._ring_at < _RING_PERIOD or place < 2.0:
             return
         self._ring_at = self.now()
+        try:
+            ring = self.context.perceive("held_armhole", self.world.look("head"), side=self.grip.arm, near_in_map=grip)
+        except PerceptionFailure:
+            return
+        self._off = float((ring.centre_in_map - path.point(place)) @ path.frame(place)[:, 0])
+        self._aside = float(np.clip(self._aside - np.clip(0.5 * self._off, -0.03, 0.03), -_ASIDE, _ASIDE))
 
     def _drift(self) -> PathFollower:
         here = self.world.observe().pose_base_in_map

@@ -54,6 +54,7 @@ def offer_person(context: Context) -> None:
                           position_in_map=mirrored(np.array((0.14, -0.5, 0.80)), side),
                           approach_in_map=np.array((0.0, 0.0, -1.0)), closing_in_map=np.array((0.0, 1.0, 0.0)))
 
-    for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve), ("head", head),
+    for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
+                            ("held_armhole", sleeve), ("head", head),
                             ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
         context.perception.offer(name, estimator)

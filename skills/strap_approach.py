@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.cloud import unit
 from ..perception.estimates import SleeveOpening
-from ..sim.robot.kinematics import default_kinematics
+from ..sim.robot.kinematics import Kinematics, default_kinematics
 from ..sim.world import SIDES, Side
 from .arm_path import UP, ArmPath
 from .bedside import outwards
@@ -16,11 +17,13 @@ from .hands import collision_checker
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .skill import Skill
-from .strap_grip import presenting, strap_grip
+from .strap_grip import StrapGrip, presenting, strap_grip
 
 DEPTH = 0.014  # of the fingertips below the cloth [m]
 STANDOFF = 0.10  # the straight way in [m]
-BEYOND = 0.25  # from the fingertip to where the sleeve is presented first [m]
+# From the fingertip to where the sleeve is presented first, as far as the arm reaches [m].  Carried that far the sleeve
+# is turned over like a page: its armhole hangs with the outside down, so that the sleeve falls out of it and not in.
+BEYOND = (0.50, 0.40, 0.30)
 _TILTS = np.deg2rad((25.0, 40.0, 55.0, 72.0, 88.0))  # of the approach below the horizontal
 _SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction
 _BENT = 0.15  # what a radian of turning between grasp and presenting counts, in radians of room to the joint limits
@@ -28,14 +31,13 @@ _BENT = 0.15  # what a radian of turning between grasp and presenting counts, in
 
 @dataclass(frozen=True, kw_only=True)
 class WayIn:
-    """Hand poses (4, 4) in the map before and around a strap, and where the sleeve can be presented then."""
+    """Hand poses (4, 4) in the map before and around a strap."""
 
     before: np.ndarray
     inside: np.ndarray
-    presented: np.ndarray
 
 
-def presenting_place(path: ArmPath, beyond: float = BEYOND) -> np.ndarray:
+def presenting_place(path: ArmPath, beyond: float) -> np.ndarray:
     """(3,) place straight before the fingertips, where the sleeve is held towards the hand [m]."""
     return path.points[3] + beyond * unit(path.direction(2.5) * (1.0, 1.0, 0.0))
 
@@ -70,24 +72,35 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
             before = inside.copy()
             before[:3, 3] -= (DEPTH + STANDOFF) * approach
             grip = strap_grip(arm, hand, strap, inside)
-            presented = presenting(grip, path.direction(2.5), presenting_place(path))
             try:
                 q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=6, accept=accept)
                 q1 = solve_ik(kinematics, hand, inside, base, q0, seeds=2, accept=accept)
-                q2 = solve_ik(kinematics, hand, presented, base, q1, seeds=8, accept=accept)
+                q2 = _presented(kinematics, grip, path, base, q1, accept)
             except Unreachable as stop:
                 problem = stop
                 continue
             room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
             score = min(room, 0.4) - _BENT * float(np.abs(q2 - q1).max())
             if best is None or score > best[0]:
-                best = (score, WayIn(before=before, inside=inside, presented=presented))
+                best = (score, WayIn(before=before, inside=inside))
         if best is not None and best[0] > -_BENT * 2.6:
             break  # a flatter approach holds the strap more squarely: steeper ones only if they must be
     if best is None:
         assert problem is not None
         raise problem
     return best[1]
+
+
+def _presented(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray,
+               accept: Callable[[np.ndarray], bool]) -> np.ndarray:
+    """Arm angles (7,) that present the sleeve as far out as can be reached."""
+    for beyond in BEYOND:
+        pose = presenting(grip, path.direction(2.5), presenting_place(path, beyond))
+        try:
+            return solve_ik(kinematics, grip.hand, pose, base, q, seeds=6, accept=accept)
+        except Unreachable as stop:
+            problem = stop
+    raise problem
 
 
 def _approaches(strap: SleeveOpening, arm: Side) -> list[np.ndarray]:

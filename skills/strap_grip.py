@@ -11,7 +11,7 @@ from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .arm_path import UP
 
-LEAN = 0.5  # [rad]
+LEAN = 0.25  # [rad]
 
 
 @dataclass(frozen=True, kw_only=True)

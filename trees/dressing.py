@@ -33,7 +33,7 @@ from ..skills.take_shoulder import TakeShoulder
 from .composers import fallback, sequence
 from .decorators import RecoverBy, Retry, Stage, Timeout
 
-HEAD_END = -0.1  # where the armhole ends up, beyond the shoulder [share of the upper arm]
+HEAD_END = -0.22  # where the armhole ends up, beyond the shoulder [share of the upper arm]
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
 
 
