@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ..perception.estimates import Cover
 from ..sim.world import SIDES, Side
 from ..skills.bedside import LIFTING, PULLING, stance
 from ..skills.context import Context
@@ -31,9 +32,11 @@ from ..skills.stretch_neckline import StretchNeckline
 from ..skills.take_down import TakeDown
 from ..skills.take_shoulder import TakeShoulder
 from .composers import fallback, sequence
-from .decorators import RecoverBy, Retry, Stage, Timeout
+from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
 HEAD_END = -0.22  # where the armhole ends up, beyond the shoulder [share of the upper arm]
+SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
+COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
 
 
@@ -103,17 +106,22 @@ def dress(context: Context) -> Behaviour:
 
 
 def spread(context: Context) -> Behaviour:
-    """Stage D: on the left, where the robot stands, then on the right."""
-    sides = []
+    """Stage D: on the left, where the robot stands, then on the right; what counts in the end is a covered chest."""
     order: tuple[tuple[Side, str], ...] = (("left", "bed_left"), ("right", "bed_right"))
+    sides: list[Behaviour] = []
     for side, waypoint in order:
-        sides += [Navigate(f"go to the {side} shoulder", context, goal=waypoint),
-                  Navigate(f"stand by the {side} shoulder", context, goal=stance(side, "shoulder")),
-                  LookAtPerson(f"look at the {side} shoulder", context, side=side, posture=Key(f"{side}_near")),
-                  Retry(f"spread again, {side}", Spread(f"spread to the {side} shoulder", context, side=side,
-                                                        hand=PULLING[side], grasp=Key(f"{side}_collar")), attempts=2),
-                  Retreat(f"leave the {side} shoulder", context, back=0.3)]
-    return Stage("D spread", None, Timeout("D in time", sequence("spread the gown", *sides), seconds=150.0))
+        draw = sequence(
+            f"draw the collar to the {side} shoulder",
+            Navigate(f"go to the {side} shoulder", context, goal=waypoint),
+            Navigate(f"stand by the {side} shoulder", context, goal=stance(side, "shoulder")),
+            LookAtPerson(f"look at the {side} shoulder", context, side=side, posture=Key(f"{side}_near")),
+            Retry(f"spread again, {side}", Spread(f"spread to the {side} shoulder", context, side=side,
+                                                  hand=PULLING[side], grasp=Key(f"{side}_collar")), attempts=2),
+            Retreat(f"leave the {side} shoulder", context, back=0.3))
+        as_it_is = Retreat(f"leave the {side} shoulder as it is", context, back=0.3)
+        sides.append(fallback(f"the {side} shoulder, as far as it goes", draw, as_it_is))
+    covered = Condition("the chest is covered", _chest_covered, Reason.NOTHING_SEEN)
+    return Stage("D spread", None, Timeout("D in time", sequence("spread the gown", *sides, covered), seconds=200.0))
 
 
 def make_safe(context: Context) -> Behaviour:
@@ -122,6 +130,15 @@ def make_safe(context: Context) -> Behaviour:
                     *(ReleaseArm(f"safe: {side} hand lowers the arm", context, hand=side, lower=True)
                       for side in SIDES),
                     Retreat("safe: let go and back off", context, back=0.2, ready=False))
+
+
+def _chest_covered(context: Context) -> bool:
+    """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
+    bed = context.world.room.bed
+    shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + SHOULDERS_ON_BED
+    cover = context.perceive("chest_cover", context.world.look("head"), shoulders_in_map=shoulders)
+    assert isinstance(cover, Cover)
+    return cover.share > COVERED
 
 
 def _holds_gown(context: Context) -> bool:
