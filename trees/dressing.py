@@ -72,8 +72,11 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         return LookAtPerson(f"{name} the {arm} arm", context, side=arm, posture=Key(f"{arm}_posture"))
 
     def let_go(name: str) -> Behaviour:
-        return sequence(f"{name}, {arm}", ReleaseArm(f"{name}: lower the {arm} arm", context, hand=lifting, lower=True),
-                        Retreat(f"{name}: free hands, {arm}", context, hands="both", back=0.0))
+        put_down = fallback(
+            f"{name}: put the {arm} arm down",
+            ReleaseArm(f"{name}: lower the {arm} arm", context, hand=lifting, lower=True),
+            ReleaseArm(f"{name}: open the {arm} hold", context, hand=lifting))
+        return sequence(f"{name}, {arm}", put_down, Retreat(f"{name}: free hands, {arm}", context))
 
     lift_and_pull = sequence(
         f"lift and pull, {arm}",
@@ -83,7 +86,9 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
         PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold),
         PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, upto=PAST_WRIST),
-        ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
+        fallback(f"free the lifting hand, {arm}",
+                 ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
+                 ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
         PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END,
                      stand=stance(arm, "shoulder")))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
@@ -93,7 +98,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         (Reason.MOTION_BLOCKED, "blocked motion"), (Reason.FORCE_LIMIT, "too much force"))}
     return sequence(f"dress the {arm} arm",
                     RecoverBy(f"lift and pull again, {arm}", lift_and_pull, recoveries, attempts=2),
-                    Retreat(f"leave the {arm} arm", context, back=0.25))
+                    Retreat(f"back off from the {arm} arm", context, back=0.25))
 
 
 def dress(context: Context) -> Behaviour:
@@ -127,8 +132,9 @@ def spread(context: Context) -> Behaviour:
 def make_safe(context: Context) -> Behaviour:
     """What is owed whenever a stage fails: lower a held arm, let go, back off, stop."""
     return sequence("make safe",
-                    *(ReleaseArm(f"safe: {side} hand lowers the arm", context, hand=side, lower=True)
-                      for side in SIDES),
+                    *(fallback(f"safe: {side} hand", ReleaseArm(f"safe: {side} hand lowers the arm", context, hand=side,
+                                                                lower=True),
+                               ReleaseArm(f"safe: {side} hand opens", context, hand=side)) for side in SIDES),
                     Retreat("safe: let go and back off", context, back=0.2, ready=False))
 
 
