@@ -10,6 +10,7 @@ from ..sim.world import SIDES, Side
 from .context import Context
 from .driving import drive_to
 from .hands import hand_now, move_hands, open_gripper
+from .motion.errors import MotionError
 from .ports import Input
 from .reasons import Reason
 from .skill import Skill
@@ -37,6 +38,11 @@ class LayGown(Skill):
         """Drive and lower in turn; then open, rise, drive back."""
         self.note("lays the gown on the person")
         yield from drive_to(self, np.array((LANE, BEGIN + AHEAD, FACING)), speed=0.4)
+        for share in (0.25, 0.5, 0.75):  # over the bed in steps: the hands cross before the chest one behind the other
+            try:
+                yield from self._hands_to(BEGIN, 1.28, share)
+            except MotionError:
+                continue  # the next step may have a way
         yield from self._hands_to(BEGIN, 1.28)
         for y, z in PATH:
             yield from drive_to(self, np.array((LANE, y + AHEAD, FACING)), speed=DRIVE, straight=True)
@@ -50,12 +56,13 @@ class LayGown(Skill):
         yield from move_hands(self, up, speed=0.3, free="any", retreat=True)
         yield from drive_to(self, np.array((LANE, 1.6, FACING)), straight=True, retreat=True)
 
-    def _hands_to(self, y: float, z: float) -> Iterator[None]:
-        """Both hands to the ends of a neckline at (y, z), however they turn."""
+    def _hands_to(self, y: float, z: float, share: float = 1.0) -> Iterator[None]:
+        """Both hands to the ends of a neckline at (y, z), or a `share` of the way there, however they turn."""
         goals: dict[Side, np.ndarray] = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
             pose = hand_now(self, side)
-            pose[:3, 3] = max(CENTRE, NEAREST - self.width / 2) + sign * self.width / 2, y, z
+            there = np.array((max(CENTRE, NEAREST - self.width / 2) + sign * self.width / 2, y, z))
+            pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
         yield from move_hands(self, goals, speed=LOWER, free="any", way="either")
 

@@ -14,7 +14,7 @@ from .ports import Input, Output
 from .reasons import Reason
 from .skill import Skill, SkillFailure
 
-AHEAD, HEIGHT, START = 0.62, 1.36, 0.30  # where the hands begin: before the base, above the floor, half apart [m]
+AHEAD, HEIGHT, START = 0.62, 1.36, 0.22  # where the hands begin: before the base, above the floor, half apart [m]
 SPEED = 0.08  # of each hand when it draws [m/s]
 LONGEST = 6.0  # for drawing; the hands are then as far apart as they get [s]
 SLACK_WEIGHT = 0.8  # a hand that carries less has lost the gown [N]
@@ -27,7 +27,7 @@ class StretchNeckline(Skill):
     latest [m].  Outputs: `width` between the hands [m].
     """
 
-    pull = Input(float, default=2.6)
+    pull = Input(float, default=1.6)
     widest = Input(float, default=0.92)
     width = Output(float)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)

@@ -34,7 +34,8 @@ from ..skills.take_shoulder import TakeShoulder
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
-HEAD_END = -0.22  # where the armhole ends up, beyond the shoulder [share of the upper arm]
+# Where the grip ends, beyond the shoulder [share of the upper arm]; the first sleeve slips back under the second pull.
+HEAD_END: dict[Side, float] = {"right": -0.35, "left": -0.22}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
@@ -89,7 +90,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END,
+        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm],
                      stand=stance(arm, "shoulder")))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
