@@ -96,7 +96,8 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
         (Reason.ARM_SLIPPED, "slipped arm"), (Reason.GRASP_MISSED, "missed grasp"), (Reason.ARM_LOST, "lost arm"),
         (Reason.NOTHING_SEEN, "nothing seen"), (Reason.UNREACHABLE, "out of reach"),
-        (Reason.MOTION_BLOCKED, "blocked motion"), (Reason.FORCE_LIMIT, "too much force"), (Reason.TIMEOUT, "slow lift"))}
+        (Reason.MOTION_BLOCKED, "blocked motion"), (Reason.FORCE_LIMIT, "too much force"),
+        (Reason.TIMEOUT, "slow lift"))}
     return sequence(f"dress the {arm} arm",
                     RecoverBy(f"lift and pull again, {arm}", lift_and_pull, recoveries, attempts=2),
                     Retreat(f"back off from the {arm} arm", context, back=0.25))
