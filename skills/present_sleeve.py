@@ -62,6 +62,7 @@ class PresentSleeve(Skill):
 
     def _carry_out(self, path: ArmPath) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
+        problem: MotionError | None = None
         for beyond in BEYOND:
             goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
             try:
@@ -69,6 +70,7 @@ class PresentSleeve(Skill):
                 return
             except MotionError as stop:
                 problem = stop
+        assert problem is not None
         raise problem
 
     @classmethod

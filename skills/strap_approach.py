@@ -94,12 +94,14 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
 def _presented(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray,
                accept: Callable[[np.ndarray], bool]) -> np.ndarray:
     """Arm angles (7,) that present the sleeve as far out as can be reached."""
+    problem: Unreachable | None = None
     for beyond in BEYOND:
         pose = presenting(grip, path.direction(2.5), presenting_place(path, beyond))
         try:
             return solve_ik(kinematics, grip.hand, pose, base, q, seeds=6, accept=accept)
         except Unreachable as stop:
             problem = stop
+    assert problem is not None
     raise problem
 
 
