@@ -77,7 +77,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
             f"{name}: put the {arm} arm down",
             ReleaseArm(f"{name}: lower the {arm} arm", context, hand=lifting, lower=True),
             ReleaseArm(f"{name}: open the {arm} hold", context, hand=lifting))
-        return sequence(f"{name}, {arm}", put_down, Retreat(f"{name}: free hands, {arm}", context))
+        return sequence(f"{name}, {arm}", put_down, back_off(context, f"{name}: free hands, {arm}", 0.0))
 
     lift_and_pull = sequence(
         f"lift and pull, {arm}",
@@ -100,7 +100,13 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         (Reason.TIMEOUT, "slow lift"))}
     return sequence(f"dress the {arm} arm",
                     RecoverBy(f"lift and pull again, {arm}", lift_and_pull, recoveries, attempts=2),
-                    Retreat(f"back off from the {arm} arm", context, back=0.25))
+                    back_off(context, f"back off from the {arm} arm", 0.25))
+
+
+def back_off(context: Context, name: str, distance: float) -> Behaviour:
+    """Let go, draw back by `distance` [m], arms ready; or as they are, where no way to the ready posture is found."""
+    return fallback(name, Retreat(f"{name}, arms ready", context, back=distance),
+                    Retreat(f"{name}, arms as they are", context, back=distance, ready=False))
 
 
 def dress(context: Context) -> Behaviour:
