@@ -26,6 +26,7 @@ _GAIN = 1.5  # of the correction towards the arc [1/s]
 _LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
 _TURN = 0.75  # share of the arm's turn that the hand makes with it
 _HEAVY, _HEAVIEST = 26.0, 29.5  # load from which the lift slows down, and at which it stands still [N]
+ENOUGH = 0.8  # share of the lift that will do when time is up
 
 
 class LiftArm(Skill):
@@ -81,6 +82,8 @@ class LiftArm(Skill):
         while raised < rise:
             if lost_arm(self, self.hand):
                 raise SkillFailure(Reason.ARM_SLIPPED, f"{raised / rise:.0%} of the way up")
+            if self.now() > end and raised > ENOUGH * rise:
+                return  # a heavy arm: a few degrees less are no reason to put it down again
             if self.now() > end:
                 raise SkillFailure(Reason.TIMEOUT, f"{raised / rise:.0%} of the way up")
             seen = self.world.observe()
