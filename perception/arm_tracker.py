@@ -17,6 +17,7 @@ from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture
 from .skin import (
     CROWN_TO_SHOULDER,
+    HEAD_HEIGHT,
     SHOULDER_ABOVE_BED,
     SHOULDER_HALF_WIDTH,
     TRUNK_HALF_WIDTH,
@@ -35,6 +36,7 @@ _SPEED_SEEN, _SPEED_HELD, _SPEED_HIDDEN = 0.10, 0.03, 0.01
 _SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard deviation [m]
 _EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
 _WORST = 6.0  # mean squared residual of a fit that is believed
+_SIZES = (0.85, 1.15)  # of bodies, relative to 174 cm
 _LOST = 0.10  # standard deviation at which a joint counts as lost [m]
 
 
@@ -45,17 +47,18 @@ class ArmTracker:
     whenever the posture is needed.  Times are the world's clock and must not run backwards.
     """
 
-    def __init__(self, side: Side, bed: np.ndarray, scale: float = 1.0) -> None:
+    def __init__(self, side: Side, bed: np.ndarray, scale: float | None = None) -> None:
         """Start without an estimate.
 
         Args:
             side: the person's own left or right.
             bed: (2, 3) lower and upper corner of the bed in the map [m].
-            scale: body size relative to an adult of 174 cm.
+            scale: body size relative to an adult of 174 cm; judged by the size of the head when omitted.
         """
         self.side: Side = side
         self.bed = np.asarray(bed, dtype=float)
-        self.scale = scale
+        self.scale = scale or 1.0
+        self._judge_size = scale is None
         self.time = 0.0
         self.seen = -np.inf  # when skin of this arm was last explained
         self.held = -np.inf  # when the robot last said that it holds it
@@ -193,7 +196,9 @@ class ArmTracker:
         """Find the arm: try a fan of postures next to the trunk, keep the one that explains the skin best."""
         head = head_seen(frame, self.bed)
         self.middle = head.middle
-        self.shoulder_y = float(head.crown_in_map[1]) + CROWN_TO_SHOULDER
+        if self._judge_size:
+            self.scale = float(np.clip((head.crown_in_map[2] - self.bed[1, 2]) / HEAD_HEIGHT, *_SIZES))
+        self.shoulder_y = float(head.crown_in_map[1]) + CROWN_TO_SHOULDER * self.scale
         view = self._view(frame)
         if len(view.points) < 40:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")

@@ -12,6 +12,7 @@ from .estimates import Head
 
 # Adult of 174 cm, lying on the back (Winter, Biomechanics of Human Movement, fig. 4.1: shares of body height) [m].
 CROWN_TO_SHOULDER = 0.31
+HEAD_HEIGHT = 0.173  # of the middle of what is seen of a lying head above the mattress
 SHOULDER_HALF_WIDTH = 0.20
 SHOULDER_ABOVE_BED = 0.10
 TRUNK_HALF_WIDTH = 0.20
