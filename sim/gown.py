@@ -36,6 +36,7 @@ class GownSpec:
         bending: bending spring stiffness [N/m].
         damping: spring damping [N s/m].
         friction: Coulomb coefficient against skin and bed.
+        air_drag: force of still air per area and squared speed; 0 is none [N s^2/m^4].
     """
 
     name: str
@@ -51,6 +52,7 @@ class GownSpec:
     bending: float = 0.1
     damping: float = 0.006
     friction: float = 0.4
+    air_drag: float = 0.0
 
     def __post_init__(self) -> None:
         """Reject cuts that cannot be sewn.

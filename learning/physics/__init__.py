@@ -1,0 +1,1 @@
+"""Learn a garment's physics from one depth clip of it falling."""

@@ -1,0 +1,86 @@
+"""`caretree learn physics data|clip|sensitivity`."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from typing import NoReturn
+
+from ...sim.errors import CaretreeError
+
+SIZES = {"paper": (100, 60), "uniform": (1, 6000), "heldout_gown": (1, 300), "disturbed": (1, 300)}
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise CaretreeError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = _Parser(prog="caretree learn physics")
+    sub = top.add_subparsers(dest="command", required=True, parser_class=_Parser)
+    data = sub.add_parser("data", help="make a dataset of clips, or what is missing of it")
+    data.add_argument("folder", metavar="DIR", help="where it lies; made when it is not there")
+    data.add_argument("--kind", choices=tuple(SIZES), default="paper")
+    data.add_argument("--classes", type=int, metavar="N", help="of kind paper (default 100)")
+    data.add_argument("--per-class", type=int, metavar="N",
+                      help="clips of each class, or in all (default: paper 60, uniform 6000, others 300)")
+    data.add_argument("--seed", type=int, default=0, metavar="N")
+    data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")
+    data.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
+
+    clip = sub.add_parser("clip", help="film one gown and write the clip")
+    clip.add_argument("file", metavar="FILE", help="the .npz to write")
+    clip.add_argument("--gown", default="medium", metavar="NAME", help="name of a gown, or a gown file")
+    clip.add_argument("--engine", choices=("fast", "bullet"), default="bullet")
+    clip.add_argument("--disturbed", action="store_true", help="with noise, holes and a misplaced camera")
+    clip.add_argument("--seed", type=int, default=0, metavar="N")
+    clip.add_argument("--strip", metavar="FILE", help="also a picture of it")
+
+    sensitivity = sub.add_parser("sensitivity", help="what a clip shows of each parameter")
+    sensitivity.add_argument("--points", type=int, default=20, metavar="N", help="gowns looked at (default 20)")
+    sensitivity.add_argument("--seed", type=int, default=0, metavar="N")
+    sensitivity.add_argument("--out", metavar="FILE", help="also as a file, JSON")
+    return top
+
+
+def main(argv: list[str]) -> int:
+    """Run one command.
+
+    Raises:
+        CaretreeError: the input cannot be used.
+    """
+    options = parser().parse_args(argv)
+    if options.command == "data":
+        from .dataset import DatasetSpec
+        from .generate import generate, say_to_stderr
+
+        if options.jobs < 1:
+            raise CaretreeError(f"--jobs is {options.jobs}, at least 1 is asked for")
+        classes, per_class = SIZES[options.kind]
+        spec = DatasetSpec(kind=options.kind, classes=classes if options.classes is None else options.classes,
+                           per_class=per_class if options.per_class is None else options.per_class, seed=options.seed)
+        print(generate(options.folder, spec, options.jobs, options.address, say_to_stderr))
+    elif options.command == "clip":
+        from ...sim.scene import named_gown
+        from .clip_world import film
+        from .parameters import BASE, NAMES
+
+        gown = named_gown(options.gown)
+        if gown.air_drag <= 0:  # a named gown says nothing of the air it falls in: the usual
+            gown = replace(gown, air_drag=float(BASE[NAMES.index("air_drag")]))
+        clip = film(gown, seed=options.seed, engine=options.engine, disturbed=options.disturbed)
+        print(clip.save(options.file))
+        if options.strip:
+            from .strip import write_strip
+
+            print(write_strip(options.strip, [(gown.name, clip.depth)]))
+    else:
+        from .sensitivity import report, study
+
+        result = study(options.points, options.seed)
+        print(report(result))
+        if options.out:
+            result.write(options.out)
+    return 0
