@@ -153,6 +153,6 @@ class Head(Estimate):
 
 @dataclass(frozen=True, kw_only=True)
 class Cover(Estimate):
-    """How much of the trunk's front lies under the gown.  share: 0 to 1."""
+    """How much of the trunk's front, or of a hand, lies under the gown.  share: 0 to 1."""
 
     share: float

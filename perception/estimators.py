@@ -15,6 +15,7 @@
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
+| hand_cover | points_in_map | Cover |
 | arm | side, grip_in_map, fraction | ArmPosture |
 
 `frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
@@ -36,6 +37,7 @@ from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreG
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
 from .hanging import grasp_near_hang
+from .hand_cover import hand_cover
 from .held_armhole import held_armhole
 from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
@@ -82,13 +84,13 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0) -> ArmPosture:
         """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip."""
         tracker = trackers[side]
-        tracker.update(frame)
-        if grip_in_map is not None:
+        if grip_in_map is not None and tracker.started:  # first: it says where to look
             tracker.update_grip(frame.stamp, grip_in_map, fraction)
+        tracker.update(frame)
         return tracker.estimate(frame.stamp)
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "held_armhole": held_armhole,
+            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

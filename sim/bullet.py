@@ -25,7 +25,7 @@ from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
 from .camera import CAMERA_VIEWS, camera_intrinsics
 from .cloth import GRAVITY, Cloth
 from .effects.carriers import ClothPatch
-from .effects.gown_patch import gown_effects, gown_patch, loaded, recalibrated
+from .effects.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
 from .errors import CaretreeError
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
@@ -72,7 +72,7 @@ class BulletWorld(World):
 
     Args:
         seed: of everything that varies.
-        gown: name of the gown; drawn from the seed when omitted.
+        gown: name of the gown, or path of a gown file; drawn from the seed when omitted.
         person: name of the person; drawn from the seed when omitted.
         model: model file of the gap workflow whose effects act on the gown.
         view: serve a live 3D view to the browser; its address is printed.
@@ -83,7 +83,8 @@ class BulletWorld(World):
         timing: wall time by activity [s].
 
     Raises:
-        CaretreeError: an unknown gown or person, a negative seed, an unusable model file.
+        CaretreeError: an unknown gown or person, a negative seed, an unusable model or gown file, a gown too stiff
+            for the time step.
     """
 
     def __init__(self, *, seed: int = 0, gown: str | None = None, person: str | None = None, model: str | None = None,
@@ -91,6 +92,8 @@ class BulletWorld(World):
         self._effects = None if model is None else gown_effects(model)
         self._patch: ClothPatch | None = None
         self.scene = draw_scene(seed, gown, person)
+        if self.scene.gown.air_drag > 0:
+            self._effects = with_air(self._effects, self.scene.gown.air_drag)
         self.room = room_map()
         self.time = _SteppedClock(self._advance_to)
         self.clock = self.time
@@ -162,14 +165,17 @@ class BulletWorld(World):
     def prepare_stage(self, stage: str) -> None:
         """Start at a later stage, the earlier ones done by hand: A (nothing to do) or C (gown laid, robot at the bed).
 
+        Of a span of stages ("C-D"), the first counts.
+
         Raises:
             CaretreeError: another stage, or the run has begun.
         """
-        if stage not in ("A", "C"):
+        first = stage.partition("-")[0]
+        if first not in ("A", "C"):
             raise CaretreeError(f"stage {stage!r} cannot be started on its own in the bullet world; A and C can")
         if self._steps:
             raise CaretreeError("a stage can only be prepared before the run begins")
-        if stage == "C":
+        if first == "C":
             self._hook.release()
             if self._patch is not None:  # carriers cannot jump with the cloth
                 self._patch.detach()

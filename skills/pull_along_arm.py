@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .arm_path import ArmPath
 from .context import Context
@@ -16,6 +15,7 @@ from .motion.drive import PathFollower
 from .ports import Input
 from .pull_law import PullLaw
 from .reasons import Reason, SkillFailure
+from .ring_watch import CENTRED, RingWatch
 from .scripted_person import offer_person
 from .skill import Skill
 from .strap_grip import StrapGrip, presenting
@@ -27,10 +27,8 @@ CAUGHT = 8.0  # a sleeve that pulls harder than this and does not come on is cau
 STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
-_RING_PERIOD = 0.2  # between two looks at the armhole [s]
-_CENTRED = 0.035  # an armhole whose middle is this near to the arm's axis lets the hand in [m]
-_ASIDE = 0.14  # the farthest that the grip goes to the side for it [m]
-_PATIENCE = 4.0  # how long the hand is waited for before it [s]
+_BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
+_PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
 
 class PullAlongArm(Skill):
@@ -47,7 +45,7 @@ class PullAlongArm(Skill):
     stand = Input(np.ndarray, default=None)
     law = Input(PullLaw, default=PullLaw())
     reasons = (Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.ARM_SLIPPED,
-               Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT)
+               Reason.SLEEVE_MISSED, Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT)
 
     def steps(self) -> Iterator[None]:
         """Steer anew on every tick."""
@@ -56,8 +54,7 @@ class PullAlongArm(Skill):
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
-        travelled, self._aside, self._ring_at, self._off = 0.0, 0.0, -np.inf, 0.0
-        begun = self.now()
+        ring, travelled, begun = RingWatch(self, self.grip), 0.0, self.now()
         while True:
             path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
             seen = self.world.observe()
@@ -71,13 +68,17 @@ class PullAlongArm(Skill):
             while window[0][0] < seen.time - STUCK_FOR:
                 window.popleft()
             self._judge(window)
-            self._look_at_ring(path, place, hand[:3, 3])
+            if place > _THROUGH:
+                ring.look(path, place, hand[:3, 3])
+            if before is not None and before > _SURE >= place and ring.missed(path):
+                raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
             ease_hold(self, self.hold)
             speed = SPEED_AT_HAND if place > 1.9 else SPEED
-            linear = self.law.velocity(path, place, hand[:3, 3], self._aside, speed, load)
-            if place > 3.0 and abs(self._off) > _CENTRED and seen.time < begun + _PATIENCE:
+            linear = self.law.velocity(path, place, hand[:3, 3], ring.aside, speed, load)
+            if place > 3.0 and abs(ring.off) > CENTRED and seen.time < begun + _PATIENCE:
                 along = path.direction(place)  # centre the armhole before the hand enters it
-                linear = linear - 0.8 * (linear @ along) * along
+                linear = linear - (1.0 if place < _BEFORE else 0.8) * (linear @ along) * along
+                window.clear()  # it waits on purpose
             wanted = presenting(self.grip, path.direction(place), hand[:3, 3])
             twist = np.concatenate((linear, self.law.turn(wanted, hand)))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
@@ -88,9 +89,9 @@ class PullAlongArm(Skill):
 
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
         """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""
-        times, way, load = np.array(window).T
-        if times[-1] - times[0] < 0.9 * STUCK_FOR:
+        if window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
             return
+        _, way, load = np.array(window).T
         moved = float(way[-1] - way[0])
         if moved < ADVANCE and load.mean() > CAUGHT:
             raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{load.mean():.1f} N and {moved * 100:.1f} cm in {STUCK_FOR} s")
@@ -98,18 +99,6 @@ class PullAlongArm(Skill):
             raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand came on {moved * 100:.1f} cm in {STUCK_FOR} s")
         if load.max() < LOST:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"at most {load.max():.2f} N on the {self.grip.hand} hand")
-
-    def _look_at_ring(self, path: ArmPath, place: float, grip: np.ndarray) -> None:
-        """Shift the grip so that the armhole, as far as it is seen, is centred on the arm until the hand is through."""
-        if self.now() - self._ring_at < _RING_PERIOD or place < 2.0:
-            return
-        self._ring_at = self.now()
-        try:
-            ring = self.context.perceive("held_armhole", self.world.look("head"), side=self.grip.arm, near_in_map=grip)
-        except PerceptionFailure:
-            return
-        self._off = float((ring.centre_in_map - path.point(place)) @ path.frame(place)[:, 0])
-        self._aside = float(np.clip(self._aside - np.clip(0.5 * self._off, -0.03, 0.03), -_ASIDE, _ASIDE))
 
     def _drift(self) -> PathFollower:
         here = self.world.observe().pose_base_in_map

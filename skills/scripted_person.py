@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..perception.estimates import COLLAR_OF, SLEEVE_OF, ArmPosture, Estimate, GraspPoint, Head, SleeveOpening
+from ..perception.estimates import COLLAR_OF, SLEEVE_OF, ArmPosture, Cover, Estimate, GraspPoint, Head, SleeveOpening
 from ..sim.world import Frame, Side
 from .context import Context
 
@@ -46,6 +46,9 @@ def offer_person(context: Context) -> None:
     def head(frame: Frame) -> Estimate:
         return Head(stamp=frame.stamp, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.72)), middle=0.0)
 
+    def cover(frame: Frame, **_: Any) -> Estimate:
+        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+
     def cloth(frame: Frame, **_: Any) -> Estimate:
         return Estimate(stamp=frame.stamp, confidence=0.9)
 
@@ -55,6 +58,6 @@ def offer_person(context: Context) -> None:
                           approach_in_map=np.array((0.0, 0.0, -1.0)), closing_in_map=np.array((0.0, 1.0, 0.0)))
 
     for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
-                            ("held_armhole", sleeve), ("head", head),
+                            ("held_armhole", sleeve), ("hand_cover", cover), ("head", head),
                             ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
         context.perception.offer(name, estimator)

@@ -10,11 +10,11 @@ A look costs about 20 ms of computing, so skills that tick faster share one look
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..perception.cloud import project
+from ..perception.cloud import project, unit
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture, Head
 from ..sim.world import SIDES, Frame, Side
@@ -80,6 +80,8 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
     if side not in watch.arms or now - watch.looked >= period:
         watch.looked = now
         frame = skill.world.look("head")
+        if hold is not None and side in watch.arms:
+            watch.arms[side] = turned_with(watch.arms[side], hold.place, _held_at(skill, hold))
         try:
             if side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
@@ -88,6 +90,21 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
+
+
+def turned_with(posture: ArmPosture, place: float, point_in_map: np.ndarray) -> ArmPosture:
+    """The posture turned about its shoulder so that `place` on it points at where the robot holds it (3,) [m].
+
+    A camera that looks for a moving arm where it was finds something in front of it, and never finds it again.
+    """
+    from scipy.spatial.transform import Rotation
+
+    shoulder = posture.points_in_map[0]
+    before, after = unit(ArmPath.of(posture).point(place) - shoulder), unit(point_in_map - shoulder)
+    axis = np.cross(before, after)
+    turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), before @ after)) if axis.any() else None
+    points = posture.points_in_map if turn is None else shoulder + turn.apply(posture.points_in_map - shoulder)
+    return replace(posture, points_in_map=points)
 
 
 def visible_share(frame: Frame, posture: ArmPosture) -> float:
@@ -129,12 +146,15 @@ def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
     """Update one arm from a frame and tell the guard."""
     details = {}
     if hold is not None:
-        n = SIDES.index(hold.hand)
-        details = {"grip_in_map": skill.world.observe().pose_hand_in_map[n, :3, 3], "fraction": hold.place}
+        details = {"grip_in_map": _held_at(skill, hold), "fraction": hold.place}
     posture = skill.context.perceive("arm", frame, side=side, **details)
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
     _tell(skill, f"{side} arm", posture.points_in_map, _ARM_RADIUS)
+
+
+def _held_at(skill: Skill, hold: Hold) -> np.ndarray:
+    return skill.world.observe().pose_hand_in_map[SIDES.index(hold.hand), :3, 3]
 
 
 def _tell_body(skill: Skill, head: Head) -> None:

@@ -1,6 +1,6 @@
 """The dressing tree: stages A to D, each with its precondition, retries and recoveries, under one fail-safe.
 
-A  take the gown down: go to the side of the rail that shows the outside, take both shoulders, lift it off
+A  take the gown down: go to the side of the rail that shows the outside, take both ends of the neckline, lift it off
 B  unfold it and lay it on the person, outside up, arms bare
 C  dress the right arm, drive round the foot of the bed, dress the left arm
 D  draw the collar to the neck on both sides
@@ -24,13 +24,14 @@ from ..skills.navigate import Navigate
 from ..skills.ports import Key
 from ..skills.present_sleeve import PresentSleeve
 from ..skills.pull_along_arm import PullAlongArm
+from ..skills.raise_corner import RaiseCorner
 from ..skills.reasons import Reason
 from ..skills.release_arm import ReleaseArm
 from ..skills.retreat import Retreat
 from ..skills.spread import Spread
 from ..skills.stretch_neckline import StretchNeckline
+from ..skills.take_corner import TakeCorner
 from ..skills.take_down import TakeDown
-from ..skills.take_shoulder import TakeShoulder
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
@@ -47,12 +48,15 @@ def take_down(context: Context) -> Behaviour:
         "find the outside",
         FlipSideCheck("outside to the front", context, seen=Key("rail_side")),
         Navigate("go behind the rail", context, goal="rail_back"))
-    shoulders = [Retry(f"take the {sleeve} shoulder, again", TakeShoulder(
-        f"take the {sleeve} shoulder", context, hand=hand, sleeve=sleeve, grasp=Key(f"{sleeve}_shoulder")), attempts=2)
-        for hand, sleeve in (("left", "right"), ("right", "left"))]
+    hook, held = Key("hook"), Key("first_held")
     return Stage("A take down", None, Timeout("A in time", sequence(
-        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside, *shoulders,
-        TakeDown("lift it off the hook", context, load=Key("gown_load"))), seconds=150.0))
+        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
+        Retry("take the left corner, again", TakeCorner(
+            "take the left corner", context, hand="right", sleeve="left", hook=hook), attempts=3),
+        RaiseCorner("draw the left corner aside", context, hand="right", hook=hook, held=held),
+        Retry("take the right corner, again", TakeCorner(
+            "take the right corner", context, hand="left", sleeve="right", known_hook=hook, held=held), attempts=3),
+        TakeDown("lift it off the hook", context, hook=hook, load=Key("gown_load"))), seconds=150.0))
 
 
 def unfold(context: Context) -> Behaviour:
@@ -79,6 +83,9 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
             ReleaseArm(f"{name}: open the {arm} hold", context, hand=lifting))
         return sequence(f"{name}, {arm}", put_down, back_off(context, f"{name}: free hands, {arm}", 0.0))
 
+    def again() -> Behaviour:
+        return PresentSleeve(f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold)
+
     lift_and_pull = sequence(
         f"lift and pull, {arm}",
         Navigate(f"stand by the {arm} arm", context, goal=stance(arm, "lift")),
@@ -86,7 +93,8 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         LiftArm(f"lift the {arm} arm", context, side=arm, hand=lifting, hold=hold),
         GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
         PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold),
-        PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, upto=PAST_WRIST),
+        RecoverBy(f"over the {arm} hand", PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold,
+                                                       upto=PAST_WRIST), {Reason.SLEEVE_MISSED: again}, attempts=3),
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
@@ -97,6 +105,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         (Reason.ARM_SLIPPED, "slipped arm"), (Reason.GRASP_MISSED, "missed grasp"), (Reason.ARM_LOST, "lost arm"),
         (Reason.NOTHING_SEEN, "nothing seen"), (Reason.UNREACHABLE, "out of reach"),
         (Reason.MOTION_BLOCKED, "blocked motion"), (Reason.FORCE_LIMIT, "too much force"),
+        (Reason.SLEEVE_MISSED, "missed hand"),
         (Reason.TIMEOUT, "slow lift"))}
     return sequence(f"dress the {arm} arm",
                     RecoverBy(f"lift and pull again, {arm}", lift_and_pull, recoveries, attempts=2),

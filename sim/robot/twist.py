@@ -14,6 +14,7 @@ _MAX_LAG = np.array((0.01, 0.06))  # the pose to follow never runs further ahead
 _CENTRING = 0.4  # pull of the null space towards the ready posture [1/s]
 _DAMPING = 0.04  # least squares damping at a singularity [m per rad]
 _SINGULAR = 0.06  # smallest singular value below which damping sets in
+_TURN = 0.15  # what an error in turning counts once joints at their limits leave no exact solution [m/rad]
 
 
 class TwistTracker:
@@ -94,8 +95,9 @@ class TwistTracker:
         free = np.ones(7, bool)
         rates = np.zeros(7)
         for _ in range(3):
-            Jf = J[:, free]
-            rest = velocity - J[:, ~free] @ rates[~free]
+            counts = np.where(np.arange(6) < 3, 1.0, 1.0 if free.sum() > 5 else _TURN)
+            Jf = J[:, free] * counts[:, None]
+            rest = (velocity - J[:, ~free] @ rates[~free]) * counts
             U, S, Vt = np.linalg.svd(Jf, full_matrices=False)
             damping = _DAMPING**2 * (1.0 - np.minimum(S / _SINGULAR, 1.0) ** 2)
             solved = Vt.T @ (S / (S**2 + damping) * (U.T @ (rest - Jf @ centring[free]))) + centring[free]

@@ -15,14 +15,17 @@ STAGES = {"A": take_down, "B": unfold, "C": dress, "D": spread}
 
 
 def build(context: Context, stage: str = "") -> Behaviour:
-    """All stages, or `stage` alone.
+    """All stages, or `stage` alone ("C"), or from one to another ("C-D").
 
     Raises:
         CaretreeError: no such stage.
     """
-    if stage and stage not in STAGES:
-        raise CaretreeError(f"the dressing task has no stage {stage!r}; it has {', '.join(STAGES)}")
+    first, _, last = (stage or "A-D").partition("-")
+    letters = list(STAGES)
+    if first not in letters or (last or first) not in letters[letters.index(first):]:
+        raise CaretreeError(f"the dressing task has no stage {stage!r}; it has {', '.join(STAGES)}, and spans like C-D")
+    chosen = letters[letters.index(first):letters.index(last or first) + 1]
     for name, estimator in classical_estimators(context.world.room, context.seed).items():
         context.perception.offer(name, estimator)
-    stages = [make(context) for letter, make in STAGES.items() if stage in ("", letter)]
+    stages = [STAGES[letter](context) for letter in chosen]
     return FailSafe("dress safely", sequence("dressing", *stages), make_safe(context))

@@ -1,0 +1,74 @@
+"""Watching the armhole of a sleeve on its way over the hand: is it centred on the arm, is the hand inside?"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..perception.errors import PerceptionFailure
+from ..perception.estimates import Cover, SleeveOpening
+from .arm_path import ArmPath
+from .bedside import outwards
+from .skill import Skill
+from .strap_grip import StrapGrip
+
+PERIOD = 0.2  # between two looks [s]
+# Where the armhole's outer edge belongs, outwards of the arm's axis [m].  The hoop is 0.16 to 0.18 m wide, and its inner
+# half hides behind the outer one, so that the middle of what is seen is not the middle.
+EDGE = 0.07
+CENTRED = 0.02  # how far off that lets the hand in [m]
+_FARTHEST = 0.14  # that the grip goes to the side for it [m]
+_STEP = 0.03  # by which the grip goes to the side after one look, at most [m]
+_HAND = np.linspace(2.3, 2.95, 10)  # places along the arm that must be under the sleeve
+_COVERED = 0.5  # share of them
+
+
+class RingWatch:
+    """What the head's and the pulling hand's cameras see of a held armhole.
+
+    Attributes:
+        aside: how far to the side of the arm the grip should be, along the first axis of `ArmPath.frame` [m].
+        off: how far the armhole was from its place at the last look, 0 before it was seen [m].
+    """
+
+    def __init__(self, skill: Skill, grip: StrapGrip) -> None:
+        self._skill, self._grip = skill, grip
+        self.aside = self.off = 0.0
+        self._looked = -np.inf
+
+    def look(self, path: ArmPath, place: float, grip_in_map: np.ndarray) -> None:
+        """Look, at most every `PERIOD`; shifts `aside` by part of what the armhole is off.
+
+        Args:
+            path: of the arm now.
+            place: of the gripper along it.
+            grip_in_map: (3,) fingertips that hold the strap [m].
+        """
+        if self._skill.now() - self._looked < PERIOD:
+            return
+        self._looked = self._skill.now()
+        across = path.frame(place)[:, 0]
+        side = float(np.sign(across @ outwards(self._grip.arm)))
+        edges = []
+        for camera in ("head", f"{self._grip.hand}_hand"):
+            try:
+                ring = self._skill.context.perceive("held_armhole", self._skill.world.look(camera), side=self._grip.arm,
+                                                    near_in_map=grip_in_map)
+            except PerceptionFailure:
+                continue
+            assert isinstance(ring, SleeveOpening)
+            edges.append(np.percentile((ring.ring_points_in_map - path.point(place)) @ (side * across), 97))
+        if not edges:
+            return
+        self.off = EDGE - float(np.max(edges))
+        self.aside = float(np.clip(self.aside + side * np.clip(0.5 * self.off, -_STEP, _STEP), -_FARTHEST, _FARTHEST))
+
+    def missed(self, path: ArmPath) -> bool:
+        """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""
+        frame = self._skill.world.look(f"{self._grip.hand}_hand")
+        hand = np.array([path.point(float(place)) for place in _HAND])
+        try:
+            cover = self._skill.context.perceive("hand_cover", frame, points_in_map=hand)
+        except PerceptionFailure:
+            return False
+        assert isinstance(cover, Cover)
+        return cover.share < _COVERED
