@@ -10,11 +10,16 @@ from typing import Any
 import numpy as np
 
 from . import units
+from .errors import CaretreeError
 from .gown import GownMesh, edge_counts
 
 STABILITY_MAX = 0.7  # elastic * dt^2 / vertex mass: above it the explicit springs explode (measured, FACTS)
 MARGIN = 0.006  # collision margin [m]
 GRAVITY = 9.81  # [m/s^2]
+
+
+class UnstableCloth(CaretreeError, ValueError):
+    """A gown too stiff or too light for the time step."""
 
 
 class Cloth:
@@ -27,15 +32,15 @@ class Cloth:
         time_step: of the physics [s].
 
     Raises:
-        ValueError: the springs would be unstable at this time step.
+        UnstableCloth: the springs would be unstable at this time step.
     """
 
     def __init__(self, client: Any, mesh: GownMesh, vertices: np.ndarray, time_step: float) -> None:
         spec = mesh.spec
         stiffness = spec.elastic * time_step**2 / (spec.mass / len(mesh.vertices))
         if stiffness > STABILITY_MAX:
-            raise ValueError(f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
-                             f"{STABILITY_MAX} is stable: lower the stiffness or the time step")
+            raise UnstableCloth(f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
+                                f"{STABILITY_MAX} is stable: lower the stiffness or the time step")
         self.client, self.mesh = client, mesh
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "gown.obj"

@@ -8,6 +8,7 @@ import numpy as np
 
 from .errors import CaretreeError
 from .gown import GOWNS, GownMesh, GownSpec, build_gown
+from .gown_file import read_gown
 from .person import PERSONS, PersonSpec
 from .world import RoomMap
 
@@ -50,25 +51,37 @@ def _named(kind: str, name: str, table: dict) -> object:
     return table[name]
 
 
+def named_gown(name: str) -> GownSpec:
+    """The gown called `name` in `GOWNS`; a name that ends in .yaml is a gown file.
+
+    Raises:
+        CaretreeError: no such gown, or a file that cannot be used.
+    """
+    if name.endswith((".yaml", ".yml")):
+        return read_gown(name).spec
+    spec = _named("gown", name, GOWNS)
+    assert isinstance(spec, GownSpec)
+    return spec
+
+
 def draw_scene(seed: int, gown: str | None = None, person: str | None = None) -> Scene:
     """Draw a scene; the same arguments give the same scene.
 
     Args:
         seed: not negative.
-        gown: name in `GOWNS`; drawn when omitted.
+        gown: name in `GOWNS`, or path of a gown file; drawn when omitted.
         person: name in `PERSONS`; drawn when omitted.
 
     Raises:
-        CaretreeError: an unknown name or a negative seed.
+        CaretreeError: an unknown name, a bad gown file or a negative seed.
     """
     if seed < 0:
         raise CaretreeError(f"seed {seed} is negative; seeds are 0, 1, 2 ...")
     rng = np.random.default_rng([seed, 0])
     gown = gown or str(rng.choice(list(GOWNS)))
     person = person or str(rng.choice(list(PERSONS)))
-    spec = _named("gown", gown, GOWNS)
+    spec = named_gown(gown)
     who = _named("person", person, PERSONS)
-    assert isinstance(spec, GownSpec)
     assert isinstance(who, PersonSpec)
     mesh = build_gown(spec)
     friction = rng.uniform(0.85, 1.15)

@@ -48,24 +48,66 @@ def held_start(mesh: GownMesh, held: tuple[int, int]) -> np.ndarray:
 
 
 @njit(cache=True, fastmath=True)
-def _turned(x, base, start, other, stiffness, rest, row):
-    """Right-hand side of the balance: pinned part and weight, and every spring at rest length; (free, 3)."""
-    out = base.copy()
+def _turned(x, base, start, other, stiffness, rest, row, out):
+    """Right-hand side of the balance into `out` (free, 3): held part and weight, and every spring at rest length."""
+    out[:] = base
     for i in range(x.shape[0]):
-        if row[i] < 0:
-            continue
-        sx = sy = sz = 0.0
+        a = row[i]
         for q in range(start[i], start[i + 1]):
             j = other[q]
+            if j < i:  # each spring once
+                continue
             dx, dy, dz = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], x[i, 2] - x[j, 2]
             share = stiffness[q] * rest[q] / np.sqrt(dx * dx + dy * dy + dz * dz)
-            sx += share * dx
-            sy += share * dy
-            sz += share * dz
-        out[row[i], 0] += sx
-        out[row[i], 1] += sy
-        out[row[i], 2] += sz
-    return out
+            if a >= 0:
+                out[a, 0] += share * dx
+                out[a, 1] += share * dy
+                out[a, 2] += share * dz
+            b = row[j]
+            if b >= 0:
+                out[b, 0] -= share * dx
+                out[b, 1] -= share * dy
+                out[b, 2] -= share * dz
+
+
+@njit(cache=True, fastmath=True)
+def _solve(begin, below, lower, diagonal, y):
+    """y <- (L D L^T)^-1 y in place; L has a unit diagonal and its columns' lower parts are listed."""
+    n = len(diagonal)
+    for c in range(n):
+        y0, y1, y2 = y[c, 0], y[c, 1], y[c, 2]
+        for q in range(begin[c], begin[c + 1]):
+            k = below[q]
+            y[k, 0] -= lower[q] * y0
+            y[k, 1] -= lower[q] * y1
+            y[k, 2] -= lower[q] * y2
+    for c in range(n - 1, -1, -1):
+        y0, y1, y2 = y[c, 0] / diagonal[c], y[c, 1] / diagonal[c], y[c, 2] / diagonal[c]
+        for q in range(begin[c], begin[c + 1]):
+            k = below[q]
+            y0 -= lower[q] * y[k, 0]
+            y1 -= lower[q] * y[k, 1]
+            y2 -= lower[q] * y[k, 2]
+        y[c, 0], y[c, 1], y[c, 2] = y0, y1, y2
+
+
+@njit(cache=True, fastmath=True)
+def _search(x, base, start, other, stiffness, rest, row, begin, below, lower, diagonal, rounds, momentum):
+    now, before, ahead = x.copy(), x.copy(), x.copy()
+    out = np.empty_like(base)
+    for _ in range(rounds):
+        for i in range(x.shape[0]):
+            if row[i] >= 0:
+                for d in range(3):
+                    ahead[i, d] = now[i, d] + momentum * (now[i, d] - before[i, d])
+                    before[i, d] = now[i, d]
+        _turned(ahead, base, start, other, stiffness, rest, row, out)
+        _solve(begin, below, lower, diagonal, out)
+        for i in range(x.shape[0]):
+            if row[i] >= 0:
+                for d in range(3):
+                    now[i, d] = out[row[i], d]
+    return now
 
 
 def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = ROUNDS) -> np.ndarray:
@@ -85,15 +127,17 @@ def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = R
     degree = np.bincount(one, weights=springs.stiffness, minlength=count)
     matrix = (sparse.diags(degree) - sparse.csr_matrix((springs.stiffness, (one, springs.other)), (count, count))).tocsc()
     free = np.setdiff1d(np.arange(count), held)
+    # the matrix is symmetric and diagonally dominant: with diagonal pivots and one order for rows and columns its
+    # factors are L and D L^T
+    order = np.argsort(splu(matrix[free][:, free], permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                            options={"SymmetricMode": True}).perm_c)
+    free = free[order]
     row = np.full(count, -1)
     row[free] = np.arange(len(free))
     base = -(matrix[free][:, list(held)] @ x[list(held)])
     base[:, 2] -= springs.mass[free] * GRAVITY
-    factor = splu(matrix[free][:, free], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    now, before = x.copy(), x.copy()
-    for _ in range(rounds):
-        ahead = now + MOMENTUM * (now - before)
-        before = now
-        now = x.copy()
-        now[free] = factor.solve(_turned(ahead, base, springs.start, springs.other, springs.stiffness, springs.rest, row))
-    return now
+    factor = splu(matrix[free][:, free].tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0,
+                  options={"SymmetricMode": True})
+    lower = sparse.tril(factor.L, -1, format="csc")
+    return _search(x, base, springs.start, springs.other, springs.stiffness, springs.rest, row, lower.indptr,
+                   lower.indices, lower.data, factor.U.diagonal(), rounds, MOMENTUM)

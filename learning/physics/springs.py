@@ -100,77 +100,77 @@ def weave(mesh: GownMesh) -> Weave:
 
 
 @numba.njit(cache=True, fastmath=True)
-def _pull(x, start, other, stiffness, rest, i):
-    """Force of the springs on vertex i (3 values) [N]."""
-    fx = fy = fz = 0.0
-    for q in range(start[i], start[i + 1]):
-        j = other[q]
-        dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
-        length = np.sqrt(dx * dx + dy * dy + dz * dz)
-        pull = stiffness[q] * (1.0 - rest[q] / length)
-        fx += pull * dx
-        fy += pull * dy
-        fz += pull * dz
-    return fx, fy, fz
+def _pull(x, start, other, stiffness, rest, force):
+    """Force of the springs on every vertex [N], into `force` (V, 3)."""
+    force[:] = 0.0
+    for i in range(x.shape[0]):
+        for q in range(start[i], start[i + 1]):
+            j = other[q]
+            if j < i:  # each spring once
+                continue
+            dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+            pull = stiffness[q] * (1.0 - rest[q] / np.sqrt(dx * dx + dy * dy + dz * dz))
+            force[i, 0] += pull * dx
+            force[i, 1] += pull * dy
+            force[i, 2] += pull * dz
+            force[j, 0] -= pull * dx
+            force[j, 1] -= pull * dy
+            force[j, 2] -= pull * dz
+
+
+@numba.njit(cache=True, fastmath=True)
+def _damp(p, start, other, mass, free, coupling, image):
+    """(M + coupling L) p into `image`; returns p . image.  Held vertices have p = 0."""
+    product = 0.0
+    for i in range(p.shape[0]):
+        if not free[i]:
+            continue
+        sx = sy = sz = 0.0
+        for q in range(start[i], start[i + 1]):
+            j = other[q]
+            sx += p[j, 0]
+            sy += p[j, 1]
+            sz += p[j, 2]
+        own = mass[i] + coupling * (start[i + 1] - start[i])
+        image[i, 0] = own * p[i, 0] - coupling * sx
+        image[i, 1] = own * p[i, 1] - coupling * sy
+        image[i, 2] = own * p[i, 2] - coupling * sz
+        product += p[i, 0] * image[i, 0] + p[i, 1] * image[i, 1] + p[i, 2] * image[i, 2]
+    return product
 
 
 @numba.njit(cache=True, fastmath=True)
 def _advance(x, v, start, other, stiffness, rest, mass, area, free, damping, drag, gravity, dt, steps, tolerance):
     """`steps` steps in place; returns the conjugate gradient rounds they took."""
     n = x.shape[0]
-    r, p, image = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
+    w, r, p, image = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     coupling = dt * damping
     rounds = 0
-    for _ in range(steps):
+    for step in range(steps):
+        _pull(x, start, other, stiffness, rest, image)
         scale = 0.0
         for i in range(n):
             if not free[i]:
-                v[i, 0] = v[i, 1] = v[i, 2] = 0.0
                 continue
-            fx, fy, fz = _pull(x, start, other, stiffness, rest, i)
-            if drag > 0.0:
-                air = drag * area[i] * np.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
-                fx -= air * v[i, 0]
-                fy -= air * v[i, 1]
-                fz -= air * v[i, 2]
             push = dt / mass[i]
-            v[i, 0] += push * fx
-            v[i, 1] += push * fy
-            v[i, 2] += push * fz - dt * gravity
-            scale += mass[i] ** 2 * (v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
+            air = drag * area[i] * np.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
+            for d in range(3):
+                before = v[i, d]
+                last = before - w[i, d] if step > 0 else 0.0  # what damping changed in the last step: a good guess
+                w[i, d] = before + push * (image[i, d] - air * before) - (dt * gravity if d == 2 else 0.0)
+                v[i, d] = w[i, d] + last
+                scale += (mass[i] * w[i, d]) ** 2
+        _damp(v, start, other, mass, free, coupling, image)
         left = 0.0
-        for i in range(n):  # residual of (M + coupling L) v' = M w at v' = w
-            if not free[i]:
-                continue
-            sx = sy = sz = 0.0
-            for q in range(start[i], start[i + 1]):
-                j = other[q]
-                sx += v[j, 0]
-                sy += v[j, 1]
-                sz += v[j, 2]
-            count = start[i + 1] - start[i]
-            p[i, 0] = r[i, 0] = coupling * (sx - count * v[i, 0])
-            p[i, 1] = r[i, 1] = coupling * (sy - count * v[i, 1])
-            p[i, 2] = r[i, 2] = coupling * (sz - count * v[i, 2])
-            left += r[i, 0] ** 2 + r[i, 1] ** 2 + r[i, 2] ** 2
+        for i in range(n):
+            if free[i]:
+                for d in range(3):
+                    r[i, d] = mass[i] * w[i, d] - image[i, d]
+                    p[i, d] = r[i, d]
+                    left += r[i, d] ** 2
         k = 0
         while left > tolerance * tolerance * scale and k < ROUNDS_MAX:
-            curvature = 0.0
-            for i in range(n):
-                if not free[i]:
-                    continue
-                sx = sy = sz = 0.0
-                for q in range(start[i], start[i + 1]):
-                    j = other[q]
-                    sx += p[j, 0]
-                    sy += p[j, 1]
-                    sz += p[j, 2]
-                own = mass[i] + coupling * (start[i + 1] - start[i])
-                image[i, 0] = own * p[i, 0] - coupling * sx
-                image[i, 1] = own * p[i, 1] - coupling * sy
-                image[i, 2] = own * p[i, 2] - coupling * sz
-                curvature += p[i, 0] * image[i, 0] + p[i, 1] * image[i, 1] + p[i, 2] * image[i, 2]
-            share, before = left / curvature, left
+            share, before_left = left / _damp(p, start, other, mass, free, coupling, image), left
             left = 0.0
             for i in range(n):
                 if free[i]:
@@ -178,7 +178,7 @@ def _advance(x, v, start, other, stiffness, rest, mass, area, free, damping, dra
                         v[i, d] += share * p[i, d]
                         r[i, d] -= share * image[i, d]
                         left += r[i, d] ** 2
-            turn = left / before
+            turn = left / before_left
             for i in range(n):
                 if free[i]:
                     for d in range(3):
@@ -186,8 +186,9 @@ def _advance(x, v, start, other, stiffness, rest, mass, area, free, damping, dra
             k += 1
         rounds += k
         for i in range(n):
-            for d in range(3):
-                x[i, d] += dt * v[i, d]
+            if free[i]:
+                for d in range(3):
+                    x[i, d] += dt * v[i, d]
     return rounds
 
 
@@ -198,7 +199,7 @@ def advance(springs: Springs, x: np.ndarray, v: np.ndarray, free: np.ndarray, dt
     Args:
         springs: the gown.
         x: positions.
-        v: velocities.
+        v: velocities, zero at the held vertices.
         free: (V,) bool; the others stay where they are.
         dt: step [s].
         steps: how many.

@@ -16,7 +16,7 @@ from ..gown import GownMesh
 from .carriers import ClothPatch
 from .cloth_effect import ClothSettings
 from .effect import EffectError
-from .model_file import EffectModel, load_model
+from .model_file import EffectEntry, EffectModel, load_model
 
 SPEC = {"mass": "mass", "elastic_stiffness": "elastic", "damping_stiffness": "damping", "bending_stiffness": "bending"}
 
@@ -36,6 +36,16 @@ def gown_effects(path: str | Path) -> EffectModel:
     except EffectError as error:
         raise CaretreeError(f"--model {path}: {error}") from None
     return model
+
+
+def with_air(model: EffectModel | None, drag: float) -> EffectModel:
+    """The effects with the air a gown file asks for, `drag` [N s^2/m^4], unless the model file has its own."""
+    if model is None:
+        model = EffectModel(system="cloth", base={}, recalibration=(), effects=())
+    if any(e.name == "air_drag" for e in model.effects):
+        return model
+    air = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": drag})
+    return dataclasses.replace(model, effects=(*model.effects, air))
 
 
 def recalibrated(mesh: GownMesh, model: EffectModel) -> GownMesh:
@@ -69,6 +79,13 @@ def gown_patch(
 
 
 def loaded(mesh: GownMesh, patch: ClothPatch) -> GownMesh:
-    """The gown as its soft body must be loaded: carriers' mass taken off, friction changed."""
+    """The gown as its soft body must be loaded: carriers' mass taken off, friction changed.
+
+    Raises:
+        CaretreeError: the gown is lighter than its carriers.
+    """
+    if patch.cloth_mass <= 0:
+        raise CaretreeError(f"gown '{mesh.spec.name}' weighs {mesh.spec.mass * 1e3:.0f} g, to feel air or other forces "
+                            f"it must weigh more than {(mesh.spec.mass - patch.cloth_mass) * 1e3:.0f} g")
     spec: Any = dataclasses.replace(mesh.spec, mass=patch.cloth_mass, friction=patch.settings.friction)
     return dataclasses.replace(mesh, spec=spec)
