@@ -16,7 +16,7 @@ _FEWEST = 4  # points in view
 def hand_cover(frame: Frame, points_in_map: np.ndarray) -> Cover:
     """Ask along the axis of a hand whether the camera sees something else than skin there.
 
-    On the recorded pulls of ten runs the share was 1 for a hand inside and at most 0.2 for one that the sleeve had missed.
+    In recorded pulls the share was 1 for a hand inside and at most 0.2 for one that the sleeve had missed.
 
     Args:
         frame: a view from close by; what stands between counts as a cover, so the view must be free.

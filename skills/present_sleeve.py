@@ -31,11 +31,13 @@ class PresentSleeve(Skill):
 
     Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.
 
-    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None.
+    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
+    is carried no farther, lest the gown be drawn off the other arm [N].
     """
 
     grip = Input(StrapGrip)
     hold = Input(Hold, default=None)
+    taut = Input(float, default=np.inf)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
                Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
 
@@ -66,12 +68,22 @@ class PresentSleeve(Skill):
         for beyond in BEYOND:
             goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
             try:
-                yield from move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
+                yield from self._until_taut(move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED),
+                                                       way="either"))
                 return
             except MotionError as stop:
                 problem = stop
         assert problem is not None
         raise problem
+
+    def _until_taut(self, motion: Iterator[None]) -> Iterator[None]:
+        """Let `motion` go on until the cloth pulls back."""
+        for _ in motion:
+            if np.linalg.norm(cloth_load(self, self.grip.hand)) > self.taut:
+                self.world.stop()
+                yield from self.until(self.context.guard.still, timeout=2.0, reason=Reason.MOTION_BLOCKED)
+                return
+            yield
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -28,6 +28,7 @@ STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
+_LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
 
@@ -35,12 +36,14 @@ class PullAlongArm(Skill):
     """Leads the strap above the arm's axis towards the shoulder until it is at `upto`.
 
     Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
-    0 shoulder, below 0 past it towards the neck); `hold`, the hand that holds the arm, or None; `stand`, base
+    0 shoulder, below 0 past it towards the neck); `seat`, place of the armhole itself that ends the pull earlier, as
+    far as it is seen; `hold`, the hand that holds the arm, or None; `stand`, base
     pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of the pull.
     """
 
     grip = Input(StrapGrip)
     upto = Input(float)
+    seat = Input(float, default=-np.inf)
     hold = Input(Hold, default=None)
     stand = Input(np.ndarray, default=None)
     law = Input(PullLaw, default=PullLaw())
@@ -62,7 +65,7 @@ class PullAlongArm(Skill):
             before, place = place, path.place_of(hand[:3, 3], place)
             if before is not None:
                 travelled += np.sign(before - place) * path.distance(before, place)
-            if place <= self.upto:
+            if place <= self.upto or self._seated(ring, path, place, hand[:3, 3]):
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:
@@ -86,6 +89,13 @@ class PullAlongArm(Skill):
                 self._drive(follower, seen)
             self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
             yield
+
+    def _seated(self, ring: RingWatch, path: ArmPath, place: float, grip: np.ndarray) -> bool:
+        """The armhole lags behind the grip by more or less, depending on how the strap is held."""
+        if np.isinf(self.seat) or place > _LAST:
+            return False
+        seen = ring.place(path, grip)
+        return seen is not None and seen <= self.seat
 
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
         """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""

@@ -1,4 +1,4 @@
-"""Watching the armhole of a sleeve on its way over the hand: is it centred on the arm, is the hand inside?"""
+"""Watching the armhole of a sleeve on its way: is it centred on the arm, is the hand inside, is it at the shoulder?"""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .skill import Skill
 from .strap_grip import StrapGrip
 
 PERIOD = 0.2  # between two looks [s]
-# Where the armhole's outer edge belongs, outwards of the arm's axis [m].  The hoop is 0.16 to 0.18 m wide, and its inner
+# Where the armhole's outer edge belongs, outwards of the arm's axis [m].  The hoop is 0.17 m wide, and its inner
 # half hides behind the outer one, so that the middle of what is seen is not the middle.
 EDGE = 0.07
 CENTRED = 0.02  # how far off that lets the hand in [m]
@@ -20,6 +20,7 @@ _FARTHEST = 0.14  # that the grip goes to the side for it [m]
 _STEP = 0.03  # by which the grip goes to the side after one look, at most [m]
 _HAND = np.linspace(2.3, 2.95, 10)  # places along the arm that must be under the sleeve
 _COVERED = 0.5  # share of them
+_SOME = 25  # of the armhole's points are asked for their place
 
 
 class RingWatch:
@@ -61,6 +62,23 @@ class RingWatch:
             return
         self.off = EDGE - float(np.max(edges))
         self.aside = float(np.clip(self.aside + side * np.clip(0.5 * self.off, -_STEP, _STEP), -_FARTHEST, _FARTHEST))
+
+    def place(self, path: ArmPath, grip_in_map: np.ndarray) -> float | None:
+        """Where along the arm the armhole is: the median over what the head camera sees of it, within 0.1 of the truth.
+
+        None where too little of it is seen, and between two looks.
+        """
+        if self._skill.now() - self._looked < PERIOD:
+            return None
+        self._looked = self._skill.now()
+        try:
+            ring = self._skill.context.perceive("held_armhole", self._skill.world.look("head"), side=self._grip.arm,
+                                                near_in_map=grip_in_map)
+        except PerceptionFailure:
+            return None
+        assert isinstance(ring, SleeveOpening)
+        some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // _SOME)]
+        return float(np.median([path.place_of(point) for point in some]))
 
     def missed(self, path: ArmPath) -> bool:
         """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""

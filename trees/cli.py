@@ -43,7 +43,8 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--gown", metavar="NAME", help="which gown (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help="which person (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
-    parser.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as C-D, from a world prepared for it")
+    parser.add_argument("--stage", metavar="NAME",
+                        help="this stage alone, or a span such as C-D, from a world prepared for it")
 
 
 def build_parser(command: str = "") -> argparse.ArgumentParser:

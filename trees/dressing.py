@@ -35,8 +35,9 @@ from ..skills.take_down import TakeDown
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
-# Where the grip ends, beyond the shoulder [share of the upper arm]; the first sleeve slips back under the second pull.
-HEAD_END: dict[Side, float] = {"right": -0.35, "left": -0.22}
+# Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
+HEAD_END, SEAT = -0.40, 0.06
+TAUT: dict[Side, float] = {"right": np.inf, "left": 1.8}  # the second sleeve must not draw the first off its arm [N]
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
@@ -84,7 +85,8 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         return sequence(f"{name}, {arm}", put_down, back_off(context, f"{name}: free hands, {arm}", 0.0))
 
     def again() -> Behaviour:
-        return PresentSleeve(f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold)
+        return PresentSleeve(f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold,
+                             taut=TAUT[arm])
 
     lift_and_pull = sequence(
         f"lift and pull, {arm}",
@@ -92,13 +94,14 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         look("look at"),
         LiftArm(f"lift the {arm} arm", context, side=arm, hand=lifting, hold=hold),
         GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
-        PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold),
+        PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold,
+                      taut=TAUT[arm]),
         RecoverBy(f"over the {arm} hand", PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold,
                                                        upto=PAST_WRIST), {Reason.SLEEVE_MISSED: again}, attempts=3),
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm],
+        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END, seat=SEAT,
                      stand=stance(arm, "shoulder")))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
