@@ -17,7 +17,7 @@ from .tracking import Hold
 
 _ASIDE, _DOWN = 6.0, 20.0  # pulls that are left alone: sideways or up, and down, where the arm's weight hangs [N]
 _YIELDING = 0.003  # speed of giving way to more than that [m/s/N]
-_FASTEST = 0.03  # [m/s]
+FASTEST = 0.03  # [m/s]
 
 
 def holding(skill: Skill, hold: Hold | None, motion: Iterator[None]) -> Iterator[None]:
@@ -52,4 +52,4 @@ def giving_way(load: np.ndarray) -> np.ndarray:
     pull[2] = min(pull[2] + _DOWN, 0.0) if pull[2] < 0.0 else pull[2]
     size = float(np.linalg.norm(pull))
     velocity = _YIELDING * max(size - _ASIDE, 0.0) / max(size, 1e-9) * pull
-    return velocity * min(1.0, _FASTEST / max(float(np.linalg.norm(velocity)), 1e-9))
+    return velocity * min(1.0, FASTEST / max(float(np.linalg.norm(velocity)), 1e-9))

@@ -12,6 +12,7 @@ from .arm_grip import lost_arm
 from .arm_path import UP
 from .context import Context
 from .hands import move_arms, open_gripper
+from .holding import FASTEST, giving_way
 from .ports import Input
 from .reasons import Reason
 from .retreat import withdraw
@@ -54,14 +55,18 @@ class ReleaseArm(Skill):
         n = SIDES.index(self.hand)
         start, begin = self.world.observe(), self.now()
         floor = max(start.pose_hand_in_map[n, 2, 3] - _LONGEST, self.world.room.bed[1, 2] + 0.05)
-        while self.now() - begin < _LONGEST / _SPEED + 2.0:
+        while self.now() - begin < 2.0 * _LONGEST / _SPEED:
             seen = self.world.observe()
             if seen.pose_hand_in_map[n, 2, 3] <= floor or lost_arm(self, self.hand):
                 return
             # it hangs on the hand with several newtons until the bed takes it over
             if self.now() - begin > 1.0 and -seen.wrench_hand_in_map[n, 2] < _RESTS:
                 return
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(-_SPEED * UP, np.zeros(3))), retreat=True)
+            # the arm turns about its shoulder, so that the way down is no straight line: give way to what pulls aside
+            give = giving_way(seen.wrench_hand_in_map[n, :3])
+            ease = float(np.clip(1.0 - np.linalg.norm(give) / FASTEST, 0.0, 1.0))
+            linear = -_SPEED * ease * UP + give
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))), retreat=True)
             yield
 
     @classmethod

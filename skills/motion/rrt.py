@@ -11,12 +11,15 @@ from .errors import MotionBlocked
 
 _STEP = 0.4  # longest branch of the tree, greatest joint change [rad]
 _RESOLUTION = 0.08  # spacing of the tests along a branch [rad]
+_OUT = 0.25  # farthest step out of a contact, in each joint [rad]
 Test = Callable[[np.ndarray], bool]
 
 
 def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test, *,
             tries: int = 1500, seed: int = 0) -> np.ndarray:
     """Waypoints (k, n) of a free path between two joint vectors (n,).
+
+    Arms that have come too near to something under velocity control first take the smallest step that frees them.
 
     Args:
         start: where the arms are [rad].
@@ -28,12 +31,14 @@ def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.nd
         seed: of the samples; the same seed gives the same path.
 
     Raises:
-        MotionBlocked: start or goal is not free, or no path was found.
+        MotionBlocked: the goal or everything near the start is not free, or no path was found.
     """
-    for q, what in ((start, "the arms already touch something"), (goal, "the goal posture touches something")):
-        if not free(q):
-            raise MotionBlocked(f"no way to plan: {what}")
     generator = np.random.default_rng(seed)
+    if not free(start):
+        freed = _step_out(start, lower, upper, free, generator)
+        return np.vstack((start, connect(freed, goal, lower, upper, free, tries=tries, seed=seed)))
+    if not free(goal):
+        raise MotionBlocked("no way to plan: the goal posture touches something")
     trees = (_Tree(start), _Tree(goal))
     forward = True
     for n in range(tries):
@@ -48,6 +53,17 @@ def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.nd
                 return _shorten(path, free, generator)
         forward = not forward
     raise MotionBlocked(f"no free way found for the arms in {tries} tries")
+
+
+def _step_out(start: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test,
+              generator: np.random.Generator) -> np.ndarray:
+    """The free joint vector found nearest to one that is not, within `_OUT`."""
+    for radius in np.linspace(0.03, _OUT, 12):
+        for _ in range(40):
+            q = np.clip(start + generator.uniform(-radius, radius, len(start)), lower, upper)
+            if free(q):
+                return q
+    raise MotionBlocked("no way to plan: the arms already touch something")
 
 
 def segment_free(a: np.ndarray, b: np.ndarray, free: Test) -> bool:

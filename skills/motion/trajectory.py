@@ -62,17 +62,23 @@ def check_motion(checker: CollisionChecker, sides: list[Side], samples: np.ndarr
                  other_arm: np.ndarray | None = None) -> None:
     """Test samples (k, 7 or 14) of the arms on `sides`.
 
+    What touches at the first sample, where velocity control has brought the arms, may touch until it comes free.
+
     Raises:
         MotionBlocked: names the first pair that would touch.
     """
     arms = model.READY.copy()
     if other_arm is not None and len(sides) == 1:
         arms[1 - SIDES.index(sides[0])] = other_arm
-    for sample in samples[:: max(1, len(samples) // 60)]:
+    leaving: set[tuple[str, str]] = set()
+    chosen = np.unique(np.append(np.arange(0, len(samples), max(1, len(samples) // 60)), len(samples) - 1))
+    for k in chosen:
         for n, side in enumerate(sides):
-            arms[SIDES.index(side)] = sample[7 * n:7 * n + 7]
-        if not checker.free(pose_base_in_map, arms):
-            a, b = checker.collisions(pose_base_in_map, arms)[0]
+            arms[SIDES.index(side)] = samples[k, 7 * n:7 * n + 7]
+        touching = [] if checker.free(pose_base_in_map, arms) else checker.collisions(pose_base_in_map, arms)
+        leaving = set(touching) if k == 0 else leaving & set(touching)
+        if not leaving.issuperset(touching) or (touching and k == chosen[-1]):
+            a, b = touching[0]
             raise MotionBlocked(f"the motion would bring {a.replace('_', ' ')} against {b.replace('_', ' ')}")
 
 
