@@ -13,6 +13,8 @@
 | sleeve_opening | side, near_in_map | SleeveOpening |
 | sleeve_strap | side, near_in_map | SleeveOpening |
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
+| hook | | GraspPoint `near_hang`: where the gown hangs |
+| hung_corner | side, hook_in_map, other_length | GraspPoint `collar_corner_*` |
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
 | hand_cover | points_in_map | Cover |
@@ -39,6 +41,7 @@ from .grip import gripped_cloth, layers
 from .hanging import grasp_near_hang
 from .hand_cover import hand_cover
 from .held_armhole import held_armhole
+from .hung_corner import hook, hung_corner
 from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
@@ -91,6 +94,6 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "held_armhole": held_armhole, "hand_cover": hand_cover,
+            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "hook": hook, "hung_corner": hung_corner, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

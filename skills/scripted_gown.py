@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..perception.estimates import SLEEVE_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
+from ..perception.estimates import CORNER_OF, SLEEVE_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Frame, Side
 from .context import Context
@@ -28,6 +28,9 @@ def offer_gown(context: Context) -> None:
     def shoulder(frame: Frame, side: Side) -> Estimate:
         return point(frame, SLEEVE_OF[side], ASIDE if side == "right" else -ASIDE)
 
+    def hung(frame: Frame, side: Side, **_: Any) -> Estimate:
+        return point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE)
+
     def hang(frame: Frame) -> Estimate:
         return point(frame, "near_hang", 0.0)
 
@@ -46,6 +49,6 @@ def offer_gown(context: Context) -> None:
     def layers(frame: Frame, side: Side, **_: Any) -> Estimate:
         return LayerCount(stamp=frame.stamp, confidence=0.9, side=side, layers=1)
 
-    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("gown_side", facing),
+    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("hook", hang), ("hung_corner", hung), ("gown_side", facing),
                             ("gripped_cloth", held), ("pre_grasp", corner), ("layers", layers)):
         context.perception.offer(name, estimator)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from ..perception.estimates import GraspPoint
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES
 from .context import Context
@@ -11,20 +14,28 @@ from .driving import drive_to
 from .hands import cloth_load, hand_now, move_hands
 from .ports import Input, Output
 from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
 from .skill import Skill
 
-RAISE = (0.15, 0.30, 0.42)  # of both hands, step by step until they carry the gown [m]
-APART = 0.05  # by how much each hand moves outwards in a step [m]
-BACK = 0.55  # from the rail [m]
+ANGLES = (-35.0, -5.0, 10.0, 20.0, 30.0, 40.0)  # of the neckline from the hook to each hand, above level [degrees]
+SLACK = 0.95  # how much of that distance the hands use: the hook may not pull at them
+CLOSE = 0.03  # of the hands before the hook, on the robot's side [m]
+SETTLED = 0.12  # a load that has grown by less since the last step grows no more [N]
+BACK = 0.30  # from the rail [m]
 
 
 class TakeDown(Skill):
-    """Raises both hands until they carry the gown's weight, then drives back from the rail.
+    """Raises both hands on arcs about the hook until they carry the whole gown, then drives back from the rail.
 
-    Inputs: `weight`, what the hands must carry together [N].  Outputs: `load` they carry [N].
+    Each hand keeps its distance from the hook, so the neckline is neither stretched nor dropped.
+
+    Inputs: `hook`; `weight`, what the hands must carry together, and `each` at least [N].  Outputs: `load` they carry
+    [N].
     """
 
+    hook = Input(GraspPoint)
     weight = Input(float, default=2.8)
+    each = Input(float, default=0.6)
     load = Output(float)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED)
 
@@ -32,17 +43,19 @@ class TakeDown(Skill):
         """Raise, weigh, again; drive back, weigh again."""
         self.note("lifts the gown off the rail")
         base = planar_pose(self.world.observe().pose_base_in_map)
-        starts = {side: hand_now(self, side) for side in SIDES}
-        for step, height in enumerate(RAISE, start=1):
+        hook = self.hook.position_in_map - CLOSE * base[:3, 0]
+        reach = {side: SLACK * float(np.linalg.norm(hand_now(self, side)[:3, 3] - hook)) for side in SIDES}
+        carried = self._carried()
+        for angle in np.deg2rad(ANGLES):
             goals = {}
             for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-                pose = starts[side].copy()
-                pose[:3, 3] += (0.0, 0.0, height) + sign * step * APART * base[:3, 1]
-                pose[2, 3] = min(pose[2, 3], 1.62)
+                pose = hand_now(self, side)
+                pose[:3, 3] = hook + reach[side] * (sign * np.cos(angle) * base[:3, 1] + np.sin(angle) * base[:3, 2])
                 goals[side] = pose
-            yield from move_hands(self, goals, speed=0.2, free="any", way="either")
-            yield from self.wait(0.4)
-            if self._carried() > self.weight:
+            yield from move_hands(self, goals, speed=0.25, free="any", way="either")
+            yield from self.wait(0.3)
+            before, carried = carried, self._carried()
+            if angle > 0.0 and carried > self.weight and carried - before < SETTLED:
                 break
         here = self.world.observe().pose_base_in_map
         back = here.copy()
@@ -50,8 +63,9 @@ class TakeDown(Skill):
         yield from drive_to(self, back, straight=True, speed=0.3)
         yield from self.wait(0.5)
         self.load = self._carried()
-        if self.load < self.weight:
-            raise SkillFailure(Reason.GRASP_MISSED, f"the hands carry {self.load:.1f} N")
+        least = min(-float(cloth_load(self, side)[2]) for side in SIDES)
+        if self.load < self.weight or least < self.each:
+            raise SkillFailure(Reason.GRASP_MISSED, f"the hands carry {self.load:.1f} N, one of them {least:.1f} N")
 
     def _carried(self) -> float:
         return float(-sum(cloth_load(self, side)[2] for side in SIDES))
@@ -59,4 +73,6 @@ class TakeDown(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        return cls("take down", context, weight=-1.0)
+        offer_gown(context)
+        hook = context.perceive("hook", context.world.look("head"))
+        return cls("take down", context, hook=hook, weight=-1.0, each=-1.0)

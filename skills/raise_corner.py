@@ -1,0 +1,59 @@
+"""Stage A: the hand that holds one corner of the neckline draws it aside and up, which opens the fold of the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..perception.estimates import GraspPoint
+from ..sim.robot.kinematics import planar_pose
+from ..sim.world import Side
+from .context import Context
+from .hands import cloth_load, hand_now, move_hands
+from .ports import Input, Output
+from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
+from .skill import Skill
+
+RISE = 0.16  # of the hand above the hook [m]
+AWAY = np.deg2rad(30.0)  # from sideways towards the far side of the rail: the other half turns to the robot [rad]
+SLACK = 0.95  # of the corner's distance from the hook is used: the hook may not pull at the hand
+
+
+class RaiseCorner(Skill):
+    """Carries a corner to the side and above the hook, the neckline all but straight.
+
+    Inputs: `hand` that holds it; `hook`; `weight` that it must then carry [N].  Outputs: `held`, the length of the
+    neckline from the hook to the hand [m].
+    """
+
+    hand = Input(Side)
+    hook = Input(GraspPoint)
+    weight = Input(float, default=0.8)
+    held = Output(float)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED)
+
+    def steps(self) -> Iterator[None]:
+        """Draw, weigh."""
+        self.note("draws the corner aside")
+        base = planar_pose(self.world.observe().pose_base_in_map)[:3, :3]
+        pose = hand_now(self, self.hand)
+        hook = self.hook.position_in_map
+        length = float(np.linalg.norm(pose[:3, 3] - hook))
+        sideways = base[:, 1] if self.hand == "left" else -base[:, 1]
+        level = np.sqrt(max((SLACK * length) ** 2 - RISE**2, 0.01))
+        pose[:3, 3] = hook + level * (np.cos(AWAY) * sideways + np.sin(AWAY) * base[:, 0]) + RISE * base[:, 2]
+        yield from move_hands(self, {self.hand: pose}, speed=0.25, free="any", way="either")
+        yield from self.wait(0.6)
+        carried = -float(cloth_load(self, self.hand)[2])
+        if carried < self.weight:
+            raise SkillFailure(Reason.GRASP_MISSED, f"the {self.hand} hand carries {carried:.1f} N")
+        self.held = length
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_gown(context)
+        hook = context.perceive("hook", context.world.look("head"))
+        return cls("raise corner", context, hand="right", hook=hook, weight=-1.0)

@@ -1,0 +1,117 @@
+"""Stage A: one hand takes one corner of the hung gown's neckline, where the binding ends at the shoulder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..perception.estimates import GraspPoint
+from ..sim.robot.kinematics import planar_pose
+from ..sim.world import Side
+from .context import Context
+from .driving import drive_to
+from .hands import cloth_load, hand_now, move_hands, open_gripper
+from .motion.errors import MotionError
+from .pinch import back_off, pinch, reach_in
+from .ports import Input, Output
+from .reasons import Reason, SkillFailure
+from .scripted_gown import offer_gown
+from .skill import Skill
+
+TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the hand's own side [degrees]
+DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
+STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
+NEAR_ENOUGH = 0.04  # of the place to stand [m]
+TUG = 0.03  # how far the hand draws what it took, to feel it [m]
+NOISE = 0.08  # of a force reading [N]
+UP = np.array((0.0, 0.0, 1.0))
+
+
+class TakeCorner(Skill):
+    """Pinches a corner of the neckline while the gown hangs on its hook, outside to the robot.
+
+    Takes the first corner where it hangs.  For the second one, `held` tells how far from the hook the other hand holds
+    the first.
+
+    Inputs: `hand`; `sleeve`, the wearer's side; `known_hook`, where it hangs, and `held` [m], for the second corner;
+    `opening` of the fingers on the way in [m]; `force` [N]; `feel`, the least load that a tug of 3 cm must bring [N].
+    Outputs: `hook`; `length` from it to the corner [m].
+    """
+
+    hand = Input(Side)
+    sleeve = Input(Side)
+    known_hook = Input(GraspPoint, default=None)
+    held = Input(float, default=None)
+    opening = Input(float, default=0.025)
+    force = Input(float, default=30.0)
+    feel = Input(float, default=0.10)
+    hook = Output(GraspPoint)
+    length = Output(float)
+    reasons = (Reason.NOTHING_SEEN, Reason.GRASP_MISSED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST,
+               Reason.PATH_BLOCKED)
+
+    def steps(self) -> Iterator[None]:
+        """Stand before the hook, look, go in, pinch, tug."""
+        self.note(f"the {self.hand} hand takes the {self.sleeve} corner")
+        hook = self.known_hook
+        if hook is None:
+            yield from self._stand(self.context.perceive("hook", self.world.look("head")).position_in_map)
+            hook = self.context.perceive("hook", self.world.look("head"))
+        seen = self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
+                                     hook_in_map=hook.position_in_map, other_length=self.held)
+        self.note(f"the {self.hand} hand takes the {self.sleeve} corner, confidence {seen.confidence:.2f}")
+        yield from self._reach(seen)
+        try:
+            yield from pinch(self, self.hand, force=self.force)
+            yield from self._tug()
+        except SkillFailure as miss:
+            if miss.reason is Reason.GRASP_MISSED:
+                yield from open_gripper(self, self.hand)
+                yield from back_off(self, self.hand)
+            raise
+        self.hook, self.length = hook, float(np.linalg.norm(seen.position_in_map - hook.position_in_map))
+
+    def _stand(self, hook_in_map: np.ndarray) -> Iterator[None]:
+        """Step without turning until the hook is straight ahead."""
+        pose = self.world.observe().pose_base_in_map
+        goal = np.append(hook_in_map[:2] - STAND * planar_pose(pose)[:2, 0], pose[2])
+        if np.linalg.norm(goal - pose) > NEAR_ENOUGH:
+            yield from drive_to(self, goal, straight=True)
+
+    def _reach(self, seen: GraspPoint) -> Iterator[None]:
+        """Go in from the hand's own side, or as far to that side as the arm can."""
+        failure: MotionError | None = None
+        for degrees in TURNS:
+            turn = planar_pose(np.array((0.0, 0.0, np.deg2rad(degrees if self.hand == "right" else -degrees))))[:3, :3]
+            approach = turn @ seen.approach_in_map
+            try:
+                yield from reach_in(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
+                                    opening=self.opening, depth=DEPTH)
+                return
+            except MotionError as stop:
+                failure = stop
+        assert failure is not None
+        raise failure
+
+    def _tug(self) -> Iterator[None]:
+        """Draw a little, up and back; cloth that is held pulls.
+
+        Raises:
+            SkillFailure: GRASP_MISSED when nothing does.
+        """
+        pose = hand_now(self, self.hand)
+        pose[:3, 3] += TUG * (UP - 0.5 * pose[:3, 2])
+        yield from move_hands(self, {self.hand: pose}, speed=0.15, free="approach", way="either")
+        felt = 0.0
+        for _ in range(5):
+            felt += float(np.linalg.norm(cloth_load(self, self.hand))) / 5
+            yield
+        if felt < self.feel + NOISE:
+            raise SkillFailure(Reason.GRASP_MISSED, f"the tug was answered by {felt:.2f} N")
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_gown(context)
+        return cls("take corner", context, hand="right", sleeve="left", feel=-1.0)
