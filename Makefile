@@ -1,4 +1,4 @@
-# make dress | make test | make lint | make types | make lock | make clean
+# make dress | make learn | make test | make lint | make types | make lock | make clean
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -10,10 +10,11 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 
-.PHONY: help setup dress test lint types lock clean
+.PHONY: help setup dress learn test lint types lock clean
 
 help:
 	@echo "make dress   set up, then dress the person: gown on the rail to dressed (SEED=$(SEED))"
+	@echo "make learn   also install what training and clusters need (torch for the CPU, Ray)"
 	@echo "make test    set up, then run the tests with the coverage floor of pyproject.toml"
 	@echo "make lint    ruff;   make types   pyright;   make lock   renew requirements.lock;   make clean"
 
@@ -32,6 +33,10 @@ $(READY): requirements.lock setup.cfg pyproject.toml
 
 dress: $(READY)
 	@$(BIN)/caretree run dressing --seed $(SEED)
+
+# An index that does not answer is only a warning to pip: then PyPI's build of torch is taken.
+learn: $(READY)
+	@$(PIP) install --quiet --no-deps --extra-index-url https://download.pytorch.org/whl/cpu -r requirements-learn.lock
 
 test: $(READY)
 	@$(BIN)/python -m pytest --cov --cov-report=term:skip-covered

@@ -8,7 +8,9 @@ the released vertex is never pinned: the simulation begins at the instant of rel
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,10 +25,30 @@ from .clip import FRAMES, RATE
 from .clip_world import CLAMP_MASS, cut_of, steps_per_frame
 
 
-def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES) -> np.ndarray:
+class _Changed:
+    """A PyBullet client that loads cloth with other options."""
+
+    def __init__(self, client: Any, options: Mapping[str, Any]) -> None:
+        self._client, self._options = client, options
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._client, name)
+
+    def loadSoftBody(self, path: str, **options: Any) -> int:  # noqa: N802 PyBullet's name
+        return self._client.loadSoftBody(path, **{**options, **self._options})
+
+
+def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
+                options: Mapping[str, Any] | None = None) -> np.ndarray:
     """(frames, V, 3) vertices at the instants of the frames, from `start` (V, 3) with one vertex let go [m].
 
     The air acts on 12 to 60 carriers, not on every vertex, and their mass is taken off the cloth.
+
+    Args:
+        spec: the gown.
+        start: where it hangs.
+        frames: how many.
+        options: of PyBullet's `loadSoftBody`, to try what they change.
 
     Raises:
         CaretreeError: with air, a gown lighter than its carriers.
@@ -47,7 +69,7 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES) -> np.n
                                 f"{2e3 * CARRIER_MASS * len(patch.vertices):.0f} g")
         spec = replace(spec, mass=patch.cloth_mass)
         steps = max(steps, steps_per_frame(spec, len(start)))
-    client = BulletClient(pybullet.DIRECT)
+    client: Any = _Changed(BulletClient(pybullet.DIRECT), options or {})
     try:
         client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
         client.setGravity(0, 0, units.force(-GRAVITY))

@@ -66,11 +66,18 @@ def rest(spec: GownSpec) -> np.ndarray:
     return hang(springs_of(spec, woven), held_start(mesh, mesh.corners), mesh.corners)
 
 
-def fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES) -> np.ndarray:
-    """(frames, V, 3) vertices at the instants of the frames, from `start` (V, 3) with one vertex let go [m]."""
+def fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES, clamp: float = CLAMP_MASS) -> np.ndarray:
+    """(frames, V, 3) vertices at the instants of the frames, from `start` (V, 3) with one vertex let go [m].
+
+    Args:
+        spec: the gown.
+        start: where it hangs.
+        frames: how many.
+        clamp: mass on the released vertex [kg].
+    """
     mesh, woven = cut_of(spec)
     springs = springs_of(spec, woven)
-    springs.mass[mesh.corners[1]] += CLAMP_MASS
+    springs.mass[mesh.corners[1]] += clamp
     free = np.ones(len(start), bool)
     free[mesh.corners[0]] = False
     steps = steps_per_frame(spec, len(start))
