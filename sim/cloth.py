@@ -18,7 +18,7 @@ MARGIN = 0.006  # collision margin [m]
 GRAVITY = 9.81  # [m/s^2]
 
 
-class UnstableCloth(CaretreeError, ValueError):
+class UnstableClothError(CaretreeError, ValueError):
     """A gown too stiff or too light for the time step."""
 
 
@@ -32,14 +32,14 @@ class Cloth:
         time_step: of the physics [s].
 
     Raises:
-        UnstableCloth: the springs would be unstable at this time step.
+        UnstableClothError: the springs would be unstable at this time step.
     """
 
     def __init__(self, client: Any, mesh: GownMesh, vertices: np.ndarray, time_step: float) -> None:
         spec = mesh.spec
         stiffness = spec.elastic * time_step**2 / (spec.mass / len(mesh.vertices))
         if stiffness > STABILITY_MAX:
-            raise UnstableCloth(f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
+            raise UnstableClothError(f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
                                 f"{STABILITY_MAX} is stable: lower the stiffness or the time step")
         self.client, self.mesh = client, mesh
         with tempfile.TemporaryDirectory() as folder:

@@ -67,8 +67,11 @@ class DatasetSpec:
         return HELDOUT_GOWN if self.kind == "heldout_gown" else GOWNS["medium"]
 
     def class_of(self, index: int) -> int:
-        """Class of clip `index`; -1 where there are no classes.  Clips go round all classes, so that any first part
-        of a dataset is balanced, and a dataset can be made larger without making it anew."""
+        """Class of clip `index`; -1 where there are no classes.
+
+        Clips go round all classes, so that any first part of a dataset is balanced, and a dataset can be made larger
+        without making it anew.
+        """
         return index % self.classes if self.kind == "paper" else -1
 
     def split_of(self, index: int) -> str:

@@ -72,7 +72,7 @@ def _turned(x, base, start, other, stiffness, rest, row, out):
 
 @njit(cache=True, fastmath=True)
 def _solve(begin, below, lower, diagonal, y):
-    """y <- (L D L^T)^-1 y in place; L has a unit diagonal and its columns' lower parts are listed."""
+    """Turn y into (L D L^T)^-1 y in place; L has a unit diagonal and its columns' lower parts are listed."""
     n = len(diagonal)
     for c in range(n):
         y0, y1, y2 = y[c, 0], y[c, 1], y[c, 2]
@@ -125,7 +125,8 @@ def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = R
     count = len(x)
     one = np.repeat(np.arange(count), np.diff(springs.start))
     degree = np.bincount(one, weights=springs.stiffness, minlength=count)
-    matrix = (sparse.diags(degree) - sparse.csr_matrix((springs.stiffness, (one, springs.other)), (count, count))).tocsc()
+    pulls = sparse.csr_matrix((springs.stiffness, (one, springs.other)), (count, count))
+    matrix = (sparse.diags(degree) - pulls).tocsc()
     free = np.setdiff1d(np.arange(count), held)
     # the matrix is symmetric and diagonally dominant: with diagonal pivots and one order for rows and columns its
     # factors are L and D L^T
