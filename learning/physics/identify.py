@@ -1,0 +1,84 @@
+"""Six parameters with intervals from one clip, for a person and as a gown file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from ...sim.errors import CaretreeError
+from ...sim.gown import GOWNS
+from ...sim.gown_file import GownFile, write_gown
+from .clip import Clip
+from .film_camera import FilmCamera
+from .frames import frames_of
+from .ours import Inversion
+from .parameters import NAMES, PARAMETERS, to_values
+from .simulator import Simulator
+
+
+@dataclass(frozen=True, kw_only=True)
+class Identified:
+    """Parameters of one gown in their own units.
+
+    Attributes:
+        cut: name of the cut that was simulated.
+        values: (6,) estimates.
+        lower: (6,) lower ends of the 90 % intervals.
+        upper: (6,) upper ends.
+        misfit: of the simulated clip, over the usual misfit; far above one says that the clip is not explained.
+    """
+
+    cut: str
+    values: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    misfit: float
+
+    def table(self) -> str:
+        """What the command prints."""
+        lines = [f"{'parameter':<10} {'value':>10}   {'90 % interval':^23}  unit"]
+        for k, p in enumerate(PARAMETERS):
+            note = "" if p.shown else "   not shown by a fall: the middle of the range"
+            lines.append(f"{p.name:<10} {self.values[k]:>10.4g}   {self.lower[k]:>10.4g} to {self.upper[k]:<10.4g}"
+                         f"{p.unit}{note}")
+        return "\n".join(lines)
+
+    def gown(self) -> GownFile:
+        """The gown file's content."""
+        numbers = zip(NAMES, self.values, self.lower, self.upper, strict=True)
+        values, intervals = {}, {}
+        for name, value, low, high in numbers:
+            values[name], intervals[name] = float(value), (float(low), float(high))
+        return GownFile(base=self.cut, values=values, intervals=intervals)
+
+
+def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bool = True) -> Identified:
+    """Parameters of the gown in a clip.
+
+    Args:
+        clip: what was seen.
+        method: fitted, see weights.py.
+        cut: the gown's cut, a name in `GOWNS`: its size is seen before it is hung up, its cloth is not.
+        simulate: whether to correct the answer by simulating it.
+
+    Raises:
+        CaretreeError: unknown cut.
+    """
+    if cut not in GOWNS:
+        raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
+    camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
+    film = Simulator(GOWNS[cut], camera) if simulate else None
+    found = method.infer(torch.from_numpy(frames_of(clip.depth[None])), film)
+    usual = method.widths["simulated" if simulate else "alone"].after.usual_misfit
+    values = to_values(found.unit[0])
+    lower, upper = (np.where(end == found.unit[0], values, to_values(end)) for end in (found.lower[0], found.upper[0]))
+    return Identified(cut=cut, values=values, lower=np.minimum(lower, values), upper=np.maximum(upper, values),
+                      misfit=float(found.misfit[0] / usual))
+
+
+def write(identified: Identified, path: str | Path) -> Path:
+    """Write the gown file that `caretree run dressing --gown FILE` loads."""
+    return write_gown(path, identified.gown())

@@ -1,0 +1,138 @@
+"""`caretree learn physics train|evaluate|identify|pictures`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+from typing import NoReturn
+
+from ...sim.errors import CaretreeError
+
+STEPS = 800
+METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random")
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise CaretreeError(f"{message} (see {self.prog} --help)")
+
+
+def _seeds(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of seeds; for example 0,1,2") from None
+
+
+def _whole(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
+    return int(text)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = _Parser(prog="caretree learn physics")
+    sub = top.add_subparsers(dest="command", required=True, parser_class=_Parser)
+    for name, text in (("train", "train and predict every test"), ("evaluate", "train what is missing; table")):
+        p = sub.add_parser(name, help=text)
+        p.add_argument("data", metavar="DATA", help="data set with parts train, val and test")
+        p.add_argument("--out", required=True, metavar="DIR", help="weights, predictions and results; resumable")
+        p.add_argument("--test", action="append", default=[], metavar="DATA", help="another test set; may be repeated")
+        p.add_argument("--method", action="append", default=[], choices=METHODS, help="only this one; may be repeated")
+        p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
+        p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")
+        p.add_argument("--backbone", default="small", choices=("small", "densenet121"))
+        p.add_argument("--simulate", type=_whole, default=100, metavar="N",
+                       help="clips of each test that ours corrects by simulation (default 100, a second each)")
+        p.add_argument("--calibrate", type=_whole, default=100, metavar="N",
+                       help="clips that set the intervals' widths (default 100)")
+        p.add_argument("--partial", action="store_true", help="take what is there of unfinished data sets")
+    p = sub.add_parser("identify", help="parameters with intervals from one clip; writes a gown file")
+    p.add_argument("clip", metavar="CLIP", help="an .npz, as `caretree learn physics clip` writes it")
+    p.add_argument("--out", metavar="FILE", help="gown file for `caretree run dressing --gown FILE`")
+    p.add_argument("--cut", default="medium", metavar="NAME", help="the gown's cut, which is known (default medium)")
+    p.add_argument("--weights", metavar="FILE", help="instead of those in the package")
+    p.add_argument("--fast", action="store_true", help="do not correct the answer by simulation")
+    p = sub.add_parser("pictures", help="t-SNE, box plots and strips of a study")
+    p.add_argument("study", metavar="DIR", help="folder that `evaluate` wrote to")
+    p.add_argument("data", metavar="DATA", help="the data set it was trained on")
+    p.add_argument("--out", required=True, metavar="DIR", help="folder for the pictures")
+    p.add_argument("--partial", action="store_true", help="take what is there of an unfinished data set")
+    return top
+
+
+def main(argv: list[str]) -> int:
+    """Run one command; 0 when all went well.
+
+    Raises:
+        CaretreeError: the input cannot be used.
+    """
+    options = parser().parse_args(argv)
+    try:
+        import torch
+    except ImportError as error:
+        raise CaretreeError(f"`caretree learn physics {options.command}` needs PyTorch: "
+                            "pip install 'caretree[learn]'") from error
+    torch.set_num_threads(1)  # clips are small: more threads only wait for each other
+    if options.command == "identify":
+        return _identify(options)
+    if options.command == "pictures":
+        from .pictures import draw
+
+        for path in draw(Path(options.study), Path(options.data), Path(options.out), partial=options.partial):
+            print(path)
+        return 0
+    return _study(options)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _study(options: argparse.Namespace) -> int:
+    from .evaluate import table, write_results
+    from .examples import load_examples
+    from .methods import Plan
+    from .study import Study
+
+    out = Path(options.out)
+    data = load_examples(Path(options.data), out, partial=options.partial)
+    tests = {}
+    for folder in options.test:
+        loaded = load_examples(Path(folder), out, partial=options.partial)
+        tests[loaded.kind] = loaded
+    plan = Plan(steps=options.steps, backbone=options.backbone, folder=out, say=_say)
+    study = Study(data=data, tests=tests, plan=plan, seeds=options.seeds, simulate=options.simulate,
+                  calibrate=options.calibrate)
+    study.run(_say, tuple(options.method))
+    path = write_results(study)
+    if options.command == "evaluate":
+        print(table(json.loads(path.read_text(encoding="utf-8"))))
+    print(path)
+    return 0
+
+
+def _identify(options: argparse.Namespace) -> int:
+    from .clip import Clip
+    from .identify import identify, write
+    from .weights import PACKAGED, load_weights
+
+    clip = Clip.load(options.clip)
+    method, _ = load_weights(options.weights or PACKAGED)
+    start = time.perf_counter()
+    found = identify(clip, method, options.cut, simulate=not options.fast)
+    print(found.table())
+    _say(f"{time.perf_counter() - start:.1f} s; the clip is explained {_fit(found.misfit)}")
+    if options.out:
+        print(write(found, options.out))
+    return 0
+
+
+def _fit(misfit: float) -> str:
+    if misfit <= 2:
+        return "as well as a simulated one"
+    return f"{misfit:.1f} times worse than a simulated one, and the intervals are wider for it"

@@ -1,0 +1,58 @@
+"""Every method by name: how it is fitted, what it is called in tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from .baselines import fit_contrastive_regression, fit_residual_only, fit_supervised
+from .method import Examples, Method
+from .ours import fit_ours
+from .paper_method import fit_paper
+from .parameters import SHOWN
+from .training import Budget, Say
+
+TITLES = {
+    "ours": "ours, Gaussian process",
+    "ours_simulated": "ours, corrected by simulation",
+    "paper": "the paper's method",
+    "supervised": "baseline 1, supervised",
+    "contrastive_regression": "baseline 2, contrastive, then regression",
+    "residual_only": "baseline 3, residual without contrastive",
+    "manual": "baseline 4, tuned by hand",
+    "random": "baseline 5, random",
+}
+NETWORKS = {
+    "paper": fit_paper,
+    "supervised": fit_supervised,
+    "contrastive_regression": fit_contrastive_regression,
+    "residual_only": fit_residual_only,
+}
+TRAINED = ("ours", *NETWORKS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """How a method is fitted.
+
+    Attributes:
+        steps: optimiser steps of each phase.
+        backbone: of all methods but ours, which has none.
+        folder: of checkpoints; one for each seed.
+        say: told of progress.
+    """
+
+    steps: int
+    backbone: str
+    folder: Path
+    say: Callable[[str], None]
+
+
+def fit_method(name: str, train: Examples, valid: Examples, plan: Plan, seed: int) -> Method:
+    """A fitted method; trainings that the folder holds already are taken up where they ended."""
+    folder = plan.folder / f"seed{seed}"
+    say: Say = plan.say
+    if name == "ours":
+        return fit_ours(train, valid, seed=seed, shown=SHOWN)
+    return NETWORKS[name](train, Budget(steps=plan.steps), seed=seed, folder=folder, backbone=plan.backbone, say=say)

@@ -1,0 +1,117 @@
+"""Pictures of a study: t-SNE of parameters and embeddings, a box plot of errors, measured and simulated clips."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from ...sim.gown import GOWNS, GownSpec
+from .backbone import embed
+from .clip import Clip
+from .clip_world import film
+from .examples import Loaded, load_examples
+from .frames import frames_of
+from .identify import identify
+from .measure import garment_error
+from .methods import TITLES, Plan
+from .parameters import BASE, NAMES, SHOWN, to_spec, to_unit, to_values, values_to_unit
+from .strip import write_strip
+from .study import Study
+from .training import Budget
+from .weights import load_weights
+
+CLASSES = 50  # of the t-SNE, as in the paper's figure
+CLIPS = 1200
+LEARNED = ("ours_simulated", "ours", "paper", "supervised", "contrastive_regression", "residual_only")
+
+
+def scene_gowns() -> dict[str, GownSpec]:
+    """The scene's three gowns in the air of the base values (a named gown says nothing of air)."""
+    air = float(BASE[NAMES.index("air_drag")])
+    return {name: replace(spec, air_drag=spec.air_drag or air) for name, spec in GOWNS.items()}
+
+
+def scene_clips() -> dict[str, Clip]:
+    """A clip of each of the scene's gowns."""
+    return {name: film(spec) for name, spec in scene_gowns().items()}
+
+
+def draw(study: Path, data: Path, out: Path, *, partial: bool = False) -> Iterator[Path]:
+    """Draw all pictures of a finished study; yields each path as it is written."""
+    out.mkdir(parents=True, exist_ok=True)
+    results = json.loads((study / "results.json").read_text(encoding="utf-8"))
+    loaded = load_examples(data, study, partial=partial)
+    yield box_plot(study, loaded, results, out / "garment-physics-errors.png")
+    yield map_of_clips(study, loaded, results, out / "garment-physics-map.png")
+    yield strips(study, out / "garment-physics-strips.png")
+
+
+def box_plot(study: Path, loaded: Loaded, results: dict, path: Path) -> Path:
+    """M_eg of every method on each test, on a logarithmic axis."""
+    from matplotlib.figure import Figure
+
+    plan = Plan(steps=results["steps"], backbone=results["backbone"], folder=study, say=lambda _: None)
+    errors: dict[str, dict[str, list[np.ndarray]]] = defaultdict(lambda: defaultdict(list))
+    for test, method, _, kept in Study(data=loaded, tests={}, plan=plan, seeds=(0,)).predictions():
+        errors[test][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
+    figure = Figure(figsize=(4.2 * len(errors), 3.6))
+    for axis, (test, methods) in zip(np.atleast_1d(figure.subplots(1, len(errors), sharey=True)), errors.items(),
+                                     strict=True):  # fmt: skip
+        names = [name for name in TITLES if name in methods]
+        axis.boxplot([100 * np.concatenate(methods[name]) for name in names], showfliers=False)
+        axis.set_xticks(range(1, len(names) + 1), [TITLES[name].replace(", ", ",\n") for name in names], rotation=60,
+                        fontsize=6, ha="right")  # fmt: skip
+        axis.set_yscale("log")
+        axis.set_title(test, fontsize=9)
+        axis.grid(axis="y", alpha=0.3)
+    figure.axes[0].set_ylabel("$M_{eg}$, shown parameters [%]", fontsize=8)
+    figure.tight_layout()
+    figure.savefig(path, dpi=90)
+    return path
+
+
+def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path:
+    """t-SNE of parameters and of the paper's embedding; the scene's gowns are stars."""
+    from matplotlib.figure import Figure
+    from sklearn.manifold import TSNE
+
+    from .paper_method import fit_paper
+
+    train = loaded.part("train")
+    method = fit_paper(train, Budget(steps=results["steps"]), seed=results["seeds"][0], say=lambda _: None,
+                       folder=study / f"seed{results['seeds'][0]}", backbone=results["backbone"])
+    some = train.part(np.flatnonzero(train.class_id < CLASSES)[:CLIPS])
+    depth = np.array([clip.depth for clip in scene_clips().values()])
+    stars = np.array([to_unit(spec) for spec in scene_gowns().values()])
+    seen = embed(method.embedding, torch.cat([some.frames, torch.from_numpy(frames_of(depth))])).numpy()
+    figure = Figure(figsize=(8.4, 4.0))
+    for axis, points, title in zip(figure.subplots(1, 2), (np.vstack([some.unit, stars]), seen),
+                                   ("parameters", "embedding of the paper's method"), strict=True):  # fmt: skip
+        flat = TSNE(random_state=0, init="pca", perplexity=20.0).fit_transform(points)
+        colour = some.class_id % 10 if (some.class_id >= 0).all() else some.unit[:, 0]
+        axis.scatter(*flat[: len(some)].T, c=colour, cmap="tab10" if (some.class_id >= 0).all() else "viridis", s=5)
+        axis.scatter(*flat[len(some) :].T, marker="*", s=110, c="black", edgecolors="white")
+        for name, where in zip(GOWNS, flat[len(some) :], strict=True):
+            axis.annotate(name, where, fontsize=7)
+        axis.set_title(title, fontsize=9)
+        axis.axis("off")
+    figure.tight_layout()
+    figure.savefig(path, dpi=90)
+    return path
+
+
+def strips(study: Path, path: Path) -> Path:
+    """Clips of the scene's gowns, each above the clip simulated with what was identified from it."""
+    method, _ = load_weights(study / "ours.safetensors")
+    rows = []
+    for name, clip in scene_clips().items():
+        found = identify(clip, method, name)
+        again = film(to_spec(values_to_unit(found.values), GOWNS[name]))
+        rows += [(f"{name}, seen", clip.depth), (f"{name}, simulated with what was found", again.depth)]
+    return write_strip(path, rows)

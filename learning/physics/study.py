@@ -1,0 +1,133 @@
+"""Every method on every test: predictions first, kept so that an interrupted study goes on, then the table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .examples import Loaded
+from .method import Examples
+from .methods import NETWORKS, Plan, fit_method
+from .ours import Inversion, fit_ours
+from .parameters import SHOWN, values_to_unit
+from .simulator import Simulator
+from .untrained import ManualTuning, RandomParameters, settings
+from .weights import load_weights, save_weights
+
+PIECE = 10  # clips simulated between two savings
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """What is compared.
+
+    Attributes:
+        data: what the methods are trained on; its part `test` is the first test.
+        tests: more tests, all their clips, by name.
+        plan: how the networks are trained.
+        seeds: of the trainings.
+        simulate: clips of each test that are corrected by simulation, which takes about a second each.
+        calibrate: validation clips that set the intervals' widths for these.
+    """
+
+    data: Loaded
+    tests: dict[str, Loaded]
+    plan: Plan
+    seeds: tuple[int, ...]
+    simulate: int = 100
+    calibrate: int = 100
+
+    @property
+    def folder(self) -> Path:
+        """Of weights and predictions."""
+        return self.plan.folder
+
+    def ours(self, say: Callable[[str], None]) -> Inversion:
+        """Our method, fitted and calibrated, or as it was left in the folder."""
+        path = self.folder / "ours.safetensors"
+        if path.exists():
+            method, record = load_weights(path)
+            if record["data"] == self.data.examples.hash and record["calibrated_on"] == self.calibrate:
+                return method
+        valid = self.data.part("val")
+        method = fit_ours(self.data.part("train"), valid, seed=self.seeds[0], shown=SHOWN)
+        if self.calibrate:
+            say(f"ours: simulating {self.calibrate} validation clips")
+            method.calibrate(valid.part(np.arange(min(self.calibrate, len(valid)))), Simulator(self.data.gown))
+        record: dict[str, object] = {
+            "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
+            "clips": int((self.data.split == "train").sum()), "calibrated_on": self.calibrate,
+        }  # fmt: skip
+        save_weights(method, path, record)
+        return method
+
+    def test_sets(self) -> Iterator[tuple[str, Examples, Loaded]]:
+        """Name, clips and origin of each test."""
+        yield self.data.kind, self.data.part("test"), self.data
+        for name, loaded in self.tests.items():
+            yield name, loaded.examples, loaded
+
+    def run(self, say: Callable[[str], None], only: tuple[str, ...] = ()) -> None:
+        """Make all predictions that are missing, of all methods or of the named ones."""
+        sets = list(self.test_sets())
+        wanted = lambda name: not only or name in only  # noqa: E731
+        for seed in self.seeds:
+            for name in NETWORKS:
+                if wanted(name) and any(not self._file(t, name, seed).exists() for t, _, _ in sets):
+                    method = fit_method(name, self.data.part("train"), self.data.part("val"), self.plan, seed)
+                    for test, clips, _ in sets:
+                        self._keep(test, name, seed, clips, unit=method.estimate(clips.frames))
+        first = self.seeds[0]
+        if wanted("random"):
+            for seed in self.seeds:
+                for test, clips, _ in sets:
+                    self._keep(test, "random", seed, clips, unit=RandomParameters(seed).estimate(clips.frames))
+        if wanted("manual"):
+            tried = values_to_unit(settings())
+            by_hand = ManualTuning(tried, Simulator(self.data.gown)(tried))
+            for test, clips, _ in sets:
+                self._keep(test, "manual", first, clips, unit=by_hand.estimate(clips.frames))
+        if wanted("ours"):
+            self._ours(sets, say)
+
+    def _ours(self, sets: list[tuple[str, Examples, Loaded]], say: Callable[[str], None]) -> None:
+        method, seed = self.ours(say), self.seeds[0]
+        for test, clips, origin in sets:
+            found = method.infer(clips.frames)
+            self._keep(test, "ours", seed, clips, unit=found.unit, lower=found.lower, upper=found.upper)
+            if "simulated" not in method.widths or not self.simulate:
+                continue
+            some = clips.part(np.arange(min(self.simulate, len(clips))))
+            pieces = []
+            for start in range(0, len(some), PIECE):
+                piece, file = some.part(np.arange(start, min(start + PIECE, len(some)))), f"ours_simulated-{start}"
+                path = self._file(test, file, seed)
+                if not path.exists():
+                    found = method.infer(piece.frames, Simulator(origin.gown))
+                    self._keep(test, file, seed, piece, unit=found.unit, lower=found.lower, upper=found.upper)
+                    say(f"{test}: {start + len(piece)} of {len(some)} clips corrected by simulation")
+                pieces.append(np.load(path))
+            joined = {k: np.concatenate([p[k] for p in pieces]) for k in ("unit", "lower", "upper")}
+            self._keep(test, "ours_simulated", seed, some, **joined)
+
+    def _file(self, test: str, method: str, seed: int) -> Path:
+        return self.folder / "predictions" / f"{test}-{method}-{seed}.npz"
+
+    def _keep(self, test: str, method: str, seed: int, clips: Examples, **arrays: np.ndarray) -> None:
+        path = self._file(test, method, seed)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part.npz")
+        np.savez(part, true=clips.unit, hash=clips.hash, **arrays)
+        os.replace(part, path)
+
+    def predictions(self) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
+        """Test, method, seed and arrays (`true`, `unit`, and of ours `lower`, `upper`) of all that is kept."""
+        for path in sorted((self.folder / "predictions").glob("*.npz")):
+            test, method, *piece, seed = path.stem.split("-")
+            if not piece and "part" not in path.suffixes[0]:
+                with np.load(path) as file:
+                    yield test, method, int(seed), dict(file)

@@ -1,0 +1,64 @@
+"""The paper's baselines 4 and 5, which learn nothing: a person's setting, and chance."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import torch
+
+from .method import Method
+from .parameters import BASE, NAMES
+
+MASSES = (0.2, 0.45, 0.8)  # a light, a usual and a heavy gown [kg]
+STIFFNESSES = (0.5, 1.0, 3.0)  # soft, usual and stiff cloth, times the base values
+
+
+class ManualTuning(Method):
+    """Baseline 4: of a few settings a person would try, the one whose clip looks most like the one seen.
+
+    Args:
+        unit: (S, 6) the settings.
+        frames: (S, T, 2, H, W) the clip of each, simulated with the usual gown.
+    """
+
+    name = "manual"
+
+    def __init__(self, unit: np.ndarray, frames: torch.Tensor) -> None:
+        self.unit, self.frames = unit, frames.float().flatten(1)
+
+    def estimate(self, frames: torch.Tensor) -> np.ndarray:
+        """The setting with the smallest mean square difference of frames."""
+        parts = [torch.cdist(frames[i : i + 256].float().flatten(1), self.frames).argmin(dim=1)
+                 for i in range(0, len(frames), 256)]
+        return self.unit[torch.cat(parts).numpy()]
+
+
+def settings() -> np.ndarray:
+    """(9, 6) what a person would try, in the parameters' own units: three weights of three materials."""
+    rows = []
+    for mass, stiffness in itertools.product(MASSES, STIFFNESSES):
+        row = BASE.copy()
+        row[NAMES.index("mass")] = mass
+        for name in ("elastic", "bending"):
+            row[NAMES.index(name)] *= stiffness
+        rows.append(row)
+    return np.array(rows)
+
+
+class RandomParameters(Method):
+    """Baseline 5: uniform over the range.
+
+    Args:
+        seed: of the draw.
+        parameters: how many.
+    """
+
+    name = "random"
+
+    def __init__(self, seed: int, parameters: int = len(NAMES)) -> None:
+        self.seed, self.parameters = seed, parameters
+
+    def estimate(self, frames: torch.Tensor) -> np.ndarray:
+        """Draws, whatever the clip."""
+        return np.random.default_rng(self.seed).random((len(frames), self.parameters))
