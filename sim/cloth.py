@@ -40,7 +40,7 @@ class Cloth:
         stiffness = spec.elastic * time_step**2 / (spec.mass / len(mesh.vertices))
         if stiffness > STABILITY_MAX:
             raise UnstableClothError(f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
-                                f"{STABILITY_MAX} is stable: lower the stiffness or the time step")
+                                     f"{STABILITY_MAX} is stable: lower the stiffness or the time step")
         self.client, self.mesh = client, mesh
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "gown.obj"

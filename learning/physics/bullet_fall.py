@@ -39,7 +39,7 @@ class _Changed:
 
 
 def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
-                options: Mapping[str, Any] | None = None) -> np.ndarray:
+                clamp: float = CLAMP_MASS, options: Mapping[str, Any] | None = None) -> np.ndarray:
     """(frames, V, 3) vertices at the instants of the frames, from `start` (V, 3) with one vertex let go [m].
 
     The air acts on 12 to 60 carriers, not on every vertex, and their mass is taken off the cloth.
@@ -48,6 +48,7 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
         spec: the gown.
         start: where it hangs.
         frames: how many.
+        clamp: mass on the released vertex [kg].
         options: of PyBullet's `loadSoftBody`, to try what they change.
 
     Raises:
@@ -79,12 +80,13 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
         client.createSoftBodyAnchor(cloth.body, mesh.corners[0], -1, -1)
         client.stepSimulation()  # takes the rest lengths
         cloth.place(start)
-        shape = client.createCollisionShape(client.GEOM_SPHERE, radius=0.004)
-        clamp = client.createMultiBody(CLAMP_MASS, shape, basePosition=start[mesh.corners[1]].tolist())
-        client.setCollisionFilterGroupMask(clamp, -1, 0, 0)
-        client.changeDynamics(clamp, -1, linearDamping=0.0, angularDamping=0.0,
-                              activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
-        client.createSoftBodyAnchor(cloth.body, mesh.corners[1], clamp, -1)
+        if clamp > 0:
+            shape = client.createCollisionShape(client.GEOM_SPHERE, radius=0.004)
+            body = client.createMultiBody(clamp, shape, basePosition=start[mesh.corners[1]].tolist())
+            client.setCollisionFilterGroupMask(body, -1, 0, 0)
+            client.changeDynamics(body, -1, linearDamping=0.0, angularDamping=0.0,
+                                  activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
+            client.createSoftBodyAnchor(cloth.body, mesh.corners[1], body, -1)
         if patch is not None:
             patch.attach(client, cloth.body, start)
         out = [cloth.vertices()]

@@ -87,10 +87,10 @@ class Clip:
         if not path.is_file():
             raise CaretreeError(f"{path}: there is no such clip")
         try:
-            with np.load(path, allow_pickle=False) as file:
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
                 missing = [name for name in _FIELDS if name not in file.files]
                 values = {name: file[name] for name in file.files if name in _FIELDS}
-        except (*_DAMAGED, AttributeError) as error:
+        except (*_DAMAGED, AttributeError, TypeError) as error:
             raise CaretreeError(f"{path}: this is no clip, an .npz with {', '.join(_FIELDS)} is asked for") from error
         if missing:
             raise CaretreeError(f"{path}: the clip lacks {', '.join(missing)}; it needs {', '.join(_FIELDS)}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import zipfile
 from dataclasses import asdict, dataclass
@@ -208,9 +209,10 @@ def read_shard(path: Path, sha256: str | None = None) -> dict[str, np.ndarray]:
         CaretreeError: it is missing, damaged, or not the file the index names.
     """
     try:
-        if sha256 is not None and hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
+        data = path.read_bytes()
+        if sha256 is not None and hashlib.sha256(data).hexdigest() != sha256:
             raise CaretreeError(f"{path}: the shard is not the one that {INDEX} names")
-        with np.load(path, allow_pickle=False) as file:
+        with np.load(io.BytesIO(data), allow_pickle=False) as file:
             return {name: file[name] for name in ("depth", "unit", "class_id", "split")}
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
         raise CaretreeError(f"{path}: the shard cannot be read") from error

@@ -7,6 +7,7 @@ every shard.  After an interruption, or with a larger `per_class`, the same comm
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import platform
 import sys
@@ -37,8 +38,6 @@ def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> di
     Returns:
         `file`, `clips`, `sha256`, `seconds` (processor time), and `bytes` when nothing was written.
     """
-    import io
-
     from .clip_world import film
 
     started = time.process_time()
