@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..sim.world import Frame, Side
-from .cloud import clusters, points_in_map, unit
+from .cloud import clusters, points_in_map, project, unit
 from .colours import Surface
 from .errors import PerceptionFailure, Problem
 from .estimates import CORNER_OF, GraspPoint, GraspTarget
@@ -21,7 +21,11 @@ from .garment import gown_labels
 NECKLINE = 0.84  # length of an adult gown's neckline that carries its weight, within 3 cm [m]
 APART = 0.13  # from the hook the neckline has parted into two strips [m]
 LENGTH = (0.21, 0.62)  # of a strip from the hook to its corner, through the air [m]
+HUNG = 0.80  # both strips together where they hang, within 4 cm [m]
 UNSURE = 0.08  # of that length, as the other strip tells it [m]
+SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
+TELLS = 0.1  # how clearly that must say which strip it is
+ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
 GAP = 0.025  # points of one strip lie nearer together than this [m]
 POINTS = 25  # a smaller patch is noise
 END = 0.045  # this much of a strip counts as its end [m]
@@ -32,34 +36,29 @@ LEAN = 0.28  # of a free edge in a fold towards the camera, for each metre that 
 INSIDE_EDGE = 0.003  # of the grasp, from both edges of a binding that shows [m]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Strip:
     """One strip of the neckline's binding, from the hook down.
 
     Attributes:
         corner_in_map: (3,) the end of its free edge [m].
-        start_in_map: (3,) the first of it that is seen, below where the two strips part [m].
-        tip_in_map: (3,) the last of it [m].
+        tip_in_map: (3,) the last of it that is seen [m].
         along_in_map: (3,) unit vector down the strip.
         outward_in_map: (3,) unit vector from the fabric to the free edge.
         width: that is seen of its end [m].
         length: from the hook to the corner [m].
         armhole: share of what should be seen of the armhole's binding beside it, 0 to 1.
+        tells: from -1, the wearer's left strip, to 1, the right one.
     """
 
     corner_in_map: np.ndarray
-    start_in_map: np.ndarray
     tip_in_map: np.ndarray
     along_in_map: np.ndarray
     outward_in_map: np.ndarray
     width: float
     length: float
     armhole: float
-
-    @property
-    def clear(self) -> bool:
-        """Whether its end is a corner."""
-        return self.width > NARROW and self.armhole > 0.5 and LENGTH[0] < self.length < LENGTH[1]
+    tells: float
 
 
 def hook(frame: Frame) -> GraspPoint:
@@ -93,41 +92,84 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
         PerceptionFailure: the corner is not seen.
     """
     top = hook(frame).position_in_map if hook_in_map is None else np.asarray(hook_in_map, float)
+    sign = 1.0 if side == "right" else -1.0
     found = strips(frame, top)
-    sideways = (1.0 if side == "left" else -1.0) * frame.pose_camera_in_map[:3, 0]
-    clear = [strip for strip in found if strip.clear]
-    if other_length is not None:
-        length = NECKLINE - other_length
-        clear = [strip for strip in found if strip.armhole > 0.5 and abs(strip.length - length) < UNSURE]
-        if not clear:
+    length = LENGTH[1] if other_length is None else NECKLINE - other_length
+    fits = [strip for strip in found if LENGTH[0] < strip.length < length + UNSURE]
+    if other_length is None:
+        fits = _first(frame, fits, top, sign)
+    else:  # the other strip is drawn aside
+        fits = [strip for strip in fits if strip.armhole > 0.5]
+        if not fits:
             return _grasp(frame, _in_fold(frame, found, top, length), CORNER_OF[side], 0.4)
-    elif len(clear) < 2:  # which of them it is, its side of the hook must tell
-        clear = [strip for strip in clear if (strip.corner_in_map - top) @ sideways > 0.03]
-    if not clear:
+    if not fits:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"the {side} corner of the hung gown's neckline")
-    best = max(clear, key=lambda strip: float(strip.corner_in_map @ sideways))
+    best = max(fits, key=lambda strip: strip.length)
     margin = INSIDE_EDGE if best.width > NARROW else -INSIDE_EDGE  # what lies behind a fold's edge is not to be taken
     position = best.corner_in_map - margin * (best.outward_in_map + best.along_in_map)
-    return _grasp(frame, position, CORNER_OF[side], min(1.0, best.width / 0.045))
+    confidence = min(1.0, best.width / 0.045) * (0.5 + 0.5 * best.armhole)
+    return _grasp(frame, position, CORNER_OF[side], confidence)
+
+
+def _first(frame: Frame, found: list[Strip], top: np.ndarray, sign: float) -> list[Strip]:
+    """Strips that may lead to the corner on one side, while both hang: by what tells them, and by the length of the other.
+
+    Args:
+        frame: where they were found.
+        found: all of them.
+        top: (3,) of the hook [m].
+        sign: -1 for the wearer's left corner, 1 for the right one.
+    """
+    sideways = -sign * frame.pose_camera_in_map[:3, 0]
+    fits = [strip for strip in found if sign * strip.tells > TELLS
+            or (abs(strip.tells) <= TELLS and (strip.corner_in_map - top) @ sideways > ASIDE)]
+    others = [strip for strip in found if sign * strip.tells < -0.3 and strip.armhole > 0.5 and strip.width > NARROW]
+    if others:  # a strip that is as long as the other one leaves is better than one that a fold cuts short
+        left = HUNG - max(strip.length for strip in others)
+        whole = [strip for strip in found if strip not in others and abs(strip.length - left) < UNSURE]
+        return whole or fits
+    return fits
 
 
 def strips(frame: Frame, top: np.ndarray) -> list[Strip]:
     """The strips that fall from the hook at `top` (3,), the largest first."""
     labels, cloud = gown_labels(frame), points_in_map(frame)
     seen = frame.depth > 0
-    collar = cloud[(labels == Surface.COLLAR) & seen]
     armhole = cloud[(labels == Surface.ARMHOLE) & seen]
-    fabric = cloud[np.isin(labels, (Surface.OUTSIDE, Surface.INSIDE)) & seen]
-    offset = collar - top
-    lower = collar[(np.linalg.norm(offset, axis=1) > APART) & (offset[:, 2] < -0.06)]
-    if len(lower) < POINTS:
+    fabric = _Pixels(frame, np.isin(labels, (Surface.OUTSIDE, Surface.INSIDE)) & seen, cloud)
+    outside = labels[fabric.rows, fabric.columns] == Surface.OUTSIDE
+    with np.errstate(invalid="ignore"):
+        lower = (labels == Surface.COLLAR) & seen & (cloud[..., 2] < top[2] - 0.06)
+        lower &= np.linalg.norm(cloud - top, axis=2) > APART
+    collar = _Pixels(frame, lower, cloud)
+    if len(collar.points) < POINTS:
         return []
-    patch = clusters(lower, GAP)
-    sizes = np.bincount(patch)
-    return [_strip(lower[patch == k], fabric, armhole, top) for k in np.flatnonzero(sizes >= POINTS)]
+    patch = clusters(collar.points, GAP)
+    found = []
+    for k in np.flatnonzero(np.bincount(patch) >= POINTS):
+        mine = collar.only(patch == k)
+        found.append(_strip(mine, fabric, outside, armhole, top))
+    return found
 
 
-def _strip(points: np.ndarray, fabric: np.ndarray, armhole: np.ndarray, top: np.ndarray) -> Strip:
+class _Pixels:
+    """Pixels with their points: `rows`, `columns` (n,) and `points` (n, 3)."""
+
+    def __init__(self, frame: Frame, mask: np.ndarray, cloud: np.ndarray) -> None:
+        self.frame = frame
+        self.rows, self.columns = np.nonzero(mask)
+        self.points = cloud[self.rows, self.columns]
+
+    def only(self, chosen: np.ndarray) -> _Pixels:
+        """Some of them."""
+        some = object.__new__(_Pixels)
+        some.frame, some.rows, some.columns = self.frame, self.rows[chosen], self.columns[chosen]
+        some.points = self.points[chosen]
+        return some
+
+
+def _strip(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, armhole: np.ndarray, top: np.ndarray) -> Strip:
+    points = collar.points
     far = np.linalg.norm(points - top, axis=1)
     along = unit(np.median(points[far > far.max() - END], axis=0) - np.median(points[far < far.min() + END], axis=0))
     if far.max() - far.min() < 2 * END:  # short: it falls from the hook
@@ -138,7 +180,7 @@ def _strip(points: np.ndarray, fabric: np.ndarray, armhole: np.ndarray, top: np.
     across = end - middle
     across -= np.outer(across @ along, along)
     outward = np.linalg.svd(across, full_matrices=False)[2][0]
-    near = fabric[np.linalg.norm(fabric - middle, axis=1) < 0.07] - middle
+    near = fabric.points[np.linalg.norm(fabric.points - middle, axis=1) < 0.07] - middle
     near = near[near @ along < 0.0] @ outward
     if len(near) and np.median(np.sign(near)) > 0.0:
         outward = -outward
@@ -146,9 +188,28 @@ def _strip(points: np.ndarray, fabric: np.ndarray, armhole: np.ndarray, top: np.
     low, high = np.percentile(spread, (3, 97))
     corner = middle + high * outward + (float(np.percentile(run, 99)) - float((middle - top) @ along)) * along
     beside = int((np.linalg.norm(armhole - corner, axis=1) < BESIDE).sum())
-    tip = np.median(points[run > run.max() - 0.015], axis=0)
-    return Strip(corner, np.median(points[far < far.min() + 0.02], axis=0), tip, along, outward, float(high - low), float(np.linalg.norm(corner - top)),
-                 min(1.0, beside / 12))
+    return Strip(corner, np.median(points[run > run.max() - 0.015], axis=0), along, outward, float(high - low),
+                 float(np.linalg.norm(corner - top)), min(1.0, beside / 12), _side(collar, fabric, outside, far))
+
+
+def _side(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, far: np.ndarray) -> float:
+    """Which strip it is, by the fabric that is sewn to it: see `Strip.tells`.
+
+    Seen from outside, the fabric lies to the left of the wearer's left strip on its way down (clockwise from it), and
+    to the right of the right one; where the inside shows, the two are swapped.
+    """
+    from scipy.spatial import KDTree
+
+    gap, nearest = KDTree(collar.points).query(fabric.points, distance_upper_bound=SEWN)
+    sewn = np.isfinite(gap)
+    ends = [np.median(collar.points[part], axis=0) for part in (far < far.min() + 0.03, far > far.max() - 0.03)]
+    down = np.diff(project(collar.frame, np.stack(ends))[:, :2], axis=0)[0]
+    if sewn.sum() < 10 or np.linalg.norm(down) < 4.0:
+        return 0.0
+    away = np.column_stack((fabric.columns[sewn] - collar.columns[nearest[sewn]],
+                            fabric.rows[sewn] - collar.rows[nearest[sewn]]))
+    clockwise = down[0] * away[:, 1] - down[1] * away[:, 0]  # rows grow downwards
+    return float(-np.mean(np.sign(clockwise) * np.where(outside[sewn], 1.0, -1.0)))
 
 
 def _in_fold(frame: Frame, found: list[Strip], top: np.ndarray, length: float) -> np.ndarray:

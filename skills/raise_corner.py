@@ -45,7 +45,7 @@ class RaiseCorner(Skill):
         level = np.sqrt(max((SLACK * length) ** 2 - RISE**2, 0.01))
         pose[:3, 3] = hook + level * (np.cos(AWAY) * sideways + np.sin(AWAY) * base[:, 0]) + RISE * base[:, 2]
         yield from move_hands(self, {self.hand: pose}, speed=0.25, free="any", way="either")
-        yield from self.wait(0.6)
+        yield from self.wait(1.0)  # the gown swings out
         carried = -float(cloth_load(self, self.hand)[2])
         if carried < self.weight:
             raise SkillFailure(Reason.GRASP_MISSED, f"the {self.hand} hand carries {carried:.1f} N")

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 
 import numpy as np
 
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
+from ..sim.robot import model
 from ..sim.robot.kinematics import planar_pose
-from ..sim.world import Side
+from ..sim.world import GripperOpening, Side
 from .context import Context
 from .driving import drive_to
-from .hands import cloth_load, hand_now, move_hands, open_gripper
+from .hands import cloth_load, hand_now, move_arms, move_hands, open_gripper
 from .motion.errors import MotionError
-from .pinch import back_off, pinch, reach_in
+from .pinch import back_off, grasp_poses, pinch, reach_in
 from .ports import Input, Output
 from .reasons import Reason, SkillFailure
 from .scripted_gown import offer_gown
@@ -23,6 +25,9 @@ TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the ha
 DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
 STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
 NEAR_ENOUGH = 0.04  # of the place to stand [m]
+SETTLE = 0.3  # until the hand stands where it was sent [s]
+SPEED = 0.5  # of the hand until it is near [m/s]
+SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
 TUG = 0.03  # how far the hand draws what it took, to feel it [m]
 NOISE = 0.08  # of a force reading [N]
 UP = np.array((0.0, 0.0, 1.0))
@@ -43,7 +48,7 @@ class TakeCorner(Skill):
     sleeve = Input(Side)
     known_hook = Input(GraspPoint, default=None)
     held = Input(float, default=None)
-    opening = Input(float, default=0.025)
+    opening = Input(float, default=0.04)
     force = Input(float, default=30.0)
     feel = Input(float, default=0.10)
     hook = Output(GraspPoint)
@@ -58,19 +63,34 @@ class TakeCorner(Skill):
         if hook is None:
             yield from self._stand(self.context.perceive("hook", self.world.look("head")).position_in_map)
             hook = self.context.perceive("hook", self.world.look("head"))
-        seen = self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
-                                     hook_in_map=hook.position_in_map, other_length=self.held)
+        seen = self._look(hook)
         self.note(f"the {self.hand} hand takes the {self.sleeve} corner, confidence {seen.confidence:.2f}")
-        yield from self._reach(seen)
+        approach = yield from self._come_near(seen)
+        seen = self._look_again(hook, seen)
+        yield from reach_in(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
+                            opening=self.opening, depth=DEPTH)
+        yield from self.wait(SETTLE)
         try:
             yield from pinch(self, self.hand, force=self.force)
             yield from self._tug()
         except SkillFailure as miss:
             if miss.reason is Reason.GRASP_MISSED:
-                yield from open_gripper(self, self.hand)
-                yield from back_off(self, self.hand)
+                yield from self._give_up()
             raise
         self.hook, self.length = hook, float(np.linalg.norm(seen.position_in_map - hook.position_in_map))
+
+    def _look(self, hook: GraspPoint) -> GraspPoint:
+        return self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
+                                     hook_in_map=hook.position_in_map, other_length=self.held)
+
+    def _look_again(self, hook: GraspPoint, seen: GraspPoint) -> GraspPoint:
+        """The same corner in a fresh frame: the gown still sways; or as it was where it no longer shows."""
+        try:
+            now = self._look(hook)
+        except PerceptionFailure:
+            return seen
+        same = np.linalg.norm(now.position_in_map - seen.position_in_map) < SAME
+        return now if same and now.confidence > 0.7 * seen.confidence else seen
 
     def _stand(self, hook_in_map: np.ndarray) -> Iterator[None]:
         """Step without turning until the hook is straight ahead."""
@@ -79,20 +99,28 @@ class TakeCorner(Skill):
         if np.linalg.norm(goal - pose) > NEAR_ENOUGH:
             yield from drive_to(self, goal, straight=True)
 
-    def _reach(self, seen: GraspPoint) -> Iterator[None]:
-        """Go in from the hand's own side, or as far to that side as the arm can."""
+    def _come_near(self, seen: GraspPoint) -> Generator[None, None, np.ndarray]:
+        """Wait before the corner with open fingers, on the hand's own side; returns the approach (3,)."""
         failure: MotionError | None = None
         for degrees in TURNS:
             turn = planar_pose(np.array((0.0, 0.0, np.deg2rad(degrees if self.hand == "right" else -degrees))))[:3, :3]
             approach = turn @ seen.approach_in_map
             try:
-                yield from reach_in(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
-                                    opening=self.opening, depth=DEPTH)
-                return
+                before, _ = grasp_poses(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
+                                        depth=DEPTH)
+                self.world.send(GripperOpening(side=self.hand, opening=self.opening), retreat=True)
+                yield from move_hands(self, {self.hand: before}, speed=SPEED, way="any")
+                return approach
             except MotionError as stop:
                 failure = stop
         assert failure is not None
         raise failure
+
+    def _give_up(self) -> Iterator[None]:
+        """Open, draw back, and out of the camera's sight."""
+        yield from open_gripper(self, self.hand)
+        yield from back_off(self, self.hand)
+        yield from move_arms(self, model.READY, sides=(self.hand,))
 
     def _tug(self) -> Iterator[None]:
         """Draw a little, up and back; cloth that is held pulls.

@@ -40,6 +40,8 @@ HEAD_END, SEAT = -0.40, 0.06
 TAUT: dict[Side, float] = {"right": np.inf, "left": 1.8}  # the second sleeve must not draw the first off its arm [N]
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
+HAND_OF: dict[Side, Side] = {"left": "right", "right": "left"}  # the outside faces the robot: corners are mirrored
+NECKLINE = 0.80  # both strips of a hung gown's neckline together, within 4 cm [m]
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
 
 
@@ -49,15 +51,39 @@ def take_down(context: Context) -> Behaviour:
         "find the outside",
         FlipSideCheck("outside to the front", context, seen=Key("rail_side")),
         Navigate("go behind the rail", context, goal="rail_back"))
-    hook, held = Key("hook"), Key("first_held")
+    hook = Key("hook")
     return Stage("A take down", None, Timeout("A in time", sequence(
         "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
-        Retry("take the left corner, again", TakeCorner(
-            "take the left corner", context, hand="right", sleeve="left", hook=hook), attempts=3),
-        RaiseCorner("draw the left corner aside", context, hand="right", hook=hook, held=held),
-        Retry("take the right corner, again", TakeCorner(
-            "take the right corner", context, hand="left", sleeve="right", known_hook=hook, held=held), attempts=3),
-        TakeDown("lift it off the hook", context, hook=hook, load=Key("gown_load"))), seconds=150.0))
+        fallback("take both ends of the neckline", take_ends(context, "left"), take_ends(context, "right")),
+        TakeDown("lift it off the hook", context, hook=hook, load=Key("gown_load"))), seconds=200.0))
+
+
+def take_ends(context: Context, first: Side) -> Behaviour:
+    """Both ends of the hung gown's neckline: the wearer's `first`, the other one, the first again where it was not it."""
+    second: Side = "right" if first == "left" else "left"
+    hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key(f"{first}_held")
+
+    def take(corner: Side, name: str, **ports: object) -> Behaviour:
+        return Retry(f"{name}, try", TakeCorner(name, context, hand=HAND_OF[corner], sleeve=corner,
+                                                length=lengths[corner], **ports), attempts=2)
+
+    def complete(context: Context) -> bool:
+        """Both strips together are as long as a neckline."""
+        return abs(sum(context.board.get(key.name) for key in lengths.values()) - NECKLINE) < 0.06
+
+    again = sequence(
+        f"the {first} corner was not it",
+        Retreat(f"let the {first} one go", context, hands=HAND_OF[first]),
+        RaiseCorner(f"draw the {second} corner aside", context, hand=HAND_OF[second], hook=hook,
+                    held=Key(f"{second}_held")),
+        take(first, f"take the {first} corner again", known_hook=hook, held=Key(f"{second}_held")))
+    return sequence(
+        f"take the ends, {first} first",
+        take(first, f"take the {first} corner", hook=hook),
+        RaiseCorner(f"draw the {first} corner aside", context, hand=HAND_OF[first], hook=hook, held=held),
+        take(second, f"take the {second} corner", known_hook=hook, held=held),
+        fallback(f"is it the neckline, {first} first", Condition(
+            f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
 
 
 def unfold(context: Context) -> Behaviour:
