@@ -12,7 +12,7 @@ from ..perception.estimates import SleeveOpening
 from ..sim.robot.kinematics import Kinematics, default_kinematics
 from ..sim.world import SIDES, Side
 from .arm_path import UP, ArmPath
-from .bedside import outwards
+from .bedside import outwards, stance
 from .hands import collision_checker
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
@@ -26,6 +26,10 @@ STANDOFF = 0.10  # the straight way in [m]
 BEYOND = (0.50, 0.40, 0.30)
 _TILTS = np.deg2rad((25.0, 40.0, 55.0, 72.0, 88.0))  # of the approach below the horizontal
 _SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction
+_PLACES = (3.3, 2.7, 2.1, 1.5, 1.0, 0.5, 0.0, -0.3)  # of the pull, at which its posture is tried
+_ABOVE = 0.09  # of the gripper off the arm's axis while it pulls [m]
+_LEAP = 1.3  # greatest change of a joint from one such place to the next [rad]
+_ROOM = 0.15  # to the joint limits that will do [rad]
 _BENT = 0.15  # what a radian of turning between grasp and presenting counts, in radians of room to the joint limits
 
 
@@ -64,7 +68,7 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
         arms[n] = q
         return checker.free(base, arms)
 
-    best: tuple[float, WayIn] | None = None
+    found: list[tuple[float, WayIn, StrapGrip, np.ndarray]] = []
     problem: Unreachable | None = None
     for approach in _approaches(strap, arm):
         for sign in (1.0, -1.0):
@@ -81,14 +85,42 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
                 continue
             room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
             score = min(room, 0.4) - _BENT * float(np.abs(q2 - q1).max())
-            if best is None or score > best[0]:
-                best = (score, WayIn(before=before, inside=inside))
-        if best is not None and best[0] > -_BENT * 2.6:
-            break  # a flatter approach holds the strap more squarely: steeper ones only if they must be
-    if best is None:
+            found.append((score, WayIn(before=before, inside=inside), grip, q2))
+    if not found:
         assert problem is not None
         raise problem
+    best: tuple[float, WayIn] | None = None
+    for _, way, grip, q in sorted(found, key=lambda entry: -entry[0]):
+        room = _room_to_pull(kinematics, grip, path, base, q)
+        if best is None or room > best[0]:
+            best = (room, way)
+        if room > _ROOM:
+            break
+    assert best is not None
     return best[1]
+
+
+def _room_to_pull(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray) -> float:
+    """Least room to a joint limit [rad] on the way from the fingertips to the shoulder; -1 for each place not reached.
+
+    The base drifts to where the shoulder is in reach on the second half of the way, as `PullAlongArm` does.
+    """
+    limits, room, lost = kinematics.limits[grip.hand], np.inf, 0
+    stand = stance(grip.arm, "shoulder")
+    for place in _PLACES:
+        there = base + np.clip((1.5 - place) / 1.8, 0.0, 1.0) * (stand - base) * (1.0, 1.0, 0.0)
+        pose = presenting(grip, path.direction(place), path.point(place) + _ABOVE * path.frame(place)[:, 2])
+        try:
+            reached = solve_ik(kinematics, grip.hand, pose, there, q, seeds=1)
+        except Unreachable:
+            lost += 1
+            continue
+        if np.abs(reached - q).max() > _LEAP:  # another posture, which the hand does not get to on its way
+            lost += 1
+            continue
+        q = reached
+        room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
+    return min(room, 1.0) - lost
 
 
 def _presented(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray,

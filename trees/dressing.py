@@ -36,7 +36,7 @@ from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
-HEAD_END, SEAT = -0.40, 0.06
+HEAD_END, SEAT = -0.22, 0.05
 TAUT: dict[Side, float] = {"right": np.inf, "left": 1.8}  # the second sleeve must not draw the first off its arm [N]
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
@@ -49,7 +49,7 @@ def take_down(context: Context) -> Behaviour:
     """Stage A."""
     find_outside = fallback(
         "find the outside",
-        FlipSideCheck("outside to the front", context, seen=Key("rail_side")),
+        FlipSideCheck("outside to the front", context, hung=True, sure=0.0, seen=Key("rail_side")),
         Navigate("go behind the rail", context, goal="rail_back"))
     hook = Key("hook")
     return Stage("A take down", None, Timeout("A in time", sequence(
@@ -79,7 +79,7 @@ def take_ends(context: Context, first: Side) -> Behaviour:
         take(first, f"take the {first} corner again", known_hook=hook, held=Key(f"{second}_held")))
     return sequence(
         f"take the ends, {first} first",
-        take(first, f"take the {first} corner", hook=hook),
+        take(first, f"take the {first} corner", hook=hook, opening=0.03),
         RaiseCorner(f"draw the {first} corner aside", context, hand=HAND_OF[first], hook=hook, held=held),
         take(second, f"take the {second} corner", known_hook=hook, held=held),
         fallback(f"is it the neckline, {first} first", Condition(

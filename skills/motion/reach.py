@@ -113,8 +113,14 @@ def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndar
     if segment_free(start, goal, free):
         return timed(np.stack((start, goal)))
     limits = [kinematics.limits[side] for side in moving]
-    corners = connect(start, goal, np.concatenate([limit.lower for limit in limits]),
-                      np.concatenate([limit.upper for limit in limits]), free)
+    try:
+        corners = connect(start, goal, np.concatenate([limit.lower for limit in limits]),
+                          np.concatenate([limit.upper for limit in limits]), free)
+    except MotionBlocked as problem:
+        hits = checker.collisions(pose_base_in_map, arm_positions)
+        if not hits:
+            raise
+        raise MotionBlocked(f"{problem}: {hits[0][0]} is at {hits[0][1]}".replace("_", " ")) from problem
     for spacing in (0.25, 0.1):  # a spline through wide-spaced points is quicker, and may cut a corner
         try:
             return timed(_subdivide(corners, spacing))

@@ -1,0 +1,46 @@
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
+from caretree.learning.physics.backbone import ClipEmbedding, embed  # noqa: E402
+from caretree.learning.physics.densenet import densenet, densenet121  # noqa: E402
+from caretree.sim.errors import CaretreeError  # noqa: E402
+
+
+@pytest.mark.parametrize("size", [16, 32])
+def test_small_backbone_embeds_clips(size):
+    torch.manual_seed(0)
+    network = ClipEmbedding(size=size, embedding=7, features=12)
+    assert network(torch.zeros(3, 4, 2, size, size)).shape == (3, 7)
+
+
+def test_order_of_frames_matters():
+    torch.manual_seed(0)
+    network = ClipEmbedding(size=16, embedding=4, features=8)
+    frames = torch.rand(2, 5, 2, 16, 16)
+    assert not torch.allclose(network(frames), network(frames.flip(1)), atol=1e-4)
+
+
+def test_embedding_in_pieces_is_embedding_at_once():
+    torch.manual_seed(0)
+    network = ClipEmbedding(size=16, embedding=4, features=8)
+    frames = torch.rand(5, 3, 2, 16, 16)
+    torch.testing.assert_close(embed(network, frames, batch=2), network(frames).detach())
+
+
+def test_densenet121_has_121_layers():
+    layers = [m for m in densenet121(channels=2, features=10).modules()
+              if isinstance(m, torch.nn.Conv2d | torch.nn.Linear)]
+    assert len(layers) == 121
+
+
+def test_densenet_layers_see_all_before_them():
+    torch.manual_seed(0)
+    network = densenet(channels=2, features=3, growth=4, blocks=(2, 2))
+    assert network(torch.rand(2, 2, 32, 32)).shape == (2, 3)
+    inputs = [m.grow[0].num_features for m in network if hasattr(m, "grow")]
+    assert inputs == [8, 12, 8, 12]
+
+
+def test_unknown_backbone_lists_the_known():
+    with pytest.raises(CaretreeError, match=r"resnet.*small, densenet121"):
+        ClipEmbedding("resnet")
