@@ -41,6 +41,7 @@ def parser() -> argparse.ArgumentParser:
     sensitivity = sub.add_parser("sensitivity", help="what a clip shows of each parameter")
     sensitivity.add_argument("--points", type=int, default=20, metavar="N", help="gowns looked at (default 20)")
     sensitivity.add_argument("--seed", type=int, default=0, metavar="N")
+    sensitivity.add_argument("--candidates", action="store_true", help="instead, what else could be a parameter")
     sensitivity.add_argument("--out", metavar="FILE", help="also as a file, JSON")
     return top
 
@@ -76,9 +77,16 @@ def main(argv: list[str]) -> int:
             from .strip import write_strip
 
             print(write_strip(options.strip, [(gown.name, clip.depth)]))
+    elif options.candidates:
+        from .sixth import candidates
+        from .sixth import report as table
+
+        print(table(candidates()))
     else:
         from .sensitivity import report, study
 
+        if options.points < 1:
+            raise CaretreeError(f"--points is {options.points}, at least 1 is asked for")
         result = study(options.points, options.seed)
         print(report(result))
         if options.out:

@@ -139,6 +139,6 @@ def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = R
     base[:, 2] -= springs.mass[free] * GRAVITY
     factor = splu(matrix[free][:, free].tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0,
                   options={"SymmetricMode": True})
-    lower = sparse.tril(factor.L, -1, format="csc")
+    lower = sparse.csc_matrix(sparse.tril(factor.L, -1))
     return _search(x, base, springs.start, springs.other, springs.stiffness, springs.rest, row, lower.indptr,
                    lower.indices, lower.data, factor.U.diagonal(), rounds, MOMENTUM)

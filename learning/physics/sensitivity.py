@@ -10,7 +10,7 @@ Derivatives need care, because the static hang is not quite smooth in the parame
 - Multiply mass, elastic, bending, damping and air drag by one factor: the gown hangs the same and, but for the clamp
   of known mass, falls the same.  So the derivative along that direction is minus the derivative with respect to the
   clamp's mass, clean as well; and the one with respect to mass alone follows from it and the others.
-- Elastic and bending: the slope of a line through several steps; what is left over is told as `rough`.
+- Elastic and bending: the slope of a line through several steps; how much the steps differ is told as `rough`.
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ class Row:
         unknown: the same if none is known.
         percent: `unknown` as a share of the parameter's value [%].
         worst: `unknown` at the 90th percentile of gowns.
-        rough: how far a fold's place shifts the parameter, root mean square.
+        rough: by how much folds that sit elsewhere mislead who reads this parameter along its slope, root mean
+            square over changes of up to 3 % of the range.
         like: the parameter whose effect looks most alike.
         alike: correlation with it, between -1 and 1.
     """
@@ -90,7 +91,7 @@ def derivatives(spec: GownSpec) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     Returns:
         (5, P) derivative of the depth in units of the camera's noise per whole range, in the order of `SHOWN`;
-        (5, P) the same [m]; (5,) the root mean square rest of the slopes, on the [0, 1] scale.
+        (5, P) the same [m]; (5,) what is misread along the slopes, on the [0, 1] scale, see `Row.rough`.
     """
     mesh, _ = cut_of(spec)
     camera = standard_camera()
@@ -107,7 +108,7 @@ def derivatives(spec: GownSpec) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     here = depth(spec, start)
     slope: dict[str, np.ndarray] = {}
-    left: dict[str, np.ndarray] = {}
+    left: dict[str, float] = {}
     for name in ("damping", "air_drag"):
         slope[name] = (depth(grown(name, CLEAN), start) - depth(grown(name, -CLEAN), start)) / (2 * CLEAN)
     for name in ("mass", "elastic", "bending"):  # mass for its roughness only
@@ -116,17 +117,18 @@ def derivatives(spec: GownSpec) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         steps = np.array(STEPS)
         change[np.abs(change) > EDGE] = np.nan
         slope[name] = steps @ change / (steps @ steps)
-        left[name] = change - steps[:, None] * slope[name]
+        whole = np.isfinite(slope[name])
+        read = change[:, whole] @ slope[name][whole] / (slope[name][whole] @ slope[name][whole])
+        left[name] = float(np.sqrt(np.mean((read - steps) ** 2)))
     by_clamp = (depth(spec, start, CLAMP_MASS * np.exp(CLEAN)) - depth(spec, start, CLAMP_MASS * np.exp(-CLEAN))) / (
         2 * CLEAN)
-    per_log = {name: slope[name] / ranges[NAMES.index(name)] for name in slope}
+    per_log = {name: slope[name] / ranges[NAMES.index(name)] for name in slope if name != "mass"}
     slope["mass"] = (-by_clamp - sum(per_log.values())) * ranges[NAMES.index("mass")]
     rows = np.array([slope[NAMES[k]] for k in SHOWN])
     good = np.isfinite(rows).all(axis=0) & np.isfinite(here)
     good &= (np.abs(rows) * CLEAN < EDGE).all(axis=0)
     rows, here = rows[:, good], here[good]
-    rough = np.array([float(np.sqrt(np.nanmean(left[NAMES[k]][:, good] ** 2) / np.mean(rows[n] ** 2)))
-                      if NAMES[k] in left else 0.0 for n, k in enumerate(SHOWN)])
+    rough = np.array([left.get(NAMES[k], 0.0) for k in SHOWN])
     return rows / (SIGMA * here**2), rows, rough
 
 

@@ -19,14 +19,13 @@ def write_strip(path: str | Path, rows: Sequence[tuple[str, np.ndarray]], every:
     from matplotlib.figure import Figure
 
     columns = len(range(0, len(rows[0][1]), every))
-    figure = Figure(figsize=(1.3 * columns, 1.45 * len(rows)))
+    figure = Figure(figsize=(1.3 * columns, 1.45 * len(rows)), layout="constrained")
     axes = np.atleast_2d(figure.subplots(len(rows), columns))
     for axis_row, (title, depth) in zip(axes, rows, strict=True):
         low, high = np.nanpercentile(depth, (1, 99))
         for axis, frame in zip(axis_row, depth[::every], strict=True):
             axis.imshow(frame, vmin=low, vmax=high, cmap="viridis")
             axis.axis("off")
-        axis_row[0].set_title(title, fontsize=8, loc="left")
-    figure.tight_layout(pad=0.2)
+        axis_row[0].annotate(title, (0, 1.04), xycoords="axes fraction", fontsize=8)
     figure.savefig(path, dpi=80)
     return Path(path)

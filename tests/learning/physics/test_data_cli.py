@@ -1,0 +1,81 @@
+import importlib.util
+import json
+
+import numpy as np
+import pytest
+from caretree.learning.physics import generate
+from caretree.learning.physics.cli import COMMANDS
+from caretree.learning.physics.clip import Clip
+from caretree.learning.physics.dataset import Dataset
+from caretree.sim.gown import GOWNS
+from caretree.sim.gown_file import GownFile, write_gown
+from caretree.trees.cli import main
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch, small_gown):
+    monkeypatch.setattr(generate, "SHARD", 4)
+    monkeypatch.setitem(GOWNS, "medium", small_gown)
+
+
+def test_help_names_every_part_and_command(capsys):
+    assert main(["learn"]) == main(["learn", "physics", "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "physics" in out
+    assert all(f"\n  {command} " in out for command in COMMANDS)
+
+
+def test_data_makes_a_dataset_and_says_how_far_it_is(tmp_path, capsys):
+    command = ["learn", "physics", "data", str(tmp_path / "set"), "--classes", "2", "--per-class", "3"]
+    assert main(command) == 0
+    said = capsys.readouterr()
+    assert "min left" in said.err
+    assert said.out.strip() == str(tmp_path / "set")
+    assert len(Dataset.load(tmp_path / "set")) == 6
+    assert main(command) == 0
+    assert "min left" not in capsys.readouterr().err  # nothing to do
+
+
+def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
+    assert main(["learn", "physics", "clip", str(tmp_path / "a.npz"), "--engine", "fast",
+                 "--strip", str(tmp_path / "a.png")]) == 0
+    file = write_gown(tmp_path / "g.yaml", GownFile(base="medium", values={"mass": 0.2}, intervals={}))
+    assert main(["learn", "physics", "clip", str(tmp_path / "b.npz"), "--engine", "fast", "--gown", str(file)]) == 0
+    one, other = (Clip.load(tmp_path / name) for name in ("a.npz", "b.npz"))
+    assert np.nanmax(np.abs(one.depth - other.depth)) > 0.01
+    assert (tmp_path / "a.png").stat().st_size > 5000
+    assert str(tmp_path / "b.npz") in capsys.readouterr().out
+
+
+def test_sensitivity_prints_its_table(tmp_path, capsys):
+    assert main(["learn", "physics", "sensitivity", "--points", "1", "--out", str(tmp_path / "s.json")]) == 0
+    assert "| mass |" in capsys.readouterr().out
+    assert json.loads((tmp_path / "s.json").read_text())["gowns"] == 1
+
+
+@pytest.mark.parametrize(("arguments", "sentence"), [
+    (["policies"], "`caretree learn` has no part 'policies', it has physics"),
+    (["physics", "dance"], "has no command 'dance', it has data, clip"),
+    (["physics", "data"], "the following arguments are required: DIR"),
+    (["physics", "data", "x", "--kind", "blender"], "invalid choice: 'blender'"),
+    (["physics", "data", "x", "--kind", "uniform", "--classes", "4"], "has no classes, 4 were asked for"),
+    (["physics", "data", "x", "--jobs", "0"], "--jobs is 0, at least 1"),
+    (["physics", "data", "x", "--per-class", "0"], "counts start at 1"),
+    (["physics", "clip", "x.npz", "--gown", "silk"], "unknown gown 'silk'"),
+    (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),
+    (["physics", "sensitivity", "--points", "0"], "--points is 0, at least 1"),
+])
+def test_a_mistake_is_one_sentence_and_status_2(tmp_path, monkeypatch, capsys, arguments, sentence):
+    monkeypatch.chdir(tmp_path)
+    assert main(["learn", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert sentence in error
+    assert error.startswith("caretree: ")
+    assert error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_command_of_a_later_version_is_told(monkeypatch, capsys):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda *_: None)
+    assert main(["learn", "physics", "train"]) == 2
+    assert "`caretree learn physics train` is not in this version" in capsys.readouterr().err
