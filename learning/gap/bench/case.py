@@ -21,6 +21,8 @@ class Truth:
         intervals: [episode, t0, t1] where a localised effect acted.
         robot: or None.
         note: form of an effect outside the bank.
+        apart: how far the truth is from the nearest other set of up to two effects [standard deviations], or None
+            where it was not worked out.
     """
 
     system: str
@@ -30,6 +32,7 @@ class Truth:
     intervals: list[tuple[str, float, float]] = field(default_factory=list)
     robot: str | None = None
     note: str = ""
+    apart: float | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -48,13 +51,18 @@ def draw_size(rng: np.random.Generator) -> float:
 
 def coloured(rng: np.random.Generator, n: int, dt: float, rms: float) -> np.ndarray:
     """Sensor noise (n,): part white, part with a memory of 5 to 150 ms, together `rms`."""
+    return coloured_as(rng, n, dt, rms)[0]
+
+
+def coloured_as(rng: np.random.Generator, n: int, dt: float, rms: float) -> tuple[np.ndarray, float, float]:
+    """The same noise, with the memory [s] and the share of the variance of its slow part."""
     from scipy.signal import lfilter
 
-    memory = np.exp(rng.uniform(np.log(0.005), np.log(0.15)))
+    memory = float(np.exp(rng.uniform(np.log(0.005), np.log(0.15))))
     a = np.exp(-dt / memory)
     slow = lfilter([np.sqrt(1 - a * a)], [1.0, -a], rng.normal(size=n + 500))[500:]
-    part = rng.uniform(0.2, 0.8)
-    return rms * (np.sqrt(part) * slow + np.sqrt(1 - part) * rng.normal(size=n))
+    part = float(rng.uniform(0.2, 0.8))
+    return rms * (np.sqrt(part) * slow + np.sqrt(1 - part) * rng.normal(size=n)), memory, part
 
 
 def multisine(rng: np.random.Generator, t: np.ndarray, base: float, harmonics: int) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import beta
 
 Row = dict[str, Any]
+APART = 4.0  # [standard deviations]; an observer who knows the noise is then right in 98 of 100 cases
 
 
 def interval(hits: int, n: int) -> tuple[float, float]:
@@ -37,6 +38,7 @@ def judge_case(truth: Row, verdict: Row) -> Row:
         "overlap": _overlap(truth, verdict),
         "closed": verdict["gap"].get("closed"),
         "seconds": verdict.get("seconds", 0.0),
+        "apart": truth.get("apart"),
     }
 
 
@@ -81,6 +83,11 @@ def _overlap(truth: Row, verdict: Row) -> float | None:
     return float(both / total) if total else 0.0
 
 
+def _apart(row: Row) -> float:
+    """Distance of the truth from its nearest rival [standard deviations], -1 where it was not worked out."""
+    return -1.0 if row.get("apart") is None else float(row["apart"])
+
+
 def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float]]:
     """(question, system, right, asked, rate, low, high) for every system."""
     out = []
@@ -99,6 +106,8 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
             ("two effects, exact set", two, "exact"),
             ("two effects, up to stated equivalents", two, "up_to_equivalents"),
             ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
+            (f"two effects, apart >= {APART:g} sd, exact set", [r for r in two if _apart(r) >= APART], "exact"),
+            (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),
             ("false alarm where nothing is missing", none, "false_alarm"),
             ("right joint, single effect, size >= 2", big, "joint"),
         ):

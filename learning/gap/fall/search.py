@@ -110,7 +110,7 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
             continue
         if name == "buoyancy" and mass and diameter:
             centre = AIR_DENSITY * np.pi / 6.0 * diameter**3 / mass
-            spread = 0.3 * centre + 1e-4
+            spread = 0.1 * centre + 1e-4  # a diameter within 2 %, the weather
         total += ((fit.values[name][parameter] - centre) / spread) ** 2
     return total
 

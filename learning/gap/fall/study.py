@@ -17,9 +17,10 @@ from ..regions import phase_of
 from ..study import Study
 from .fit import Drop, DropFit, fit_drops
 from .leftover import repeating
-from .search import DropSearch, equals, search, widening_of
+from .search import DropSearch, equals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
+SURE = 1e-4  # `unknown` below this p-value of what repeats
 CONFIDENCE = 0.8
 
 
@@ -125,7 +126,7 @@ class FallStudy(Study):
     @cached_property
     def leftover(self) -> tuple[float, float, float]:
         """What repeats from drop to drop after the effects."""
-        return repeating(self.chosen, [d.t for d in self.fitted], widening_of)
+        return repeating(self.chosen, [d.t for d in self.fitted])
 
     @cached_property
     def verdict(self) -> VerdictName:
@@ -133,8 +134,7 @@ class FallStudy(Study):
         energy, p, _ = self.leftover
         none = self.found.given
         explained = max(none.rss - self.chosen.rss, 0.0) / self.found.rows
-        noise = self.chosen.rss / self.found.rows - max(energy, 0.0)
-        if p < 0.001 and energy > 0.1 * noise and energy / (energy + explained) > REMAINDER:
+        if p < SURE and energy / (energy + explained) > REMAINDER:
             return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
 
