@@ -14,9 +14,11 @@ from .colours import GOWN_SURFACES, Surface
 from .errors import PerceptionFailure, Problem
 from .estimates import SLEEVE_OF, SleeveOpening
 from .garment import gown_labels
+from .strap_edge import strap_between
 
 WIDTH = 0.055  # of the binding and of the strap [m]
 HALF_LENGTH = 0.082  # from the binding's end to the middle of the strap [m]
+_AGREE = 0.04  # two ways to see the strap that are no farther apart mean the same place [m]
 _AROUND = 0.25  # how far from the expected place to look [m]
 _STEP = 0.0137  # of the walk along the strap; six lead to its middle [m]
 _FEWEST = 6  # points of the gown around a step
@@ -24,6 +26,9 @@ _FEWEST = 6  # points of the gown around a step
 
 def sleeve_strap(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
     """Find the strap and how it lies.
+
+    Two ways to see it are compared: past the end of the neck binding, which tells best where its middle is, and
+    between the armhole's rim and the gown's edge, which is there where folds hide or turn the binding's end.
 
     Args:
         frame: a view from close by, such as a hand camera's.
@@ -36,8 +41,30 @@ def sleeve_strap(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpe
         the right.  Where the strap is not twisted, closing points from the armhole to the gown's upper edge.
 
     Raises:
-        PerceptionFailure: no rim or no end of the binding near the place, or the strap is hidden.
+        PerceptionFailure: no rim near the place, or the strap is hidden.
     """
+    try:
+        between = strap_between(frame, near_in_map)
+    except PerceptionFailure:
+        return _past_binding(frame, side, near_in_map)
+    try:
+        past = _past_binding(frame, side, near_in_map)
+        if np.linalg.norm(past.position_in_map - between.middle) < _AGREE:
+            return past
+    except PerceptionFailure:
+        pass
+    cloud, labels = points_in_map(frame), gown_labels(frame)
+    rim = _thinned(cloud[(labels == Surface.ARMHOLE) & (frame.depth > 0)])
+    rim = rim[np.linalg.norm(rim - near_in_map, axis=1) < _AROUND]
+    gown = cloud[np.isin(labels, GOWN_SURFACES) & (frame.depth > 0)]
+    normal = surface_normal(gown[np.linalg.norm(gown - between.middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
+    return SleeveOpening(stamp=frame.stamp, confidence=min(0.6, between.points / 200), target=SLEEVE_OF[side],
+                         position_in_map=between.middle, approach_in_map=-normal, closing_in_map=between.across,
+                         ring_points_in_map=rim, centre_in_map=np.percentile(rim, (5, 95), axis=0).mean(axis=0))
+
+
+def _past_binding(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
+    """The strap along the line of the neck binding, past its end."""
     labels, cloud = gown_labels(frame), points_in_map(frame)
     near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < _AROUND
     rim = _thinned(cloud[(labels == Surface.ARMHOLE) & near])

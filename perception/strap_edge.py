@@ -1,0 +1,92 @@
+"""The strap of an armhole by its two borders: the armhole's rim on one side, the gown's edge on the other.
+
+It needs no end of the neck binding, which hides in a fold as soon as the other arm is dressed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..sim.world import Frame
+from .cloud import clusters, points_in_map, surface_normal, unit
+from .colours import GOWN_SURFACES, Surface
+from .errors import PerceptionFailure, Problem
+from .garment import gown_labels
+
+_AROUND = 0.25  # how far from the expected place to look [m]
+_BORDER = (0.012, 0.048)  # points of the strap are that far from either border; it is 0.055 wide [m]
+_WIDEST = 0.085  # from border to border, where the cloth is curved [m]
+_HALF_LENGTH = 0.082  # from the end of the neck binding to the middle of the strap [m]
+_HEADWARD = 0.2  # the edge is headward of the rim: greatest share of the way across that leads to the feet
+_GRIPPER = 0.03  # what is nearer to the camera by this stands in front of the gown [m]
+_FEWEST = 12
+
+
+class Strap(NamedTuple):
+    """Middle of a strap (3,) [m], unit vector across it from the rim to the edge (3,), and how many points it has."""
+
+    middle: np.ndarray
+    across: np.ndarray
+    points: int
+
+
+def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
+    """Find the strip of gown between an armhole's rim and the gown's edge.
+
+    Args:
+        frame: a view from close by, such as a hand camera's.
+        near_in_map: (3,) roughly where the armhole is [m].
+
+    Raises:
+        PerceptionFailure: no rim near the place, or nothing between it and an edge.
+    """
+    from scipy.spatial import KDTree
+
+    labels, cloud = gown_labels(frame), points_in_map(frame)
+    near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < _AROUND
+    rim = _thinned(cloud[(labels == Surface.ARMHOLE) & near], 1500)
+    if len(rim) < 15:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "rim of the armhole")
+    rim = rim[clusters(rim, 0.03) == 0]
+    edge = cloud[_edge(frame, labels) & near]
+    plain = np.isin(labels, (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR)) & near
+    gown = _thinned(cloud[plain], 4000)
+    if len(edge) < _FEWEST or len(gown) < _FEWEST:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "edge of the gown beside the armhole")
+    (to_rim, at_rim), (to_edge, at_edge) = KDTree(rim).query(gown), KDTree(edge).query(gown)
+    span = edge[at_edge] - rim[at_rim]
+    width = np.linalg.norm(span, axis=1)
+    low, high = _BORDER
+    strip = (to_rim > low) & (to_rim < high) & (to_edge > low) & (to_edge < high)
+    strip &= (width < _WIDEST) & (span[:, 1] < _HEADWARD * width)
+    if strip.sum() < _FEWEST:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "strap between the armhole's rim and the gown's edge")
+    points, span = gown[strip], span[strip] / width[strip, None]
+    largest = clusters(points, 0.02) == 0
+    points, span = points[largest], span[largest]
+    navy = _thinned(cloud[(labels == Surface.COLLAR) & near], 500)
+    middle = np.median(points, axis=0)
+    if len(navy) >= 20:
+        off = np.abs(KDTree(navy).query(points)[0] - _HALF_LENGTH)
+        middle = np.median(points[off <= np.percentile(off, 25)], axis=0)
+    normal = surface_normal(gown[np.linalg.norm(gown - middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
+    across = unit(np.median(span, axis=0))
+    return Strap(middle, unit(across - (across @ normal) * normal), len(points))
+
+
+def _edge(frame: Frame, labels: np.ndarray) -> np.ndarray:
+    """Pixels (H, W) of gown beside something behind it that is not gown; not where a gripper stands in front."""
+    import cv2
+
+    gown = np.isin(labels, GOWN_SURFACES)
+    filled = cv2.morphologyEx(gown.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8)) > 0
+    depth = np.where(frame.depth > 0, frame.depth, 9.0)
+    beyond = cv2.dilate(np.where(filled, 0.0, depth).astype(np.float32), np.ones((7, 7), np.uint8))
+    before = cv2.erode(np.where(filled, 9.0, depth).astype(np.float32), np.ones((9, 9), np.uint8))
+    return gown & (beyond > frame.depth - 0.012) & (before > frame.depth - _GRIPPER)
+
+
+def _thinned(points: np.ndarray, most: int) -> np.ndarray:
+    return points[:: max(1, len(points) // most + (len(points) % most > 0))]
