@@ -1,12 +1,16 @@
-"""`caretree learn physics data|clip|sensitivity`."""
+"""`caretree learn physics data|clip|show|sensitivity`."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from typing import NoReturn
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
 
 from ...sim.errors import CaretreeError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 SIZES = {"paper": (100, 60), "uniform": (1, 6000), "heldout_gown": (1, 300), "disturbed": (1, 300)}
 
@@ -38,12 +42,38 @@ def parser() -> argparse.ArgumentParser:
     clip.add_argument("--seed", type=int, default=0, metavar="N")
     clip.add_argument("--strip", metavar="FILE", help="also a picture of it")
 
+    show = sub.add_parser("show", help="draw strips of clips")
+    show.add_argument("path", nargs="+", metavar="PATH", help="clips, or folders of datasets")
+    show.add_argument("--clips", type=int, default=3, metavar="N", help="of each dataset (default 3)")
+    show.add_argument("--out", required=True, metavar="FILE", help="the picture to write")
+
     sensitivity = sub.add_parser("sensitivity", help="what a clip shows of each parameter")
     sensitivity.add_argument("--points", type=int, default=20, metavar="N", help="gowns looked at (default 20)")
     sensitivity.add_argument("--seed", type=int, default=0, metavar="N")
+    sensitivity.add_argument("--engines", action="store_true", help="instead, how the two engines differ, and the cost")
     sensitivity.add_argument("--candidates", action="store_true", help="instead, what else could be a parameter")
     sensitivity.add_argument("--out", metavar="FILE", help="also as a file, JSON")
     return top
+
+
+def _rows(paths: list[str], clips: int) -> list[tuple[str, np.ndarray]]:
+    """(title, depth) of clips and of the first `clips` of each dataset."""
+    from .clip import Clip, unpacked
+    from .dataset import read_index, read_shard
+    from .parameters import NAMES, to_values
+
+    if clips < 1:
+        raise CaretreeError(f"--clips is {clips}, at least 1 is asked for")
+    rows: list[tuple[str, np.ndarray]] = []
+    for path in map(Path, paths):
+        if not path.is_dir():
+            rows.append((path.name, Clip.load(path).depth))
+            continue
+        shard = read_shard(path / read_index(path)["shards"][0]["file"])
+        for raw, unit in list(zip(shard["depth"], shard["unit"], strict=True))[:clips]:
+            title = ", ".join(f"{name} {value:.3g}" for name, value in zip(NAMES, to_values(unit), strict=True))
+            rows.append((f"{path.name}: {title}", unpacked(raw)))
+    return rows
 
 
 def main(argv: list[str]) -> int:
@@ -77,6 +107,14 @@ def main(argv: list[str]) -> int:
             from .strip import write_strip
 
             print(write_strip(options.strip, [(gown.name, clip.depth)]))
+    elif options.command == "show":
+        from .strip import write_strip
+
+        print(write_strip(options.out, _rows(options.path, options.clips)))
+    elif options.engines:
+        from .engines import report as compared
+
+        print(compared())
     elif options.candidates:
         from .sixth import candidates
         from .sixth import report as table

@@ -47,6 +47,14 @@ def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
     assert str(tmp_path / "b.npz") in capsys.readouterr().out
 
 
+def test_show_draws_clips_and_datasets(tmp_path):
+    assert main(["learn", "physics", "clip", str(tmp_path / "a.npz"), "--engine", "fast"]) == 0
+    assert main(["learn", "physics", "data", str(tmp_path / "set"), "--kind", "disturbed", "--per-class", "2"]) == 0
+    assert main(["learn", "physics", "show", str(tmp_path / "a.npz"), str(tmp_path / "set"),
+                 "--out", str(tmp_path / "b.png")]) == 0
+    assert (tmp_path / "b.png").stat().st_size > 10000
+
+
 def test_sensitivity_prints_its_table(tmp_path, capsys):
     assert main(["learn", "physics", "sensitivity", "--points", "1", "--out", str(tmp_path / "s.json")]) == 0
     assert "| mass |" in capsys.readouterr().out
@@ -63,6 +71,8 @@ def test_sensitivity_prints_its_table(tmp_path, capsys):
     (["physics", "data", "x", "--per-class", "0"], "counts start at 1"),
     (["physics", "clip", "x.npz", "--gown", "silk"], "unknown gown 'silk'"),
     (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),
+    (["physics", "show", "x.npz", "--out", "x.png"], "x.npz: there is no such clip"),
+    (["physics", "show", "x.npz", "--out", "x.png", "--clips", "0"], "--clips is 0, at least 1"),
     (["physics", "sensitivity", "--points", "0"], "--points is 0, at least 1"),
 ])
 def test_a_mistake_is_one_sentence_and_status_2(tmp_path, monkeypatch, capsys, arguments, sentence):
