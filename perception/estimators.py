@@ -14,7 +14,8 @@
 | sleeve_strap | side, near_in_map | SleeveOpening |
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
 | hook | | GraspPoint `near_hang`: where the gown hangs |
-| hung_corner | side, hook_in_map, other_length | GraspPoint `collar_corner_*` |
+| hung_side | | GownSide |
+| hung_corner | side, hook_in_map, other_length, near_in_map | GraspPoint `collar_corner_*` |
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
 | hand_cover | points_in_map | Cover |
@@ -42,6 +43,7 @@ from .hanging import grasp_near_hang
 from .hand_cover import hand_cover
 from .held_armhole import held_armhole
 from .hung_corner import hook, hung_corner
+from .hung_side import hung_side
 from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
@@ -94,6 +96,7 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "hook": hook, "hung_corner": hung_corner, "held_armhole": held_armhole, "hand_cover": hand_cover,
+            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "hook": hook, "hung_corner": hung_corner,
+            "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

@@ -25,6 +25,7 @@ HUNG = 0.80  # both strips together where they hang, within 4 cm [m]
 UNSURE = 0.08  # of that length, as the other strip tells it [m]
 SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
 TELLS = 0.1  # how clearly that must say which strip it is
+SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
 ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
 GAP = 0.025  # points of one strip lie nearer together than this [m]
 POINTS = 25  # a smaller patch is noise
@@ -76,7 +77,7 @@ def hook(frame: Frame) -> GraspPoint:
 
 
 def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
-                other_length: float | None = None) -> GraspPoint:
+                other_length: float | None = None, near_in_map: np.ndarray | None = None) -> GraspPoint:
     """One corner of the neckline of a gown that hangs with its outside to the camera.
 
     Args:
@@ -84,6 +85,7 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
         side: the wearer's; seen from outside, the wearer's right is on the left of the picture.
         hook_in_map: (3,) where the gown hangs, if that is known already [m].
         other_length: from the hook to the other corner, if that is held aside already [m].
+        near_in_map: (3,) where the corner was just now; one that is farther away than 5 cm is another [m].
 
     Returns:
         The grasp, just inside both edges of the binding, with a horizontal approach along the view.
@@ -96,7 +98,9 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
     found = strips(frame, top)
     length = LENGTH[1] if other_length is None else NECKLINE - other_length
     fits = [strip for strip in found if LENGTH[0] < strip.length < length + UNSURE]
-    if other_length is None:
+    if near_in_map is not None:
+        fits = [strip for strip in found if np.linalg.norm(strip.corner_in_map - near_in_map) < SAME]
+    elif other_length is None:
         fits = _first(frame, fits, top, sign)
     else:  # the other strip is drawn aside
         fits = [strip for strip in fits if strip.armhole > 0.5]
@@ -112,7 +116,7 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
 
 
 def _first(frame: Frame, found: list[Strip], top: np.ndarray, sign: float) -> list[Strip]:
-    """Strips that may lead to the corner on one side, while both hang: by what tells them, and by the length of the other.
+    """Strips that may lead to one corner while both hang: by what tells them, and by the length of the other.
 
     Args:
         frame: where they were found.

@@ -12,13 +12,14 @@ from .skill import Skill, SkillFailure
 
 
 class FlipSideCheck(Skill):
-    """Looks at the gown between the hands; the printed outside must face the robot.
+    """Looks at the gown between the hands, or on its hook; the printed outside must face the robot.
 
-    Inputs: `looks`, how many frames vote; `sure`, the confidence from which a sight of the inside counts (sleeves
-    and folds always show some of it).  Outputs: `seen`, the last estimate.
+    Inputs: `hung`, whether it is on its hook; `looks`, how many frames vote; `sure`, the confidence from which a sight
+    of the inside counts (sleeves and folds always show some of it).  Outputs: `seen`, the last estimate.
     """
 
     commands = False
+    hung = Input(bool, default=False)
     looks = Input(int, default=3)
     sure = Input(float, default=0.6)
     seen = Output(GownSide)
@@ -28,7 +29,7 @@ class FlipSideCheck(Skill):
         """Look a few times and take the majority."""
         votes, side = 0, None
         for _ in range(self.looks):
-            side = self.context.perceive("gown_side", self.world.look("head"))
+            side = self.context.perceive("hung_side" if self.hung else "gown_side", self.world.look("head"))
             votes += -1 if not side.outside and side.confidence > self.sure else 1
             yield
         if side is not None:

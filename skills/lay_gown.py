@@ -20,7 +20,7 @@ FACING = -np.pi / 2  # towards the head of the bed [rad]
 AHEAD = 0.55  # of the hands before the base's centre [m]
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
-PATH = ((0.80, 1.15), (0.35, 1.00), (0.12, 0.87))
+PATH = ((0.80, 1.15), (0.40, 0.98), (0.16, 0.87))
 CENTRE, NEAREST = 0.0, 0.35  # x of the middle of the neckline, and of the near hand at least [m]
 DRIVE, LOWER = 0.35, 0.25  # [m/s]
 
@@ -44,9 +44,12 @@ class LayGown(Skill):
             except MotionError:
                 continue  # the next step may have a way
         yield from self._hands_to(BEGIN, 1.28)
-        for y, z in PATH:
+        before = BEGIN
+        for y, z in PATH:  # down first: what then touches is drawn after the neckline, and nothing gets ahead of it
+            yield from self._hands_to(before, z)
             yield from drive_to(self, np.array((LANE, y + AHEAD, FACING)), speed=DRIVE, straight=True)
-            yield from self._hands_to(y, z)
+            before = y
+        yield from self._hands_to(*PATH[-1])
         for side in SIDES:
             yield from open_gripper(self, side)
         self.note("withdraws")

@@ -49,6 +49,7 @@ def offer_gown(context: Context) -> None:
     def layers(frame: Frame, side: Side, **_: Any) -> Estimate:
         return LayerCount(stamp=frame.stamp, confidence=0.9, side=side, layers=1)
 
-    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("hook", hang), ("hung_corner", hung), ("gown_side", facing),
+    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("hook", hang), ("hung_corner", hung),
+                            ("gown_side", facing), ("hung_side", facing),
                             ("gripped_cloth", held), ("pre_grasp", corner), ("layers", layers)):
         context.perception.offer(name, estimator)

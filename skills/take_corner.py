@@ -27,7 +27,6 @@ STAND = 1.0  # before the hook, where both hands turn freely and the camera sees
 NEAR_ENOUGH = 0.04  # of the place to stand [m]
 SETTLE = 0.3  # until the hand stands where it was sent [s]
 SPEED = 0.5  # of the hand until it is near [m/s]
-SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
 TUG = 0.03  # how far the hand draws what it took, to feel it [m]
 NOISE = 0.08  # of a force reading [N]
 UP = np.array((0.0, 0.0, 1.0))
@@ -48,7 +47,7 @@ class TakeCorner(Skill):
     sleeve = Input(Side)
     known_hook = Input(GraspPoint, default=None)
     held = Input(float, default=None)
-    opening = Input(float, default=0.04)
+    opening = Input(float, default=0.05)
     force = Input(float, default=30.0)
     feel = Input(float, default=0.10)
     hook = Output(GraspPoint)
@@ -86,11 +85,10 @@ class TakeCorner(Skill):
     def _look_again(self, hook: GraspPoint, seen: GraspPoint) -> GraspPoint:
         """The same corner in a fresh frame: the gown still sways; or as it was where it no longer shows."""
         try:
-            now = self._look(hook)
+            return self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
+                                         hook_in_map=hook.position_in_map, near_in_map=seen.position_in_map)
         except PerceptionFailure:
             return seen
-        same = np.linalg.norm(now.position_in_map - seen.position_in_map) < SAME
-        return now if same and now.confidence > 0.7 * seen.confidence else seen
 
     def _stand(self, hook_in_map: np.ndarray) -> Iterator[None]:
         """Step without turning until the hook is straight ahead."""

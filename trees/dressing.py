@@ -54,12 +54,13 @@ def take_down(context: Context) -> Behaviour:
     hook = Key("hook")
     return Stage("A take down", None, Timeout("A in time", sequence(
         "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
-        fallback("take both ends of the neckline", take_ends(context, "left"), take_ends(context, "right")),
+        fallback("take both ends of the neckline", take_ends(context, "left"),
+                 sequence("the other one first", Retreat("let go of both ends", context), take_ends(context, "right"))),
         TakeDown("lift it off the hook", context, hook=hook, load=Key("gown_load"))), seconds=200.0))
 
 
 def take_ends(context: Context, first: Side) -> Behaviour:
-    """Both ends of the hung gown's neckline: the wearer's `first`, the other one, the first again where it was not it."""
+    """Both ends of the hung gown's neckline: `first`, the other one, the first again where that was not it."""
     second: Side = "right" if first == "left" else "left"
     hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key(f"{first}_held")
 
@@ -81,6 +82,7 @@ def take_ends(context: Context, first: Side) -> Behaviour:
         f"take the ends, {first} first",
         take(first, f"take the {first} corner", hook=hook, opening=0.03),
         RaiseCorner(f"draw the {first} corner aside", context, hand=HAND_OF[first], hook=hook, held=held),
+        FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3, seen=Key("aside_side")),
         take(second, f"take the {second} corner", known_hook=hook, held=held),
         fallback(f"is it the neckline, {first} first", Condition(
             f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
