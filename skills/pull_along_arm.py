@@ -23,7 +23,7 @@ from .tracking import Hold, watch_arm
 
 SPEED_AT_HAND, SPEED = 0.08, 0.11  # over the person's hand, and further up the arm [m/s]
 BASE_SPEED = 0.05  # of the base that comes along [m/s]
-CAUGHT = 8.0  # a sleeve that pulls harder than this and does not come on is caught [N]
+CAUGHT = 5.0  # a sleeve that pulls harder than this and does not come on is caught [N]
 STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]

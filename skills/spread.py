@@ -25,7 +25,7 @@ from .tracking import watch_arm
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
 DRAW = 0.10  # and then drawn at most this far [m]
 SPEED = 0.08  # [m/s]
-TAUT = 8.0  # a collar that pulls this hard is where it can be [N]
+TAUT = 4.0  # a collar that pulls this hard is where it can be [N]
 _NECK = np.array((0.12, -0.08, 0.10))  # goal for the collar from a shoulder: inwards, headward, above [m]
 _STEEPEST = np.deg2rad(35.0)  # the hand comes from above, at most this far off the vertical
 

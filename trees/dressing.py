@@ -37,7 +37,8 @@ from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
 HEAD_END, SEAT = -0.22, 0.05
-TAUT: dict[Side, float] = {"right": np.inf, "left": 1.8}  # the second sleeve must not draw the first off its arm [N]
+# How hard a sleeve is drawn on its way to the hand; the second must not draw the first off its arm [N].
+TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 HAND_OF: dict[Side, Side] = {"left": "right", "right": "left"}  # the outside faces the robot: corners are mirrored
