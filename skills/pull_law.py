@@ -12,8 +12,9 @@ from .arm_path import ArmPath
 
 @dataclass(frozen=True, kw_only=True)
 class PullLaw:
-    """Constants of the pull.  Defaults were found on the simulated gowns: 1 to 3 N is a sleeve that slides, and
-    10 N stretch a hundredth of its threads by half.
+    """Constants of the pull, found on the simulated gowns.
+
+    1 to 3 N is a sleeve that slides; 10 N stretch a hundredth of the gown's threads by half.
 
     Attributes:
         clearance: of the gripper off the arm's axis [m].
