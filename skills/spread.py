@@ -23,10 +23,10 @@ from .skill import Skill
 from .tracking import watch_arm
 
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
-DRAW = 0.10  # and then drawn at most this far [m]
+DRAW = 0.07  # and then drawn at most this far [m]
 SPEED = 0.08  # [m/s]
 TAUT = 4.0  # a collar that pulls this hard is where it can be [N]
-_NECK = np.array((0.12, -0.08, 0.10))  # goal for the collar from a shoulder: inwards, headward, above [m]
+_NECK = np.array((0.12, -0.03, 0.10))  # goal for the collar from a shoulder: inwards, headward, above [m]
 _STEEPEST = np.deg2rad(35.0)  # the hand comes from above, at most this far off the vertical
 
 
