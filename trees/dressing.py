@@ -78,15 +78,15 @@ def take_ends(context: Context, first: Side) -> Behaviour:
     again = sequence(
         f"the {first} corner was not it",
         Retreat(f"let the {first} one go", context, hands=HAND_OF[first]),
-        RaiseCorner(f"draw the {second} corner aside", context, hand=HAND_OF[second], hook=hook,
+        RaiseCorner(f"draw the {second} corner aside for the {first}", context, hand=HAND_OF[second], hook=hook,
                     held=Key(f"{second}_held")),
-        take(first, f"take the {first} corner again", known_hook=hook, held=Key(f"{second}_held")))
+        take(first, f"take the {first} corner once more", known_hook=hook, held=Key(f"{second}_held")))
     return sequence(
         f"take the ends, {first} first",
-        take(first, f"take the {first} corner", hook=hook, opening=0.03),
-        RaiseCorner(f"draw the {first} corner aside", context, hand=HAND_OF[first], hook=hook, held=held),
+        take(first, f"take the {first} corner first", hook=hook, opening=0.03),
+        RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
         FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3, seen=Key("aside_side")),
-        take(second, f"take the {second} corner", known_hook=hook, held=held),
+        take(second, f"take the {second} corner second", known_hook=hook, held=held),
         fallback(f"is it the neckline, {first} first", Condition(
             f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
 
