@@ -39,8 +39,8 @@ from .cover import chest_cover
 from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreGrasp
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
-from .hanging import grasp_near_hang
 from .hand_cover import hand_cover
+from .hanging import grasp_near_hang
 from .held_armhole import held_armhole
 from .hung_corner import hook, hung_corner
 from .hung_side import hung_side

@@ -23,7 +23,7 @@ class Hung:
         self.outside, self.inside = ("rail", "rail_back") if facing_front else ("rail_back", "rail")
 
     def frame(self, waypoint: str):
-        x, y, yaw = self.world.room.waypoints[waypoint]
+        yaw = self.world.room.waypoints[waypoint][2]
         ahead = np.array((np.cos(yaw), np.sin(yaw), 0.0))
         stand = self.hook - STAND * ahead
         self.world._robot = self.world._stand((float(stand[0]), float(stand[1]), yaw))
@@ -69,7 +69,8 @@ def test_each_corner_where_it_is(hung):
     assert np.linalg.norm(left.position_in_map - hung.corner(0)) < 0.03
     assert abs(left.approach_in_map[2]) < 1e-9
     told = [strip for strip in strips(frame, top) if np.linalg.norm(strip.corner_in_map - hung.corner(0)) < 0.03]
-    assert told and told[0].tells < 0.0
+    assert told
+    assert told[0].tells < 0.0
     length = hung.raise_left(ahead)
     aside, _ = hung.frame(hung.outside)
     right = hung_corner(aside, "right", hook_in_map=top, other_length=length)
