@@ -31,6 +31,9 @@ class Regressor(nn.Module, Method):
         spread: (6,) ... after multiplying by this.
     """
 
+    centre: torch.Tensor
+    spread: torch.Tensor
+
     def __init__(self, name: str, embedding: ClipEmbedding, regression: nn.Module, *, centre: torch.Tensor,
                  spread: torch.Tensor) -> None:  # fmt: skip
         super().__init__()

@@ -20,6 +20,10 @@ class Compression(nn.Module):
         scale: (K,) what each score is multiplied by.
     """
 
+    mean: torch.Tensor
+    components: torch.Tensor
+    scale: torch.Tensor
+
     def __init__(self, mean: torch.Tensor, components: torch.Tensor, scale: torch.Tensor) -> None:
         super().__init__()
         self.register_buffer("mean", mean)

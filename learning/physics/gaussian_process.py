@@ -27,6 +27,11 @@ class GaussianProcess(nn.Module):
         centre: (P,) means of the parameters.
     """
 
+    inputs: torch.Tensor
+    weights: torch.Tensor
+    lengths: torch.Tensor
+    centre: torch.Tensor
+
     def __init__(self, inputs: torch.Tensor, weights: torch.Tensor, lengths: torch.Tensor,
                  centre: torch.Tensor) -> None:  # fmt: skip
         super().__init__()

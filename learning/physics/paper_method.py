@@ -21,7 +21,8 @@ class ContrastiveObjective(Objective):
     """Phase one."""
 
     def __init__(self, train: Examples, backbone: str) -> None:
-        self.network = ClipEmbedding(backbone, size=train.frames.shape[-1])
+        self.embedding = ClipEmbedding(backbone, size=train.frames.shape[-1])
+        self.network = self.embedding
         self.frames = train.frames
         self.groups = Groups(train.unit, train.class_id)
 
@@ -35,7 +36,8 @@ class ResidualObjective(Objective):
     """Phase two, on fixed embeddings."""
 
     def __init__(self, embedding: torch.Tensor, unit: torch.Tensor, spread: torch.Tensor, near: torch.Tensor) -> None:
-        self.network = ResidualNet(embedding.shape[1], unit.shape[1])
+        self.residual = ResidualNet(embedding.shape[1], unit.shape[1])
+        self.network = self.residual
         self.embedding, self.unit, self.spread, self.near = embedding, unit, spread, near
 
     def loss(self, rng: np.random.Generator) -> torch.Tensor:
@@ -57,6 +59,9 @@ class NearestPlusResidual(nn.Module, Method):
     """
 
     name = "paper"
+    database: torch.Tensor
+    unit: torch.Tensor
+    spread: torch.Tensor
 
     def __init__(self, embedding: ClipEmbedding, residual: ResidualNet, *, database: torch.Tensor,
                  unit: torch.Tensor, spread: torch.Tensor) -> None:  # fmt: skip
@@ -88,7 +93,7 @@ def fit_embedding(
     objective = ContrastiveObjective(train, backbone)
     about = {"method": "contrastive", "data": train.hash, "clips": len(train), "backbone": backbone}
     fit(objective, budget, seed=seed, folder=folder / "contrastive", about=about, say=say)
-    return objective.network
+    return objective.embedding
 
 
 def fit_paper(
@@ -103,4 +108,4 @@ def fit_paper(
     objective = ResidualObjective(database, unit, spread, near)
     about = {"method": "residual", "data": train.hash, "clips": len(train), "backbone": backbone}
     fit(objective, budget, seed=seed, folder=folder / "residual", about=about, say=say)
-    return NearestPlusResidual(embedding, objective.network, database=database, unit=unit, spread=spread)
+    return NearestPlusResidual(embedding, objective.residual, database=database, unit=unit, spread=spread)

@@ -1,0 +1,83 @@
+import json
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
+from caretree.learning.physics import study as study_module  # noqa: E402
+from caretree.learning.physics.evaluate import table, write_results  # noqa: E402
+from caretree.learning.physics.examples import Loaded  # noqa: E402
+from caretree.learning.physics.measure import coverage, garment_error, median_interval  # noqa: E402
+from caretree.learning.physics.methods import TITLES, Plan  # noqa: E402
+from caretree.learning.physics.parameters import NAMES  # noqa: E402
+from caretree.learning.physics.study import Study  # noqa: E402
+
+from .moving_blobs import blob_frames, blobs  # noqa: E402
+
+
+def test_error_is_the_papers_mean_relative_error():
+    true, estimated = np.array([[2.0, 10.0], [1.0, 1.0]]), np.array([[1.0, 11.0], [1.0, 1.5]])
+    np.testing.assert_allclose(garment_error(true, estimated), [0.3, 0.25])
+    np.testing.assert_allclose(garment_error(true, estimated, [1]), [0.1, 0.5])
+
+
+def test_median_has_an_interval_that_narrows_with_clips():
+    values = np.random.default_rng(0).exponential(size=2000)
+    median, low, high = median_interval(values)
+    assert low < np.log(2) < high
+    assert low < median < high
+    few = median_interval(values[:50])
+    assert few[2] - few[1] > 2 * (high - low)
+
+
+def test_coverage_counts_each_parameter():
+    true, lower, upper = np.full((4, 2), 0.5), np.zeros((4, 2)), np.ones((4, 2))
+    upper[0, 1] = 0.4
+    np.testing.assert_allclose(coverage(true, lower, upper), [1.0, 0.75])
+
+
+class BlobSimulator:
+    def __init__(self, cut, camera=None):
+        self.films = 0
+
+    def __call__(self, unit):
+        self.films += len(unit)
+        return blob_frames(unit)
+
+
+@pytest.fixture
+def study(tmp_path, small_gown, monkeypatch):
+    monkeypatch.setattr(study_module, "Simulator", BlobSimulator)
+    split = np.array(["train", "train", "train", "val", "test"])
+    data = Loaded(kind="uniform", gown=small_gown, examples=blobs(60, parameters=6), split=np.resize(split, 60))
+    other = Loaded(kind="heldout_gown", gown=small_gown, examples=blobs(8, 6, seed=5), split=np.full(8, "test"))
+    plan = Plan(steps=3, backbone="small", folder=tmp_path, say=lambda _: None)
+    return Study(data=data, tests={other.kind: other}, plan=plan, seeds=(0, 1), simulate=11, calibrate=10)
+
+
+def test_a_study_compares_every_method_on_every_test(study):
+    study.run(lambda _: None)
+    results = json.loads(write_results(study).read_text())
+    rows = {(row["test"], row["method"], row["seed"]): row for row in results["rows"]}
+    for test in ("uniform", "heldout_gown"):
+        assert {method for t, method, _ in rows if t == test} == set(TITLES)
+        assert {seed for t, method, seed in rows if (t, method) == (test, "paper")} == {0, 1}
+    assert rows["uniform", "ours_simulated", 0]["clips"] == 11
+    assert rows["uniform", "paper", 1]["clips"] == 12
+    assert set(rows["uniform", "ours", 0]["coverage"]) == set(NAMES)
+    assert results["data"]["hash"] == study.data.examples.hash
+    text = table(results)
+    assert all(title in text for title in TITLES.values())
+
+
+def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
+    study.run(lambda _: None, ("ours", "random"))
+    kept = {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*simulated-*-0.npz")}
+    assert len(kept) == 3  # pieces of 10 and 1 clips, and of 8
+
+    def again(*_, **__):
+        raise AssertionError("nothing is to be fitted again")
+
+    monkeypatch.setattr(study_module, "fit_ours", again)
+    study.run(lambda _: None, ("ours",))
+    assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*simulated-*-0.npz")}

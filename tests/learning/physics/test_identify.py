@@ -1,0 +1,119 @@
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
+from caretree.learning.physics import identify as identify_module  # noqa: E402
+from caretree.learning.physics import learn_cli  # noqa: E402
+from caretree.learning.physics.clip import Clip  # noqa: E402
+from caretree.learning.physics.clip_world import film  # noqa: E402
+from caretree.learning.physics.frames import frames_of  # noqa: E402
+from caretree.learning.physics.identify import identify, write  # noqa: E402
+from caretree.learning.physics.method import Examples  # noqa: E402
+from caretree.learning.physics.ours import fit_ours  # noqa: E402
+from caretree.learning.physics.parameters import NAMES, SHOWN, to_spec, values_of  # noqa: E402
+from caretree.learning.physics.simulator import Simulator  # noqa: E402
+from caretree.learning.physics.weights import load_weights, save_weights  # noqa: E402
+from caretree.sim.errors import CaretreeError  # noqa: E402
+from caretree.sim.gown import GOWNS  # noqa: E402
+from caretree.sim.gown_file import read_gown  # noqa: E402
+from caretree.trees.cli import main  # noqa: E402
+
+
+def make(small_gown, count, seed):
+    unit = np.random.default_rng(seed).uniform(0.3, 0.7, (count, 6))
+    return Examples(frames=Simulator(small_gown)(unit), unit=unit, class_id=np.full(count, -1), hash=str(seed))
+
+
+@pytest.fixture(scope="module")
+def fitted(small_gown):
+    valid = make(small_gown, 24, 1)
+    method = fit_ours(make(small_gown, 60, 0), valid, seed=0, shown=SHOWN)
+    method.calibrate(valid.part(np.arange(12)), Simulator(small_gown))
+    return method
+
+
+@pytest.fixture
+def small_cut(monkeypatch, small_gown):
+    monkeypatch.setitem(GOWNS, "medium", small_gown)
+
+
+def test_frames_hold_cover_and_depth():
+    depth = np.full((1, 2, 4, 4), np.nan, np.float32)
+    depth[0, 1, 0, 0] = 2.9
+    frames = frames_of(depth)
+    assert frames.shape == (1, 2, 2, 2, 2)
+    assert frames[0, 1, 0, 0, 0] == 0.25
+    assert frames[0, 1, 1, 0, 0] == pytest.approx(0.25, rel=1e-2)  # 0.3 m behind the usual depth, a quarter of a pixel
+    assert frames.sum() == pytest.approx(0.5, rel=1e-2)
+
+
+def test_weights_come_back_as_they_were_saved(fitted, small_gown, tmp_path):
+    path = save_weights(fitted, tmp_path / "w.safetensors", {"data": "abc"})
+    again, record = load_weights(path)
+    assert record == {"data": "abc"}
+    frames = make(small_gown, 3, 7).frames
+    before, after = fitted.infer(frames), again.infer(frames)
+    np.testing.assert_allclose(after.unit, before.unit, atol=2e-3)  # components are kept in half precision
+    np.testing.assert_allclose(after.lower, before.lower, atol=5e-3)
+    assert set(again.widths) == {"alone", "simulated"}
+
+
+def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_path):
+    gown = to_spec(np.full(6, 0.45), small_gown)
+    found = identify(film(gown), fitted)
+    quick = identify(film(gown), fitted, simulate=False)
+    true = values_of(gown)
+    shown = list(SHOWN)
+    errors = [np.abs(f.values / true - 1)[shown].mean() for f in (found, quick)]
+    assert errors[0] < 0.1
+    assert errors[0] < errors[1]
+    assert (found.lower <= found.values).all()
+    assert (found.values <= found.upper).all()
+    text = found.table()
+    assert all(name in text for name in NAMES)
+    assert "not shown" in next(line for line in text.splitlines() if line.startswith("friction"))
+    assert "not shown" not in next(line for line in text.splitlines() if line.startswith("mass"))
+    gown_file = read_gown(write(found, tmp_path / "gown.yaml"))
+    assert gown_file.values["mass"] == pytest.approx(found.values[0])
+    assert gown_file.spec.mass == pytest.approx(found.values[0])
+
+
+def test_command_prints_the_table_and_writes_the_gown(fitted, small_gown, small_cut, tmp_path, capsys):
+    weights = save_weights(fitted, tmp_path / "w.safetensors", {})
+    clip = film(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
+    out = tmp_path / "gown.yaml"
+    arguments = ["learn", "physics", "identify", str(clip), "--weights", str(weights), "--out", str(out)]
+    assert main(arguments) == 0
+    assert "90 % interval" in capsys.readouterr().out
+    assert set(read_gown(out).intervals) == set(NAMES)
+
+
+@pytest.mark.parametrize("damage", ["missing", "text", "few", "masked", "rate"])
+def test_bad_clips_get_one_sentence_and_exit_2(damage, tmp_path, capsys):
+    path = tmp_path / "clip.npz"
+    good = {"depth": np.full((15, 64, 64), 2.5, np.float32), "rate": 30.0, "intrinsics": np.array([80, 80, 32, 32.0]),
+            "pose_camera_in_map": np.eye(4)}  # fmt: skip
+    if damage == "text":
+        path.write_text("no clip")
+    elif damage != "missing":
+        bad = {"few": {"depth": good["depth"][:9]}, "rate": {"rate": 25.0},
+               "masked": {"depth": np.full((15, 64, 64), np.nan, np.float32)}}[damage]  # fmt: skip
+        np.savez(path, **{**good, **bad})
+    assert main(["learn", "physics", "identify", str(path)]) == 2
+    message = capsys.readouterr().err.strip()
+    assert message.count("\n") == 0
+    assert "clip.npz" in message
+
+
+def test_bad_arguments_get_one_sentence(tmp_path, small_gown, fitted):
+    clip = Clip(depth=np.full((15, 64, 64), 2.5, np.float32), rate=30.0, intrinsics=(80.0, 80.0, 32.0, 32.0),
+                pose_camera_in_map=np.eye(4))  # fmt: skip
+    with pytest.raises(CaretreeError, match=r"unknown gown 'tiny'; there are medium"):
+        identify_module.identify(clip, fitted, "tiny")
+    with pytest.raises(CaretreeError, match="no list of seeds"):
+        learn_cli.parser().parse_args(["train", "data", "--out", "x", "--seeds", "a"])
+    with pytest.raises(CaretreeError, match="no such weights"):
+        load_weights(tmp_path / "none.safetensors")
+    (tmp_path / "w.safetensors").write_text("nonsense")
+    with pytest.raises(CaretreeError, match="no file of weights"):
+        load_weights(tmp_path / "w.safetensors")
