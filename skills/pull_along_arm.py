@@ -29,6 +29,7 @@ ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
+_LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
 
@@ -36,9 +37,10 @@ class PullAlongArm(Skill):
     """Leads the strap above the arm's axis towards the shoulder until it is at `upto`.
 
     Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
-    0 shoulder, below 0 past it towards the neck); `seat`, place of the armhole itself that ends the pull earlier, as
-    far as it is seen; `hold`, the hand that holds the arm, or None; `stand`, base
-    pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of the pull.
+    0 shoulder, below 0 past it towards the neck); `seat`, place where the armhole itself should end up, which as far as
+    it is seen ends the pull before or up to a fifth of the upper arm after `upto`; `hold`, the hand that holds the arm,
+    or None; `stand`, base pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of
+    the pull.
     """
 
     grip = Input(StrapGrip)
@@ -65,7 +67,9 @@ class PullAlongArm(Skill):
             before, place = place, path.place_of(hand[:3, 3], place)
             if before is not None:
                 travelled += np.sign(before - place) * path.distance(before, place)
-            if place <= self.upto or self._seated(ring, path, place, hand[:3, 3]):
+            if place < _LAST and np.isfinite(self.seat):
+                ring.follow(path, hand[:3, 3])
+            if self._there(ring.place, place):
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:
@@ -90,12 +94,11 @@ class PullAlongArm(Skill):
             self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
             yield
 
-    def _seated(self, ring: RingWatch, path: ArmPath, place: float, grip: np.ndarray) -> bool:
-        """The armhole lags behind the grip by more or less, depending on how the strap is held."""
-        if np.isinf(self.seat) or place > _LAST:
-            return False
-        seen = ring.place(path, grip)
-        return seen is not None and seen <= self.seat
+    def _there(self, ring: float | None, grip: float) -> bool:
+        """The armhole lags behind the grip, more or less: as far as it is seen, it decides where the pull ends."""
+        if ring is None or not np.isfinite(self.seat):
+            return grip <= self.upto
+        return ring <= self.seat or grip <= self.upto - (_FARTHER if ring > self.seat + _LAGGING else 0.0)
 
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
         """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""

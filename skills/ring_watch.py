@@ -20,6 +20,7 @@ _FARTHEST = 0.14  # that the grip goes to the side for it [m]
 _STEP = 0.03  # by which the grip goes to the side after one look, at most [m]
 _HAND = np.linspace(2.3, 2.95, 10)  # places along the arm that must be under the sleeve
 _COVERED = 0.5  # share of them
+_STALE = 0.8  # an armhole that was not seen for so long may have moved on [s]
 _SOME = 25  # of the armhole's points are asked for their place
 
 
@@ -29,12 +30,14 @@ class RingWatch:
     Attributes:
         aside: how far to the side of the arm the grip should be, along the first axis of `ArmPath.frame` [m].
         off: how far the armhole was from its place at the last look, 0 before it was seen [m].
+        place: where along the arm `follow` saw the armhole, the median over what shows of it; None when it is hidden.
     """
 
     def __init__(self, skill: Skill, grip: StrapGrip) -> None:
         self._skill, self._grip = skill, grip
         self.aside = self.off = 0.0
-        self._looked = -np.inf
+        self.place: float | None = None
+        self._looked = self._placed = -np.inf
 
     def look(self, path: ArmPath, place: float, grip_in_map: np.ndarray) -> None:
         """Look, at most every `PERIOD`; shifts `aside` by part of what the armhole is off.
@@ -63,22 +66,22 @@ class RingWatch:
         self.off = EDGE - float(np.max(edges))
         self.aside = float(np.clip(self.aside + side * np.clip(0.5 * self.off, -_STEP, _STEP), -_FARTHEST, _FARTHEST))
 
-    def place(self, path: ArmPath, grip_in_map: np.ndarray) -> float | None:
-        """Where along the arm the armhole is: the median over what the head camera sees of it, within 0.1 of the truth.
-
-        None where too little of it is seen, and between two looks.
-        """
-        if self._skill.now() - self._looked < PERIOD:
-            return None
-        self._looked = self._skill.now()
+    def follow(self, path: ArmPath, grip_in_map: np.ndarray) -> None:
+        """Look where along the arm the armhole is, at most every `PERIOD`; updates `place`."""
+        now = self._skill.now()
+        if now - self._looked < PERIOD:
+            return
+        self._looked = now
         try:
             ring = self._skill.context.perceive("held_armhole", self._skill.world.look("head"), side=self._grip.arm,
                                                 near_in_map=grip_in_map)
         except PerceptionFailure:
-            return None
+            if now - self._placed > _STALE:
+                self.place = None
+            return
         assert isinstance(ring, SleeveOpening)
         some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // _SOME)]
-        return float(np.median([path.place_of(point) for point in some]))
+        self.place, self._placed = float(np.median([path.place_of(point) for point in some])), now
 
     def missed(self, path: ArmPath) -> bool:
         """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""
