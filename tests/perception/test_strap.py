@@ -1,4 +1,4 @@
-"""The strap of an armhole in the simulated room: the gown laid by hand, looked at from where a hand's camera would be."""
+"""The strap of an armhole in the simulated room: a gown laid by hand, seen from where a hand's camera would be."""
 
 from __future__ import annotations
 
