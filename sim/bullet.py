@@ -37,7 +37,7 @@ from .recorder import FRAME_PERIOD, Recorder
 from .robot.body import RobotBody
 from .robot.kinematics import default_kinematics
 from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
-from .stage_start import lay_by_hand
+from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand
 from .truth import TruthFrame, TruthStatic
 from .world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
 
@@ -154,37 +154,43 @@ class BulletWorld(World):
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
         self._vertices = self._cloth.vertices()
 
-    def _stand(self, pose_base_in_map: tuple[float, float, float]) -> RobotBody:
-        """Put the robot somewhere, arms ready."""
+    def _stand(self, pose_base_in_map: tuple[float, float, float], **posture: Any) -> RobotBody:
+        """Put the robot somewhere, arms ready unless `posture` says otherwise."""
         self._robot_client.resetSimulation()
         self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
         self._robot_client.setGravity(0, 0, -GRAVITY)
         return RobotBody(self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics,
-                         time=self.time.time)
+                         time=self.time.time, **posture)
 
     def prepare_stage(self, stage: str) -> None:
-        """Start at a later stage, the earlier ones done by hand: A (nothing to do) or C (gown laid, robot at the bed).
+        """Start at a later stage, the earlier ones done by hand: B (hands hold the gown) or C (it lies on the bed).
 
-        Of a span of stages ("C-D"), the first counts.
+        Of a span of stages ("C-D"), the first counts; before A there is nothing to do.
 
         Raises:
             CaretreeError: another stage, or the run has begun.
         """
         first = stage.partition("-")[0]
-        if first not in ("A", "C"):
-            raise CaretreeError(f"stage {stage!r} cannot be started on its own in the bullet world; A and C can")
+        if first not in ("A", "B", "C"):
+            raise CaretreeError(f"stage {stage!r} cannot be started on its own in the bullet world; A, B and C can")
         if self._steps:
             raise CaretreeError("a stage can only be prepared before the run begins")
-        if first == "C":
-            self._hook.release()
-            if self._patch is not None:  # carriers cannot jump with the cloth
-                self._patch.detach()
+        if first == "A":
+            return
+        self._hook.release()
+        if self._patch is not None:  # carriers cannot jump with the cloth
+            self._patch.detach()
+        if first == "B":
+            self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
+            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+            hold_in_hands(self._cloth, self._grips, self._hands, self._client.stepSimulation, TIME_STEP)
+        else:
             lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
-            self._vertices = self._cloth.vertices()
-            if self._patch is not None:
-                self._patch.attach(self._client, self._cloth.body, self._vertices)
             self._robot = self._stand(self.room.waypoints["bed_right"])
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._vertices = self._cloth.vertices()
+        if self._patch is not None:
+            self._patch.attach(self._client, self._cloth.body, self._vertices)
 
     # -- senses --------------------------------------------------------------------------------------------
 

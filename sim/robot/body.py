@@ -64,6 +64,7 @@ class RobotBody:
         pose_base_in_map: (3,) where the base stands [m, m, rad].
         arm_positions: (2, 7) posture to start in [rad]; the ready posture when omitted.
         head_pan: [rad].
+        gripper_opening: of both hands [m].
         collision_mask: PyBullet group bits that hands and arms collide with.
         time: the world's clock now [s].
         kinematics: the model to use; one per process when omitted.
@@ -75,12 +76,13 @@ class RobotBody:
     """
 
     def __init__(self, client: Any, pose_base_in_map: np.ndarray, arm_positions: np.ndarray | None = None,
-                 head_pan: float = 0.0, *, collision_mask: int = 0, time: float = 0.0,
-                 kinematics: Kinematics | None = None) -> None:
+                 head_pan: float = 0.0, *, gripper_opening: float = model.GRIPPER_STROKE, collision_mask: int = 0,
+                 time: float = 0.0, kinematics: Kinematics | None = None) -> None:
         self._client = client
         self.kinematics = kinematics or default_kinematics()
         arms = model.READY if arm_positions is None else np.asarray(arm_positions, float)
         self.servo = Servo(self.kinematics, pose_base_in_map, arms, head_pan, time)
+        self.servo.gripper_opening = np.full(2, gripper_opening)
         self.body: int = client.loadURDF(str(urdf_path()), useFixedBase=True)
         joint_of: dict[str, int] = {}
         self.links: dict[str, int] = {"map": -1}
@@ -94,7 +96,7 @@ class RobotBody:
         self._gains = [_POSITION_GAIN] * self._count
         self._velocity_gains = [1.0] * self._count
         self._forces = np.concatenate((_BASE_FORCE, _ARM_FORCE, _ARM_FORCE, (50.0,), np.zeros(4)))
-        self._fingers = np.full(4, model.GRIPPER_STROKE / 2)
+        self._fingers = np.full(4, gripper_opening / 2)
         self._next_update = -np.inf
         start = self._targets()[0]
         for joint, value in zip(self._joints, start, strict=True):

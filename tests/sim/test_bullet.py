@@ -94,3 +94,19 @@ def test_the_same_seed_is_the_same_world():
         world.close()
     np.testing.assert_array_equal(frames[0][0], frames[1][0])
     np.testing.assert_array_equal(frames[0][1], frames[1][1])
+
+
+def test_stage_b_begins_with_the_gown_in_both_hands():
+    world = BulletWorld(seed=2)
+    world.prepare_stage("B")
+    weight = world.scene.gown.mass * GRAVITY
+    world.clock.wait_until(0.4)
+    seen = world.observe()
+    assert -seen.wrench_hand_in_map[:, 2].sum() == pytest.approx(weight, rel=0.25)  # it still swings a little
+    assert (seen.gripper_opening < 0.01).all()
+    vertices, (left, right) = world.truth_frame().vertices, world.scene.mesh.corners
+    for n, corner in enumerate((right, left)):  # the outside faces the robot: its left hand holds the right corner
+        assert np.linalg.norm(vertices[corner] - seen.pose_hand_in_map[n, :3, 3]) < 0.03
+    world.close()
+    with pytest.raises(CaretreeError, match="A, B and C"):
+        BulletWorld(seed=2).prepare_stage("D")
