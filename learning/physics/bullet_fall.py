@@ -8,6 +8,7 @@ the released vertex is never pinned: the simulation begins at the instant of rel
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -25,17 +26,21 @@ from .clip import FRAMES, RATE
 from .clip_world import CLAMP_MASS, cut_of, steps_per_frame
 
 
-class _Changed:
-    """A PyBullet client that loads cloth with other options."""
+class _Client:
+    """A PyBullet connection that loads cloth with `options` changed.  (BulletClient prints when it connects.)"""
 
-    def __init__(self, client: Any, options: Mapping[str, Any]) -> None:
-        self._client, self._options = client, options
+    def __init__(self, options: Mapping[str, Any]) -> None:
+        import pybullet
+
+        self._pybullet, self._options = pybullet, options
+        self._id = pybullet.connect(pybullet.DIRECT)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._client, name)
+        found = getattr(self._pybullet, name)
+        return functools.partial(found, physicsClientId=self._id) if callable(found) else found
 
     def loadSoftBody(self, path: str, **options: Any) -> int:  # noqa: N802 PyBullet's name
-        return self._client.loadSoftBody(path, **{**options, **self._options})
+        return self._pybullet.loadSoftBody(path, **{**options, **self._options}, physicsClientId=self._id)
 
 
 def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
@@ -54,9 +59,6 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
     Raises:
         CaretreeError: with air, a gown lighter than its carriers.
     """
-    import pybullet
-    from pybullet_utils.bullet_client import BulletClient
-
     mesh, _ = cut_of(spec)
     steps = steps_per_frame(spec, len(start))
     patch = None
@@ -70,7 +72,7 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
                                 f"{2e3 * CARRIER_MASS * len(patch.vertices):.0f} g")
         spec = replace(spec, mass=patch.cloth_mass)
         steps = max(steps, steps_per_frame(spec, len(start)))
-    client: Any = _Changed(BulletClient(pybullet.DIRECT), options or {})
+    client: Any = _Client(options or {})
     try:
         client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
         client.setGravity(0, 0, units.force(-GRAVITY))

@@ -18,14 +18,14 @@ def write_strip(path: str | Path, rows: Sequence[tuple[str, np.ndarray]], every:
     """
     from matplotlib.figure import Figure
 
-    columns = len(range(0, len(rows[0][1]), every))
-    figure = Figure(figsize=(1.3 * columns, 1.45 * len(rows)), layout="constrained")
-    axes = np.atleast_2d(figure.subplots(len(rows), columns))
-    for axis_row, (title, depth) in zip(axes, rows, strict=True):
-        low, high = np.nanpercentile(depth, (1, 99))
-        for axis, frame in zip(axis_row, depth[::every], strict=True):
-            axis.imshow(frame, vmin=low, vmax=high, cmap="viridis")
-            axis.axis("off")
-        axis_row[0].annotate(title, (0, 1.04), xycoords="axes fraction", fontsize=8)
-    figure.savefig(path, dpi=80)
+    pictures = [np.hstack(depth[::every]) for _, depth in rows]
+    height, width = pictures[0].shape
+    figure = Figure(figsize=(width / 60, len(rows) * (height / 60 + 0.25)), layout="constrained")
+    axes = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
+    for axis, picture, (title, _) in zip(axes, pictures, rows, strict=True):
+        low, high = np.nanpercentile(picture, (1, 99))
+        axis.imshow(picture, vmin=low, vmax=high, cmap="viridis")
+        axis.axis("off")
+        axis.set_title(title, fontsize=8, loc="left", pad=2)
+    figure.savefig(path, dpi=100)
     return Path(path)
