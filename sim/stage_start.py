@@ -16,6 +16,7 @@ _HANG_Y, _HANG_Z = 1.25, 1.28  # where the gown is held before it is laid [m]
 _PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # neckline's y, z [m]
 _SPEED = 0.25  # [m/s]
 _PINCHED, _INSIDE = 0.03, 0.008  # fingers that took a corner stood so far apart and had it so deep between them [m]
+_FORCE = 30.0  # of the fingers [N]
 # Arms that hold a neckline before the chest: hands 0.62 m ahead, 0.74 m apart and 1.36 m high [rad]
 _ARM = np.array((1.67, -0.10, -2.02, 2.60, 0.40, 0.18, -0.30))
 HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
@@ -94,3 +95,5 @@ def hold_in_hands(cloth: Cloth, grips: list[Grip], hands: np.ndarray, step: Call
         for grip, pose in zip(grips, hands, strict=True):
             grip.handle.follow(pose)
         step()
+    for grip in grips * 20:  # readings are smoothed
+        grip.watch(cloth.vertices(), _FORCE)

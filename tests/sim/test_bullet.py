@@ -100,7 +100,6 @@ def test_stage_b_begins_with_the_gown_in_both_hands():
     world = BulletWorld(seed=2)
     world.prepare_stage("B")
     weight = world.scene.gown.mass * GRAVITY
-    world.clock.wait_until(0.4)
     seen = world.observe()
     assert -seen.wrench_hand_in_map[:, 2].sum() == pytest.approx(weight, rel=0.25)  # it still swings a little
     assert (seen.gripper_opening < 0.01).all()
