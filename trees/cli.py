@@ -40,7 +40,7 @@ def _seed(text: str) -> int:
 
 def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", default="bullet", choices=("bullet", "scripted", "ros1"), help="default: bullet")
-    parser.add_argument("--gown", metavar="NAME", help="which gown (default: the seed decides)")
+    parser.add_argument("--gown", metavar="NAME", help="which gown, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help="which person (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
     parser.add_argument("--stage", metavar="NAME",

@@ -1,10 +1,12 @@
 from dataclasses import replace
 
 import pytest
+from caretree.sim.effects.gown_patch import with_air
 from caretree.sim.errors import CaretreeError
 from caretree.sim.gown import GOWNS
 from caretree.sim.gown_file import GownFile, read_gown, write_gown
 from caretree.sim.scene import draw_scene, named_gown
+from caretree.trees.cli import main
 
 VALUES = {"mass": 0.43, "elastic": 41.0, "bending": 0.12, "damping": 0.004, "friction": 0.4, "air_drag": 0.25}
 HEAD = "format: caretree-gown-1\nbase: light\nparameters:\n"
@@ -58,3 +60,18 @@ def test_a_missing_file_is_told():
         draw_scene(0, gown="nowhere.yaml")
     with pytest.raises(CaretreeError, match="unknown gown 'nowhere'; there are medium, large, light"):
         draw_scene(0, gown="nowhere")
+
+
+def test_a_gown_too_stiff_for_the_room_is_refused_in_one_sentence(tmp_path, capfd):
+    stiff = GownFile(base="light", values={"mass": 0.1, "elastic": 200.0}, intervals={})
+    path = write_gown(tmp_path / "gown.yaml", stiff)
+    assert main(["run", "dressing", "--gown", str(path), "--out", str(tmp_path / "run")]) == 2
+    said = capfd.readouterr().err.splitlines()
+    assert any(line.startswith("caretree: gown 'light (identified)': elastic x dt^2") for line in said)
+    assert not (tmp_path / "run").exists()
+
+
+def test_air_comes_in_through_the_effects_unless_the_model_has_its_own():
+    air = with_air(None, 0.3)
+    assert [(e.name, e.parameters) for e in air.effects] == [("air_drag", {"coefficient": 0.3})]
+    assert with_air(air, 0.7) is air
