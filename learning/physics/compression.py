@@ -6,6 +6,7 @@ import torch
 from torch import nn
 
 CHUNK = 512  # clips at a time
+CLIPS = 1500  # that choose the directions; more change them little and cost more than all the rest of the fit
 
 
 class Compression(nn.Module):
@@ -48,7 +49,7 @@ def fit_compression(frames: torch.Tensor, count: int, seed: int = 0) -> Compress
         seed: of the random projection that finds the directions.
     """
     torch.manual_seed(seed)
-    flat = frames.float().flatten(1)
+    flat = frames[torch.randperm(len(frames))[:CLIPS]].float().flatten(1)
     mean = flat.mean(dim=0)
     flat -= mean
     count = min(count, len(flat) - 1)

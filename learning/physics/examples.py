@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ import torch
 
 from ...sim.errors import CaretreeError
 from ...sim.gown import GownSpec
-from .dataset import Dataset
+from .dataset import Dataset, DatasetSpec, read_index
 from .frames import frames_of
 from .method import Examples
 
@@ -52,13 +53,21 @@ def load_examples(folder: Path, cache: Path, *, partial: bool = False) -> Loaded
         cache: folder that keeps the frames.
         partial: take what is there of an unfinished data set.
     """
-    data = Dataset.load(folder, partial=partial)
-    kept = cache / f"frames-{data.hash}.npy"
+    index = read_index(folder)
+    spec = DatasetSpec(**index["spec"])
+    shards = hashlib.sha256("".join(shard["sha256"] for shard in index["shards"]).encode()).hexdigest()[:16]
+    kept = cache / f"frames-{shards}.npz"
     if not kept.exists():
+        data = Dataset.load(folder, partial=partial)
         cache.mkdir(parents=True, exist_ok=True)
-        part = kept.with_suffix(".part.npy")
-        np.save(part, frames_of(data.depth))
+        part = kept.with_suffix(".part.npz")
+        np.savez(part, frames=frames_of(data.depth), unit=data.unit, class_id=data.class_id, split=data.split,
+                 hash=data.hash)
         os.replace(part, kept)
-    examples = Examples(frames=torch.from_numpy(np.load(kept)), unit=data.unit.astype(float), class_id=data.class_id,
-                        hash=data.hash)
-    return Loaded(kind=data.spec.kind, gown=data.spec.gown, examples=examples, split=data.split)
+    with np.load(kept) as file:
+        examples = Examples(frames=torch.from_numpy(file["frames"]), unit=file["unit"].astype(float),
+                            class_id=file["class_id"], hash=str(file["hash"]))
+        if len(examples) < spec.clips and not partial:
+            raise CaretreeError(f"{folder}: {len(examples)} of {spec.clips} clips are made; make the others, or say "
+                                "--partial")
+        return Loaded(kind=spec.kind, gown=spec.gown, examples=examples, split=file["split"])

@@ -62,7 +62,7 @@ def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bo
         clip: what was seen.
         method: fitted, see weights.py.
         cut: the gown's cut, a name in `GOWNS`: its size is seen before it is hung up, its cloth is not.
-        simulate: whether to correct the answer by simulating it.
+        simulate: whether to correct the answer by simulating it (unless the intervals are not calibrated).
 
     Raises:
         CaretreeError: unknown cut.
@@ -70,6 +70,7 @@ def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bo
     if cut not in GOWNS:
         raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
     camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
+    simulate = simulate and "simulated" in method.widths
     film = Simulator(GOWNS[cut], camera) if simulate else None
     found = method.infer(torch.from_numpy(frames_of(clip.depth[None])), film)
     usual = method.widths["simulated" if simulate else "alone"].after.usual_misfit

@@ -21,7 +21,7 @@ from .method import Examples, Method
 from .prior import Prior, fit_prior
 
 SCORES = 128
-ROUNDS = 4  # steps of the correction
+ROUNDS = 5  # steps of the correction
 
 Film = Callable[[np.ndarray], torch.Tensor]
 """Simulates clips: parameters (N, P) in [0, 1] -> frames (N, T, 2, S, S)."""
@@ -104,8 +104,12 @@ class Inversion(Method):
             frames: (N, T, 2, S, S).
             film: simulates the gown of these clips; None: the process alone.
         """
-        way = "alone" if film is None else "simulated"
-        unit, misfit = self.alone(frames) if film is None else self.simulated(frames, film)
+        if film is None:
+            return self.judged("alone", *self.alone(frames))
+        return self.judged("simulated", *self.simulated(frames, film))
+
+    def judged(self, way: str, unit: np.ndarray, misfit: np.ndarray) -> Estimate:
+        """The prior and intervals added to what `alone` or `simulated` found."""
         widths = self.widths[way]
         unit, _ = self.prior.combine(unit, widths.before.deviation(unit, misfit))
         unit = np.clip(unit, 0.0, 1.0)
@@ -118,11 +122,15 @@ class Inversion(Method):
 
     def calibrate(self, valid: Examples, film: Film | None = None) -> None:
         """Set the widths of the intervals from clips that took no part in the fit."""
-        unit, misfit = self.alone(valid.frames) if film is None else self.simulated(valid.frames, film)
-        before = calibrate(valid.unit, unit, misfit)
+        found = self.alone(valid.frames) if film is None else self.simulated(valid.frames, film)
+        self.set_widths("alone" if film is None else "simulated", valid.unit, *found)
+
+    def set_widths(self, way: str, true: np.ndarray, unit: np.ndarray, misfit: np.ndarray) -> None:
+        """The same from estimates made before: `alone` or `simulated`, (V, P), (V, P), (V,)."""
+        before = calibrate(true, unit, misfit)
         combined, _ = self.prior.combine(unit, before.deviation(unit, misfit, skip_self=True))
-        after = calibrate(valid.unit, np.clip(combined, 0.0, 1.0), misfit)
-        self.widths["alone" if film is None else "simulated"] = Widths(before=before, after=after)
+        after = calibrate(true, np.clip(combined, 0.0, 1.0), misfit)
+        self.widths[way] = Widths(before=before, after=after)
 
 
 def fit_ours(train: Examples, valid: Examples, *, seed: int, shown: tuple[int, ...]) -> Inversion:

@@ -56,8 +56,8 @@ class Study:
         valid = self.data.part("val")
         method = fit_ours(self.data.part("train"), valid, seed=self.seeds[0], shown=SHOWN)
         if self.calibrate:
-            say(f"ours: simulating {self.calibrate} validation clips")
-            method.calibrate(valid.part(np.arange(min(self.calibrate, len(valid)))), Simulator(self.data.gown))
+            some = valid.part(np.arange(min(self.calibrate, len(valid))))
+            method.set_widths("simulated", some.unit, *self._simulated("val", some, self.data, method, say))
         record: dict[str, object] = {
             "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
             "clips": int((self.data.split == "train").sum()), "calibrated_on": self.calibrate,
@@ -102,17 +102,24 @@ class Study:
             if "simulated" not in method.widths or not self.simulate:
                 continue
             some = clips.part(np.arange(min(self.simulate, len(clips))))
-            pieces = []
-            for start in range(0, len(some), PIECE):
-                piece, file = some.part(np.arange(start, min(start + PIECE, len(some)))), f"ours_simulated-{start}"
-                path = self._file(test, file, seed)
-                if not path.exists():
-                    found = method.infer(piece.frames, Simulator(origin.gown))
-                    self._keep(test, file, seed, piece, unit=found.unit, lower=found.lower, upper=found.upper)
-                    say(f"{test}: {start + len(piece)} of {len(some)} clips corrected by simulation")
-                pieces.append(np.load(path))
-            joined = {k: np.concatenate([p[k] for p in pieces]) for k in ("unit", "lower", "upper")}
-            self._keep(test, "ours_simulated", seed, some, **joined)
+            found = method.judged("simulated", *self._simulated(test, some, origin, method, say))
+            self._keep(test, "ours_simulated", seed, some, unit=found.unit, lower=found.lower, upper=found.upper)
+
+    def _simulated(
+        self, test: str, clips: Examples, origin: Loaded, method: Inversion, say: Callable[[str], None]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters and misfits after correction by simulation, kept piece by piece."""
+        pieces = []
+        for start in range(0, len(clips), PIECE):
+            path = self._file(test, f"piece-{start}", self.seeds[0])
+            if not path.exists():
+                piece = clips.part(np.arange(start, min(start + PIECE, len(clips))))
+                unit, misfit = method.simulated(piece.frames, Simulator(origin.gown))
+                self._keep(test, f"piece-{start}", self.seeds[0], piece, unit=unit, misfit=misfit)
+                say(f"{test}: {start + len(piece)} of {len(clips)} clips corrected by simulation")
+            with np.load(path) as file:
+                pieces.append((file["unit"], file["misfit"]))
+        return np.concatenate([unit for unit, _ in pieces]), np.concatenate([misfit for _, misfit in pieces])
 
     def _file(self, test: str, method: str, seed: int) -> Path:
         return self.folder / "predictions" / f"{test}-{method}-{seed}.npz"
@@ -127,7 +134,7 @@ class Study:
     def predictions(self) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
         """Test, method, seed and arrays (`true`, `unit`, and of ours `lower`, `upper`) of all that is kept."""
         for path in sorted((self.folder / "predictions").glob("*.npz")):
-            test, method, *piece, seed = path.stem.split("-")
-            if not piece and "part" not in path.suffixes[0]:
+            test, method, *_, seed = path.stem.split("-")
+            if method != "piece" and len(path.suffixes) == 1:  # no part of a file, and no file cut short
                 with np.load(path) as file:
                     yield test, method, int(seed), dict(file)

@@ -72,12 +72,13 @@ def test_a_study_compares_every_method_on_every_test(study):
 
 def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
     study.run(lambda _: None, ("ours", "random"))
-    kept = {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*simulated-*-0.npz")}
-    assert len(kept) == 3  # pieces of 10 and 1 clips, and of 8
+    kept = {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
+    assert len(kept) == 4  # of 10 for the calibration, 10 and 1, and 8
 
     def again(*_, **__):
         raise AssertionError("nothing is to be fitted again")
 
     monkeypatch.setattr(study_module, "fit_ours", again)
+    monkeypatch.setattr(BlobSimulator, "__call__", again)
     study.run(lambda _: None, ("ours",))
-    assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*simulated-*-0.npz")}
+    assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
