@@ -57,9 +57,11 @@ def sleeve_strap(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpe
     rim = _thinned(cloud[(labels == Surface.ARMHOLE) & (frame.depth > 0)])
     rim = rim[np.linalg.norm(rim - near_in_map, axis=1) < _AROUND]
     gown = cloud[np.isin(labels, GOWN_SURFACES) & (frame.depth > 0)]
+    # a strap folded over, its inside up, is held the other way round: see above what closing means
     normal = surface_normal(gown[np.linalg.norm(gown - between.middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
     return SleeveOpening(stamp=frame.stamp, confidence=min(0.6, between.points / 200), target=SLEEVE_OF[side],
-                         position_in_map=between.middle, approach_in_map=-normal, closing_in_map=between.across,
+                         position_in_map=between.middle, approach_in_map=-normal,
+                         closing_in_map=-between.across if between.inside else between.across,
                          ring_points_in_map=rim, centre_in_map=np.percentile(rim, (5, 95), axis=0).mean(axis=0))
 
 

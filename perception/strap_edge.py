@@ -25,10 +25,18 @@ _FEWEST = 12
 
 
 class Strap(NamedTuple):
-    """Middle of a strap (3,) [m], unit vector across it from the rim to the edge (3,), and how many points it has."""
+    """A strap between its borders.
+
+    Attributes:
+        middle: (3,) [m].
+        across: (3,) unit vector from the rim to the edge.
+        inside: whether it lies with the gown's inside up, folded over.
+        points: how many points of it were seen.
+    """
 
     middle: np.ndarray
     across: np.ndarray
+    inside: bool
     points: int
 
 
@@ -52,7 +60,7 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
     rim = rim[clusters(rim, 0.03) == 0]
     edge = cloud[_edge(frame, labels) & near]
     plain = np.isin(labels, (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR)) & near
-    gown = _thinned(cloud[plain], 4000)
+    gown, sides = _thinned(cloud[plain], 4000), _thinned(labels[plain], 4000)
     if len(edge) < _FEWEST or len(gown) < _FEWEST:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "edge of the gown beside the armhole")
     (to_rim, at_rim), (to_edge, at_edge) = KDTree(rim).query(gown), KDTree(edge).query(gown)
@@ -63,9 +71,9 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
     strip &= (width < _WIDEST) & (span[:, 1] < _HEADWARD * width)
     if strip.sum() < _FEWEST:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "strap between the armhole's rim and the gown's edge")
-    points, span = gown[strip], span[strip] / width[strip, None]
+    points, span, sides = gown[strip], span[strip] / width[strip, None], sides[strip]
     largest = clusters(points, 0.02) == 0
-    points, span = points[largest], span[largest]
+    points, span, sides = points[largest], span[largest], sides[largest]
     navy = _thinned(cloud[(labels == Surface.COLLAR) & near], 500)
     middle = np.median(points, axis=0)
     if len(navy) >= 20:
@@ -73,7 +81,9 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
         middle = np.median(points[off <= np.percentile(off, 25)], axis=0)
     normal = surface_normal(gown[np.linalg.norm(gown - middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
     across = unit(np.median(span, axis=0))
-    return Strap(middle, unit(across - (across @ normal) * normal), len(points))
+    around = sides[np.linalg.norm(points - middle, axis=1) < 0.03]
+    inside = bool((around == Surface.INSIDE).sum() > (around == Surface.OUTSIDE).sum())
+    return Strap(middle, unit(across - (across @ normal) * normal), inside, len(points))
 
 
 def _edge(frame: Frame, labels: np.ndarray) -> np.ndarray:
