@@ -22,16 +22,21 @@ from ..skills.lift_arm import LiftArm
 from ..skills.look_at_person import LookAtPerson
 from ..skills.navigate import Navigate
 from ..skills.ports import Key
+from ..skills.pre_grasp_manipulate import PreGraspManipulate
 from ..skills.present_sleeve import PresentSleeve
 from ..skills.pull_along_arm import PullAlongArm
 from ..skills.raise_corner import RaiseCorner
 from ..skills.reasons import Reason
+from ..skills.release import Release
 from ..skills.release_arm import ReleaseArm
 from ..skills.retreat import Retreat
+from ..skills.segment_and_grasp import SegmentAndGrasp
 from ..skills.spread import Spread
 from ..skills.stretch_neckline import StretchNeckline
 from ..skills.take_corner import TakeCorner
 from ..skills.take_down import TakeDown
+from ..skills.unhook import Unhook
+from ..skills.view_around import ViewAround
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
@@ -52,24 +57,41 @@ def take_down(context: Context) -> Behaviour:
     """Stage A."""
     find_outside = fallback(
         "find the outside",
-        FlipSideCheck("outside to the front", context, hung=True, sure=0.0, seen=Key("rail_side")),
+        FlipSideCheck("outside to the front", context, hung=True, sure=0.0),
         Navigate("go behind the rail", context, goal="rail_back"))
-    hook = Key("hook")
-    return Stage("A take down", None, Timeout("A in time", sequence(
-        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
+    by_both_ends = sequence(
+        "by both ends of the neckline",
         fallback("take both ends of the neckline", take_ends(context, "left"),
                  sequence("the other one first", Retreat("let go of both ends", context), take_ends(context, "right"))),
-        TakeDown("lift it off the hook", context, hook=hook, load=Key("gown_load"))), seconds=200.0))
+        TakeDown("lift it off the hook", context, hook=Key("hook")))
+    return Stage("A take down", None, Timeout("A in time", sequence(
+        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
+        fallback("take it", by_both_ends, from_one_hand(context))), seconds=260.0))
+
+
+def from_one_hand(context: Context) -> Behaviour:
+    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
+    views, holder, former = Key("views"), Key("holder"), Key("former")
+    return sequence(
+        "from one hand",
+        Retreat("let go of the neckline", context),
+        SegmentAndGrasp("take it near the hook", context, side="right"),
+        Unhook("lift it off with one hand", context, side="right"),
+        ViewAround("look at it from all sides", context, side="right", views=views),
+        PreGraspManipulate("take one corner", context, views=views, holder=holder, former=former),
+        Release("let the place near the hook go", context, side=former),
+        ViewAround("look at it again from all sides", context, side=holder, views=views),
+        PreGraspManipulate("take the other corner", context, views=views, nearest=0.3))
 
 
 def take_ends(context: Context, first: Side) -> Behaviour:
     """Both ends of the hung gown's neckline: `first`, the other one, the first again where that was not it."""
     second: Side = "right" if first == "left" else "left"
-    hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key(f"{first}_held")
+    hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key("held")
 
-    def take(corner: Side, name: str, **ports: object) -> Behaviour:
-        return Retry(f"{name}, try", TakeCorner(name, context, hand=HAND_OF[corner], sleeve=corner,
-                                                length=lengths[corner], **ports), attempts=2)
+    def take(corner: Side, name: str, **ports: object) -> TakeCorner:
+        return TakeCorner(f"take the {corner} corner {name}", context, hand=HAND_OF[corner], sleeve=corner,
+                          length=lengths[corner], **ports)
 
     def complete(context: Context) -> bool:
         """Both strips together are as long as a neckline."""
@@ -79,14 +101,14 @@ def take_ends(context: Context, first: Side) -> Behaviour:
         f"the {first} corner was not it",
         Retreat(f"let the {first} one go", context, hands=HAND_OF[first]),
         RaiseCorner(f"draw the {second} corner aside for the {first}", context, hand=HAND_OF[second], hook=hook,
-                    held=Key(f"{second}_held")),
-        take(first, f"take the {first} corner once more", known_hook=hook, held=Key(f"{second}_held")))
+                    held=held),
+        take(first, "once more", known_hook=hook, held=held))
     return sequence(
         f"take the ends, {first} first",
-        take(first, f"take the {first} corner first", hook=hook, opening=0.03),
+        take(first, "first", hook=hook, opening=0.03),
         RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
-        FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3, seen=Key("aside_side")),
-        take(second, f"take the {second} corner second", known_hook=hook, held=held),
+        FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3),
+        Retry(f"the {second} corner, again", take(second, "second", known_hook=hook, held=held), attempts=3),
         fallback(f"is it the neckline, {first} first", Condition(
             f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
 
@@ -96,7 +118,7 @@ def unfold(context: Context) -> Behaviour:
     width = Key("neckline_width")
     return Stage("B unfold", _holds_gown, Timeout("B in time", sequence(
         "unfold and lay", StretchNeckline("stretch the neckline", context, width=width),
-        FlipSideCheck("outside to the robot", context, seen=Key("gown_side"), sure=0.9),
+        FlipSideCheck("outside to the robot", context, sure=0.9),
         LayGown("lay it on the person", context, width=width)), seconds=120.0))
 
 
