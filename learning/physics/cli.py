@@ -14,6 +14,7 @@ COMMANDS = {  # command -> (module with `main(argv) -> int`, argv with the comma
     "sensitivity": (".data_cli", "what a clip shows of each parameter"),
     "train": (".learn_cli", "train a method"),
     "evaluate": (".learn_cli", "errors of each method"),
+    "pictures": (".learn_cli", "t-SNE, box plots and strips of a study"),
     "identify": (".learn_cli", "parameters with intervals from one clip; writes a gown file"),
 }
 

@@ -38,8 +38,8 @@ def scene_gowns() -> dict[str, GownSpec]:
 
 
 def scene_clips() -> dict[str, Clip]:
-    """A clip of each of the scene's gowns."""
-    return {name: film(spec) for name, spec in scene_gowns().items()}
+    """A clip of each of the scene's gowns by PyBullet, not by the engine that the methods learn from."""
+    return {name: film(spec, engine="bullet") for name, spec in scene_gowns().items()}
 
 
 def draw(study: Path, data: Path, out: Path, *, partial: bool = False) -> Iterator[Path]:
