@@ -43,7 +43,7 @@ from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
 # The first sleeve slips back a little while the second is pulled.
 HEAD_END: dict[Side, float] = {"right": -0.22, "left": -0.08}
-SEAT = 0.05
+SEAT: dict[Side, float] = {"right": -0.08, "left": 0.05}
 # How hard a sleeve is drawn on its way to the hand; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
@@ -154,7 +154,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT,
+        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
                      stand=stance(arm, "shoulder")))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
