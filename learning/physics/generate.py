@@ -130,8 +130,10 @@ def _made(folder: Path, spec: DatasetSpec, missing: list[int], jobs: int,
     try:
         ray.init(address=address, num_cpus=jobs if address is None else None, include_dashboard=False,
                  log_to_driver=False, ignore_reinit_error=True)
-    except (ConnectionError, ValueError, RuntimeError) as error:
-        raise CaretreeError(f"no Ray cluster answers at {address}: {str(error).splitlines()[0]}") from error
+    except Exception as error:  # Ray raises bare ones
+        why = (str(error).splitlines() or [type(error).__name__])[0]
+        raise CaretreeError(f"Ray does not start here: {why}" if address is None else
+                            f"no Ray cluster answers at {address}: {why}") from error
     try:
         remote = ray.remote(num_cpus=1, max_retries=3)(make_shard)
         waiting = list(missing)

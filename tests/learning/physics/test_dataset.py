@@ -152,6 +152,8 @@ class FakeRay:
         self.asked = asked
         if asked["address"] == "ray://nobody":
             raise ConnectionError("ray client connection timeout\nand more")
+        if asked["num_cpus"] == 3:
+            raise Exception("The current node timed out during startup.")
 
     def remote(self, **_):
         def wrap(function):
@@ -181,6 +183,8 @@ def test_with_ray_the_bytes_are_the_same(tmp_path, monkeypatch):
     assert Dataset.load(tmp_path / "one").hash == Dataset.load(tmp_path / "many").hash
     with pytest.raises(CaretreeError, match=r"no Ray cluster answers at ray://nobody: ray client connection timeout$"):
         generate.generate(tmp_path / "far", PAPER, address="ray://nobody")
+    with pytest.raises(CaretreeError, match="Ray does not start here: The current node timed out"):
+        generate.generate(tmp_path / "far", PAPER, jobs=3)
 
 
 def test_without_ray_several_jobs_are_refused(tmp_path, monkeypatch):
