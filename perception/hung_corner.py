@@ -22,10 +22,11 @@ NECKLINE = 0.84  # length of an adult gown's neckline that carries its weight, w
 APART = 0.13  # from the hook the neckline has parted into two strips [m]
 LENGTH = (0.21, 0.62)  # of a strip from the hook to its corner, through the air [m]
 HUNG = 0.80  # both strips together where they hang, within 4 cm [m]
-UNSURE = 0.08  # of that length, as the other strip tells it [m]
+UNSURE = 0.085  # of that length, as the other strip tells it [m]
 SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
 TELLS = 0.1  # how clearly that must say which strip it is
 SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
+BLUNT = 0.75  # a strip that ends at its corner keeps this much of its width to the last
 ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
 GAP = 0.025  # points of one strip lie nearer together than this [m]
 POINTS = 25  # a smaller patch is noise
@@ -50,6 +51,7 @@ class Strip:
         length: from the hook to the corner [m].
         armhole: share of what should be seen of the armhole's binding beside it, 0 to 1.
         tells: from -1, the wearer's left strip, to 1, the right one.
+        blunt: width of the last of it, as a share of `width`: a fold that closes cuts a strip to a point.
     """
 
     corner_in_map: np.ndarray
@@ -60,6 +62,7 @@ class Strip:
     length: float
     armhole: float
     tells: float
+    blunt: float
 
 
 def hook(frame: Frame) -> GraspPoint:
@@ -103,7 +106,8 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
     elif other_length is None:
         fits = _first(frame, fits, top, sign)
     else:  # the other strip is drawn aside
-        fits = [strip for strip in fits if strip.armhole > 0.5]
+        fits = [strip for strip in fits if strip.armhole > 0.5
+                or (strip.blunt > BLUNT and strip.width > 0.4 * NARROW and abs(strip.length - length) < UNSURE)]
         if not fits:
             return _grasp(frame, _in_fold(frame, found, top, length), CORNER_OF[side], 0.4)
     if not fits:
@@ -192,8 +196,10 @@ def _strip(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, armhole: np.nd
     low, high = np.percentile(spread, (3, 97))
     corner = middle + high * outward + (float(np.percentile(run, 99)) - float((middle - top) @ along)) * along
     beside = int((np.linalg.norm(armhole - corner, axis=1) < BESIDE).sum())
-    return Strip(corner, np.median(points[run > run.max() - 0.015], axis=0), along, outward, float(high - low),
-                 float(np.linalg.norm(corner - top)), min(1.0, beside / 12), _side(collar, fabric, outside, far))
+    last = points[run > run.max() - 0.015]
+    blunt = float(np.ptp(last @ outward)) / max(float(high - low), 1e-3)
+    return Strip(corner, np.median(last, axis=0), along, outward, float(high - low),
+                 float(np.linalg.norm(corner - top)), min(1.0, beside / 12), _side(collar, fabric, outside, far), blunt)
 
 
 def _side(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, far: np.ndarray) -> float:
