@@ -26,6 +26,7 @@ UNSURE = 0.085  # of that length, as the other strip tells it [m]
 SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
 TELLS = 0.1  # how clearly that must say which strip it is
 SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
+DRAWN = 0.20  # sideways of the hook, what hangs farther out belongs to the strip that is drawn aside [m]
 BLUNT = 0.75  # a strip that ends at its corner keeps this much of its width to the last
 ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
 GAP = 0.025  # points of one strip lie nearer together than this [m]
@@ -105,7 +106,9 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
         fits = [strip for strip in found if np.linalg.norm(strip.corner_in_map - near_in_map) < SAME]
     elif other_length is None:
         fits = _first(frame, fits, top, sign)
-    else:  # the other strip is drawn aside
+    else:  # the other strip is drawn aside, to its own side
+        sideways = sign * frame.pose_camera_in_map[:3, 0]
+        fits = [strip for strip in fits if (strip.corner_in_map - top) @ sideways < DRAWN]
         fits = [strip for strip in fits if strip.armhole > 0.5
                 or (strip.blunt > BLUNT and strip.width > 0.4 * NARROW and abs(strip.length - length) < UNSURE)]
         if not fits:
