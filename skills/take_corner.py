@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +28,9 @@ STAND = 1.0  # before the hook, where both hands turn freely and the camera sees
 NEAR_ENOUGH = 0.04  # of the place to stand [m]
 SETTLE = 0.3  # until the hand stands where it was sent [s]
 SPEED = 0.5  # of the hand until it is near [m/s]
+CLOSES_IN = 1.8  # from the second look until the fingers have closed [s]
+DRIFT = 0.02  # of the corner until then, at most [m]
+CERTAIN = 0.5  # confidence of a corner that was seen, not inferred
 TUG = 0.03  # how far the hand draws what it took, to feel it [m]
 NOISE = 0.08  # of a force reading [N]
 UP = np.array((0.0, 0.0, 1.0))
@@ -83,12 +87,21 @@ class TakeCorner(Skill):
                                      hook_in_map=hook.position_in_map, other_length=self.held)
 
     def _look_again(self, hook: GraspPoint, seen: GraspPoint) -> GraspPoint:
-        """The same corner in a fresh frame: the gown still sways; or as it was where it no longer shows."""
+        """The same corner where it will be when the fingers close: the gown turns and sways slowly.
+
+        As it was where it no longer shows.
+        """
         try:
-            return self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
-                                         hook_in_map=hook.position_in_map, near_in_map=seen.position_in_map)
+            now = self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
+                                        hook_in_map=hook.position_in_map, near_in_map=seen.position_in_map)
         except PerceptionFailure:
             return seen
+        passed = now.stamp - seen.stamp
+        if seen.confidence < CERTAIN or passed < 0.5:
+            return now
+        drift = (now.position_in_map - seen.position_in_map) * CLOSES_IN / passed
+        drift *= min(1.0, DRIFT / max(float(np.linalg.norm(drift)), 1e-6))
+        return replace(now, position_in_map=now.position_in_map + drift)
 
     def _stand(self, hook_in_map: np.ndarray) -> Iterator[None]:
         """Step without turning until the hook is straight ahead."""
@@ -117,8 +130,11 @@ class TakeCorner(Skill):
     def _give_up(self) -> Iterator[None]:
         """Open, draw back, and out of the camera's sight."""
         yield from open_gripper(self, self.hand)
-        yield from back_off(self, self.hand)
-        yield from move_arms(self, model.READY, sides=(self.hand,))
+        for way_back in (back_off(self, self.hand), move_arms(self, model.READY, sides=(self.hand,))):
+            try:
+                yield from way_back
+            except MotionError:  # the other one may do
+                continue
 
     def _tug(self) -> Iterator[None]:
         """Draw a little, up and back; cloth that is held pulls.

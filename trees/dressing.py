@@ -105,7 +105,7 @@ def take_ends(context: Context, first: Side) -> Behaviour:
         take(first, "once more", known_hook=hook, held=held))
     return sequence(
         f"take the ends, {first} first",
-        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.035), attempts=2),
+        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.045), attempts=2),
         RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
         FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3),
         Retry(f"the {second} corner, again", take(second, "second", known_hook=hook, held=held), attempts=3),
