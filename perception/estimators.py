@@ -44,7 +44,6 @@ from .hanging import grasp_near_hang
 from .held_armhole import held_armhole
 from .hung_corner import hook, hung_corner
 from .hung_side import hung_side
-from .hung_sleeve import hung_sleeve
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
 from .sleeve import sleeve_opening
@@ -96,7 +95,7 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hung_sleeve": hung_sleeve, "hook": hook, "hung_corner": hung_corner,
+            "sleeve_opening": sleeve_opening, "hook": hook, "hung_corner": hung_corner,
             "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..perception.estimates import CORNER_OF, SLEEVE_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
+from ..perception.estimates import CORNER_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Frame, Side
 from .context import Context
 
 PLACE = np.array((0.70, 0.0, 1.20))  # of the gown, in base [m]
-ASIDE = 0.18  # of a shoulder from its middle [m]
+ASIDE = 0.18  # of a corner of its neckline from its middle [m]
 
 
 def offer_gown(context: Context) -> None:
@@ -24,9 +24,6 @@ def offer_gown(context: Context) -> None:
         place = base @ np.append(PLACE + (0.0, lateral, 0.0), 1.0)
         return GraspPoint(stamp=frame.stamp, confidence=0.9, target=target, position_in_map=place[:3],
                           approach_in_map=base[:3, 0], closing_in_map=base[:3, 1])
-
-    def shoulder(frame: Frame, side: Side) -> Estimate:
-        return point(frame, SLEEVE_OF[side], ASIDE if side == "right" else -ASIDE)
 
     def hung(frame: Frame, side: Side, **_: Any) -> Estimate:
         return point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE)
@@ -49,7 +46,7 @@ def offer_gown(context: Context) -> None:
     def layers(frame: Frame, side: Side, **_: Any) -> Estimate:
         return LayerCount(stamp=frame.stamp, confidence=0.9, side=side, layers=1)
 
-    for name, estimator in (("hung_sleeve", shoulder), ("hang_point", hang), ("hook", hang), ("hung_corner", hung),
+    for name, estimator in (("hang_point", hang), ("hook", hang), ("hung_corner", hung),
                             ("gown_side", facing), ("hung_side", facing),
                             ("gripped_cloth", held), ("pre_grasp", corner), ("layers", layers)):
         context.perception.offer(name, estimator)
