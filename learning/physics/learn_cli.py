@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from ...sim.errors import CaretreeError
 
-STEPS = 800
+STEPS = 1500
 METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random")
 
 
@@ -45,7 +45,7 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("--method", action="append", default=[], choices=METHODS, help="only this one; may be repeated")
         p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
         p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")
-        p.add_argument("--backbone", default="small", choices=("small", "densenet121"))
+        p.add_argument("--backbone", default="scores", choices=("scores", "small", "densenet121"))
         p.add_argument("--simulate", type=_whole, default=100, metavar="N",
                        help="clips of each test that ours corrects by simulation (default 100, a second each)")
         p.add_argument("--calibrate", type=_whole, default=100, metavar="N",

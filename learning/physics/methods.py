@@ -8,10 +8,8 @@ from pathlib import Path
 
 from .baselines import fit_contrastive_regression, fit_residual_only, fit_supervised
 from .method import Examples, Method
-from .ours import fit_ours
 from .paper_method import fit_paper
-from .parameters import SHOWN
-from .training import Budget, Say
+from .training import Budget
 
 TITLES = {
     "ours": "ours, Gaussian process",
@@ -29,16 +27,15 @@ NETWORKS = {
     "contrastive_regression": fit_contrastive_regression,
     "residual_only": fit_residual_only,
 }
-TRAINED = ("ours", *NETWORKS)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """How a method is fitted.
+    """How the networks are fitted.
 
     Attributes:
         steps: optimiser steps of each phase.
-        backbone: of all methods but ours, which has none.
+        backbone: of these methods; ours has none.
         folder: of checkpoints; one for each seed.
         say: told of progress.
     """
@@ -49,10 +46,7 @@ class Plan:
     say: Callable[[str], None]
 
 
-def fit_method(name: str, train: Examples, valid: Examples, plan: Plan, seed: int) -> Method:
-    """A fitted method; trainings that the folder holds already are taken up where they ended."""
-    folder = plan.folder / f"seed{seed}"
-    say: Say = plan.say
-    if name == "ours":
-        return fit_ours(train, valid, seed=seed, shown=SHOWN)
-    return NETWORKS[name](train, Budget(steps=plan.steps), seed=seed, folder=folder, backbone=plan.backbone, say=say)
+def fit_network(name: str, train: Examples, plan: Plan, seed: int) -> Method:
+    """A fitted method of `NETWORKS`; trainings that the folder holds already are taken up where they ended."""
+    return NETWORKS[name](train, Budget(steps=plan.steps), seed=seed, folder=plan.folder / f"seed{seed}",
+                          backbone=plan.backbone, say=plan.say)

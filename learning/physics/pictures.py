@@ -83,13 +83,16 @@ def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path
 
     from .paper_method import fit_paper
 
-    train = loaded.part("train")
+    plan = Plan(steps=results["steps"], backbone=results["backbone"], folder=study, say=lambda _: None)
+    view = Study(data=loaded, tests={}, plan=plan, seeds=(0,)).view()
+    train = view(loaded.part("train"))
     method = fit_paper(train, Budget(steps=results["steps"]), seed=results["seeds"][0], say=lambda _: None,
                        folder=study / f"seed{results['seeds'][0]}", backbone=results["backbone"])
     some = train.part(np.flatnonzero(train.class_id < CLASSES)[:CLIPS])
     depth = np.array([clip.depth for clip in scene_clips().values()])
     stars = np.array([to_unit(spec) for spec in scene_gowns().values()])
-    seen = embed(method.embedding, torch.cat([some.frames, torch.from_numpy(frames_of(depth))])).numpy()
+    own = view(replace(some, frames=torch.from_numpy(frames_of(depth))))
+    seen = embed(method.embedding, torch.cat([some.frames, own.frames])).numpy()
     figure = Figure(figsize=(8.4, 4.0))
     for axis, points, title in zip(figure.subplots(1, 2), (np.vstack([some.unit, stars]), seen),
                                    ("parameters", "embedding of the paper's method"), strict=True):  # fmt: skip

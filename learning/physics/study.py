@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from .compression import fit_compression
 from .examples import Loaded
 from .method import Examples
-from .methods import NETWORKS, Plan, fit_method
-from .ours import Inversion, fit_ours
+from .methods import NETWORKS, Plan, fit_network
+from .ours import SCORES, Inversion, fit_ours
 from .parameters import SHOWN, values_to_unit
 from .simulator import Simulator
+from .training import machine
 from .untrained import ManualTuning, RandomParameters, settings
 from .weights import load_weights, save_weights
 
@@ -46,23 +48,32 @@ class Study:
         """Of weights and predictions."""
         return self.plan.folder
 
+    def view(self) -> Callable[[Examples], Examples]:
+        """What the networks are given of clips: frames, or scores where that is the backbone."""
+        if self.plan.backbone != "scores":
+            return lambda clips: clips
+        compression = fit_compression(self.data.part("train").frames, SCORES)
+        return lambda clips: replace(clips, frames=compression(clips.frames))
+
     def ours(self, say: Callable[[str], None]) -> Inversion:
         """Our method, fitted and calibrated, or as it was left in the folder."""
         path = self.folder / "ours.safetensors"
+        valid, method, calibrated_on = self.data.part("val"), None, 0
         if path.exists():
-            method, record = load_weights(path)
-            if record["data"] == self.data.examples.hash and record["calibrated_on"] == self.calibrate:
-                return method
-        valid = self.data.part("val")
-        method = fit_ours(self.data.part("train"), valid, seed=self.seeds[0], shown=SHOWN)
+            kept, record = load_weights(path)
+            if record["data"] == self.data.examples.hash:
+                method, calibrated_on = kept, record["calibrated_on"]
+        if method is None:
+            method = fit_ours(self.data.part("train"), valid, seed=self.seeds[0], shown=SHOWN)
+        elif calibrated_on == self.calibrate:
+            return method
         if self.calibrate:
             some = valid.part(np.arange(min(self.calibrate, len(valid))))
             method.set_widths("simulated", some.unit, *self._simulated("val", some, self.data, method, say))
-        record: dict[str, object] = {
+        save_weights(method, path, {
             "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
-            "clips": int((self.data.split == "train").sum()), "calibrated_on": self.calibrate,
-        }  # fmt: skip
-        save_weights(method, path, record)
+            "clips": int((self.data.split == "train").sum()), "calibrated_on": self.calibrate, "machine": machine(),
+        })  # fmt: skip
         return method
 
     def test_sets(self) -> Iterator[tuple[str, Examples, Loaded]]:
@@ -75,12 +86,15 @@ class Study:
         """Make all predictions that are missing, of all methods or of the named ones."""
         sets = list(self.test_sets())
         wanted = lambda name: not only or name in only  # noqa: E731
-        for seed in self.seeds:
-            for name in NETWORKS:
-                if wanted(name) and any(not self._file(t, name, seed).exists() for t, _, _ in sets):
-                    method = fit_method(name, self.data.part("train"), self.data.part("val"), self.plan, seed)
-                    for test, clips, _ in sets:
-                        self._keep(test, name, seed, clips, unit=method.estimate(clips.frames))
+        todo = [(seed, name) for seed in self.seeds for name in NETWORKS if wanted(name)
+                and any(not self._file(t, name, seed).exists() for t, _, _ in sets)]
+        if todo:
+            view = self.view()
+            train, seen = view(self.data.part("train")), [(test, view(clips)) for test, clips, _ in sets]
+            for seed, name in todo:
+                method = fit_network(name, train, self.plan, seed)
+                for test, clips in seen:
+                    self._keep(test, name, seed, clips, unit=method.estimate(clips.frames))
         first = self.seeds[0]
         if wanted("random"):
             for seed in self.seeds:

@@ -41,6 +41,12 @@ def test_densenet_layers_see_all_before_them():
     assert inputs == [8, 12, 8, 12]
 
 
+def test_scores_are_embedded_without_frames():
+    torch.manual_seed(0)
+    network = ClipEmbedding("scores", size=9, embedding=4)
+    assert network(torch.rand(5, 9)).shape == (5, 4)
+
+
 def test_unknown_backbone_lists_the_known():
-    with pytest.raises(CaretreeError, match=r"resnet.*small, densenet121"):
+    with pytest.raises(CaretreeError, match=r"resnet.*scores, small, densenet121"):
         ClipEmbedding("resnet")

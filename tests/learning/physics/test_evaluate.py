@@ -45,13 +45,13 @@ class BlobSimulator:
         return blob_frames(unit)
 
 
-@pytest.fixture
-def study(tmp_path, small_gown, monkeypatch):
+@pytest.fixture(params=["scores", "small"])
+def study(tmp_path, small_gown, monkeypatch, request):
     monkeypatch.setattr(study_module, "Simulator", BlobSimulator)
     split = np.array(["train", "train", "train", "val", "test"])
     data = Loaded(kind="uniform", gown=small_gown, examples=blobs(60, parameters=6), split=np.resize(split, 60))
     other = Loaded(kind="heldout_gown", gown=small_gown, examples=blobs(8, 6, seed=5), split=np.full(8, "test"))
-    plan = Plan(steps=3, backbone="small", folder=tmp_path, say=lambda _: None)
+    plan = Plan(steps=3, backbone=request.param, folder=tmp_path, say=lambda _: None)
     return Study(data=data, tests={other.kind: other}, plan=plan, seeds=(0, 1), simulate=11, calibrate=10)
 
 
