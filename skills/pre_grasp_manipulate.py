@@ -18,7 +18,7 @@ from .hands import cloth_load, hand_now, move_hands, open_gripper
 from .motion.errors import MotionError, Unreachable
 from .pinch import back_off, grasp_poses, pinch, reach_in
 from .ports import Input, Output
-from .present import present
+from .present import RANGE, present
 from .reasons import Reason, SkillFailure
 from .scripted_gown import offer_gown
 from .skill import Skill
@@ -106,7 +106,7 @@ class PreGraspManipulate(Skill):
     def _angle(self, pose: np.ndarray) -> float:
         """By how much a presented hand is turned at a pose (4, 4) in the map [rad]."""
         angle = np.arctan2(-pose[0, 1], pose[1, 1]) - self.world.observe().pose_base_in_map[2]
-        return float((angle + np.pi) % (2 * np.pi) - np.pi)
+        return float(np.clip((angle + np.pi) % (2 * np.pi) - np.pi, -RANGE, RANGE))
 
     def _towards(self, hand: Side, views: Views, chosen: PreGrasp) -> PreGrasp:
         """The same with the approach turned to where the hand reaches in between the fewest sheets.
