@@ -112,6 +112,23 @@ CATALOGUE: dict[str, DataSet] = {
             ),
         ),
         DataSet(
+            name="knit_uniaxial",
+            what="knitted fabrics pulled to 30 N, four fabrics with four pulls each",
+            licence="MIT",
+            files=_github(
+                *_KNIT,
+                [
+                    (f"outputData_{fabric}.h5", f"data/uniaxial_experiments/experimentData/outputData_{fabric}.h5", sha)
+                    for fabric, sha in (
+                        ("Acrylic Yarn Garter Y", "51c6a640820bb494"),
+                        ("Acrylic Yarn Stockinette Y", "f414a7cf96dd9654"),
+                        ("Pearlized Cotton Rib Y", "a9e7d0c9540c624a"),
+                        ("Pearlized Cotton Stockinette Y", "9779b094cc1c6384"),
+                    )
+                ],
+            ),
+        ),
+        DataSet(
             name="dfki_double_pendulum",
             what="two-joint pendulum, 500 Hz, two runs",
             licence="BSD-3-Clause",

@@ -1,4 +1,4 @@
-"""`caretree gap`: find, name, add, show, run, fetch and bench."""
+"""`caretree gap`: find, name, add, show, run, fetch, record and bench."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def parser() -> argparse.ArgumentParser:
         description="Find where simulation and measurement disagree, name the "
         "missing effect, add it to the model and show that the gap shrinks.",
     )
-    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|fetch|bench")
+    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|fetch|record|bench")
     for command, text in (
         ("run", "the whole workflow: report.html, verdict.json, model.yaml"),
         ("find", "first step: where model and measurement disagree beyond noise"),
@@ -36,6 +36,13 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("name", help="data set, or `list`")
     p.add_argument("--out", help="folder for the measurement set")
     p.add_argument("--data", help="folder that already holds the data sets (else they are downloaded)")
+    p = sub.add_parser("record", help="record a measurement set from the dressing world's gown")
+    p.add_argument("--gown", default="light", help="name of a gown, or path of a gown file (default light)")
+    p.add_argument("--model", help="model.yaml whose effects act while recording")
+    p.add_argument("--out", required=True, help="folder for the measurement set")
+    p.add_argument("--seed", type=int, default=0, help="of the markers' noise (default 0)")
+    p.add_argument("--duration", type=float, default=1.2, help="of each recording in seconds (default 1.2)")
+    p.add_argument("--noise", type=float, default=0.001, help="of the markers in metres (default 0.001)")
     p = sub.add_parser("bench", help="the blind benchmark, scored")
     p.add_argument("--system", default="axis,arm,fall", help="comma-separated (default axis,arm,fall)")
     p.add_argument("--seeds", default="0:200", help="first:last (default 0:200)")
@@ -81,6 +88,12 @@ def _dispatch(args: argparse.Namespace) -> int:
         from .catalogue import fetch
 
         return fetch(args.name, args.out, args.data, print)
+    if args.command == "record":
+        from .record import record
+
+        for file in record(args.gown, args.model, Path(args.out), args.seed, args.duration, args.noise):
+            print(file)
+        return 0
     if args.command == "bench":
         from .bench.run import run
 

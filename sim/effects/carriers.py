@@ -21,13 +21,17 @@ RADIUS = 0.004  # [m] of the sphere, which collides with nothing
 
 
 def spread_vertices(vertices: np.ndarray, count: int, avoid: set[int]) -> np.ndarray:
-    """Vertices far from each other (farthest point sampling), never one of `avoid`, (count,)."""
+    """Vertices far from each other (farthest point sampling), never one of `avoid`, (count,).
+
+    Grids are full of equal distances; rounding lets the lower number win, so that a mesh moved, turned or read from a
+    file gets the same ones.
+    """
     free = np.array([i for i in range(len(vertices)) if i not in avoid])
     points = vertices[free]
-    first = int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))
+    first = int(np.argmin(np.round(np.linalg.norm(points - points.mean(axis=0), axis=1), 5)))
     chosen, away = [first], np.linalg.norm(points - points[first], axis=1)
     while len(chosen) < min(count, len(free)):
-        k = int(np.argmax(away))
+        k = int(np.argmax(np.round(away, 5)))
         chosen.append(k)
         away = np.minimum(away, np.linalg.norm(points - points[k], axis=1))
     return free[chosen]

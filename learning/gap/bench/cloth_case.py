@@ -170,7 +170,7 @@ def _sized(rng, name, size, vertices, duration, noise, scene, parsed):
             "z": float(place[2]),
             "radius": 0.12,
         },
-        "strain_stiffening": lambda s: {"stiffness": 20.0 * s, "onset": 0.03},
+        "strain_stiffening": lambda s: {"stiffness": 20.0 * s, "onset": 0.01 + 0.05 * float(direction[0] ** 2)},
         "contact_friction": lambda s: {"change": float(min(0.3 * s, 2.0))},
         "adhesion": lambda s: {"pressure": 5.0 * s},
         "snag": lambda s: {

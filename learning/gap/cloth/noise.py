@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import chi2, norm
+
+MATERIAL_LOAD = 0.02  # of the load's range
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,3 +64,24 @@ def memory(residuals: list[np.ndarray]) -> float:
         running += 2.0 * sum(float(np.sum(r[k:] * r[:-k])) for r in residuals) / zero
         best = max(best, running)
     return best
+
+
+def load_misfit(residuals: list[np.ndarray], loads: list[np.ndarray | None], markers: int) -> float:
+    """P-value of the load at the first pin being right; 1 where none was measured or the error is immaterial.
+
+    Args:
+        residuals: (T, 3 M + 3) per episode where a load was measured.
+        loads: (T, 3) measured [N] per episode, or None.
+        markers: M.
+    """
+    given = [(r[:, 3 * markers :], load) for r, load in zip(residuals, loads, strict=True) if load is not None]
+    if not given:
+        return 1.0
+    error = float(np.mean([np.mean(r**2) for r, _ in given]))
+    # what second differences leave is noise of the cell; what is slower is the model's
+    noise = float(np.mean([np.mean(np.diff(r, 2, axis=0) ** 2) / 6.0 for r, _ in given])) + 1e-12
+    if error < (MATERIAL_LOAD * max(float(np.ptp(load)) for _, load in given)) ** 2:
+        return 1.0
+    parts = [r for r, _ in given]
+    worth = max(sum(r.size for r in parts) / memory(parts), 1.0)
+    return float(chi2.sf(worth * error / noise, worth))

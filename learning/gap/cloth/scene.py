@@ -25,7 +25,11 @@ STABLE = 0.7  # elastic * dt^2 / vertex mass above which explicit springs explod
 
 @dataclass(frozen=True, kw_only=True)
 class Physics:
-    """Parameters of the soft body, SI."""
+    """Parameters of the soft body, SI.
+
+    per_second: units of time in a second of the world that is simulated; 1 is plain SI.  A solver's tolerances are in
+    its own units, so a recording from a world with another unit is predicted in that unit.
+    """
 
     mass: float
     elastic_stiffness: float
@@ -34,6 +38,7 @@ class Physics:
     friction: float
     gravity: tuple[float, float, float]
     time_step: float
+    per_second: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,7 +133,10 @@ def _physics(file: Path, given: dict[str, Any], count: int) -> Physics:
     limit = np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9))
     while step > limit:  # explicit springs explode above this
         step /= 2.0
-    return Physics(**values, gravity=g, time_step=step)
+    unit = given.get("per_second", 1.0)
+    if isinstance(unit, bool) or not isinstance(unit, int | float) or not 1.0 <= unit <= 1e6:
+        raise GapError(f"{file}: physics.per_second is {unit!r}, a number from 1 to 1000000 is needed")
+    return Physics(**values, gravity=g, time_step=step, per_second=float(unit))
 
 
 def _capsules(file: Path, listed: list) -> np.ndarray:

@@ -12,7 +12,7 @@ from ....sim.effects.carriers import spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .candidates import Candidate, candidates
 from .fitting import ClothFit, ClothFitter, ClothModel, Free
-from .noise import Coherence, coherence, memory, neighbours
+from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .scene import ClothEpisode, ClothScene
 from .simulate import Simulator
 
@@ -77,7 +77,10 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     fit, rivals = start, {}
     worth = rows / memory(plain.residuals)
     after = before
-    while len(chosen) < MOST and after.p_value < 0.01 and after.shared > 0.03 * after.floor**2:
+    loads = [e.load for e in episodes]
+    while len(chosen) < MOST and (
+        (after.p_value < 0.01 and after.shared > 0.03 * after.floor**2) or load_misfit(fit.residuals, loads, m) < 0.01
+    ):
         pool = candidates(scene, episodes, fit.residuals)
         taken = {c.name for c in chosen}
         pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]
@@ -218,6 +221,10 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
         steps = {**_steps(chosen), ("snag", "t0"): 0.15, ("snag", "t1"): 0.15}
         timed = fitter.fit(replace(fit.model, free=free), steps, rounds=4)
         fit = replace(timed, model=replace(timed.model, free=fit.model.free))
+    if last.name == "strain_stiffening":  # from which stretch on
+        free = (*fit.model.free, ("strain_stiffening", "onset"))
+        bent = fitter.fit(replace(fit.model, free=free), {**_steps(chosen), ("strain_stiffening", "onset"): 0.02}, 4)
+        fit = replace(bent, model=replace(bent.model, free=fit.model.free))
     if last.name == "added_mass":
         entry = next(e for e in fit.model.effects if e.name == last.name)
         for factor in (0.5, 0.7, 1.4):

@@ -22,6 +22,7 @@ from .scene import ClothEpisode, ClothScene
 
 MARGIN = 0.006  # collision margin [m]
 HAND = 0.2  # mass of the body that drags a pin along [kg]
+PULL = 200.0  # most that may drag it [N]
 
 
 class Simulator:
@@ -162,14 +163,14 @@ def dense(
     scene: ClothScene, episode: ClothEpisode, effects: tuple[EffectEntry, ...], physics: dict[str, float]
 ) -> np.ndarray:
     """One run sampled about twice as often as measured: (N, 1 + 3 M + 3) time, markers, load."""
-    client = _Client()
+    client = QuietClient()
     try:
         return _run(client, scene, episode, effects, physics)
     finally:
         client.disconnect()
 
 
-class _Client:
+class QuietClient:
     """One pybullet connection; BulletClient prints its arguments when it connects."""
 
     def __init__(self) -> None:
@@ -196,12 +197,15 @@ def _run(
         ClothSettings(friction=ph["friction"], gravity=tuple(ph["gravity"])),
         pinned=pinned,
         capsules=scene.capsules,
+        per_second=ph["per_second"],
     )
     p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
-    p.setGravity(*patch.settings.gravity)
-    dt = ph["time_step"]
+    dt, unit = ph["time_step"], ph["per_second"]
+    p.setGravity(*(g / unit**2 for g in patch.settings.gravity))
     p.setPhysicsEngineParameter(numSubSteps=0)
-    p.setTimeStep(dt)
+    if unit != 1.0:  # as the dressing world sets its solver
+        p.setPhysicsEngineParameter(numSolverIterations=10, solverResidualThreshold=1e-7 / unit**2)
+    p.setTimeStep(dt * unit)
     for c in scene.capsules:
         _capsule(p, c)
     with tempfile.TemporaryDirectory() as folder:
@@ -212,17 +216,19 @@ def _run(
             useMassSpring=1,
             useBendingSprings=1,
             useNeoHookean=0,
-            springElasticStiffness=ph["elastic_stiffness"],
-            springDampingStiffness=ph["damping_stiffness"],
+            springElasticStiffness=ph["elastic_stiffness"] / unit**2,
+            springDampingStiffness=ph["damping_stiffness"] / unit,
             springDampingAllDirections=1,
-            springBendingStiffness=ph["bending_stiffness"],
+            springBendingStiffness=ph["bending_stiffness"] / unit**2,
             useSelfCollision=0,
             frictionCoeff=patch.settings.friction,
             collisionMargin=MARGIN,
         )
+    if unit != 1.0:  # in small units of time everything is slow enough to fall asleep
+        p.changeDynamics(cloth, -1, activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING)
     patch.attach(p, cloth)
     held: list[dict[str, Any] | None] = [
-        _hold(p, cloth, pin, scene, k == 0 and episode.load is not None, ph["mass"])
+        _hold(p, cloth, pin, scene, k == 0 and episode.load is not None, ph["mass"], PULL / unit**2)
         for k, pin in enumerate(episode.pins)
     ]
     release = [pin.release_t for pin in episode.pins]
@@ -242,21 +248,24 @@ def _run(
                 held[j] = hold = None
             if hold is not None and hold["drive"] is not None and pin.path is not None:
                 at = hold["start"] + np.array([np.interp(t, pin.path[:, 0], pin.path[:, a]) for a in (1, 2, 3)])
-                p.changeConstraint(hold["drive"], at.tolist(), maxForce=200.0)
+                p.changeConstraint(hold["drive"], at.tolist(), maxForce=PULL / unit**2)
         patch.apply(t)
         p.stepSimulation()
         if (k + 1) % every == 0 or k == steps - 1:
             mesh = np.array(p.getMeshData(cloth, -1, flags=p.MESH_DATA_SIMULATION_MESH)[1])
             times.append((k + 1) * dt)
             markers.append(mesh[ids])
-            loads.append(_load(p, held[0], patch.settings.gravity) if held and held[0] is not None else np.zeros(3))
+            first = held[0] if held else None
+            loads.append(np.zeros(3) if first is None else _load(p, first, patch.settings.gravity, unit))
     grid, path = np.array(times), np.array(markers)
     loads[0] = loads[1]
     out = np.column_stack([grid, path.reshape(len(grid), -1), np.array(loads)])
     return np.clip(np.nan_to_num(out, nan=50.0), -50.0, 50.0)  # a blown-up run must lose, not crash
 
 
-def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float) -> dict[str, Any]:
+def _hold(
+    p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float, pull: float
+) -> dict[str, Any]:
     """Pin vertices: to the world where they never move, else to a body that is dragged along."""
     start = scene.vertices[list(pin.vertices)].mean(axis=0)
     mass = total * len(pin.vertices) / len(scene.vertices)
@@ -275,16 +284,16 @@ def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total
         body, -1, linearDamping=0.0, angularDamping=0.0, activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING
     )
     drive = p.createConstraint(body, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], start.tolist())
-    p.changeConstraint(drive, start.tolist(), maxForce=200.0)
+    p.changeConstraint(drive, start.tolist(), maxForce=pull)
     anchors = [p.createSoftBodyAnchor(cloth, int(i), body, -1) for i in pin.vertices]
     return {"anchors": anchors, "drive": drive, "start": start, "mass": mass}
 
 
-def _load(p: Any, hold: dict[str, Any], gravity: tuple[float, float, float]) -> np.ndarray:
+def _load(p: Any, hold: dict[str, Any], gravity: tuple[float, float, float], unit: float) -> np.ndarray:
     """Force the cloth exerts on the first pin's body, own weight removed (3,) [N]."""
     if hold["drive"] is None:
         return np.zeros(3)
-    force = np.array(p.getConstraintState(hold["drive"])[:3])
+    force = np.array(p.getConstraintState(hold["drive"])[:3]) * unit**2
     # the constraint feels the free part of the cloth; the pinned vertices' own weight is carried too
     return -(force + HAND * np.array(gravity)) + hold["mass"] * np.array(gravity)
 

@@ -17,7 +17,7 @@ from ..regions import phase_of, scan
 from ..study import Study
 from .experiment import separating
 from .fitting import ClothFitter, ClothModel, predict, scaled
-from .noise import coherence, neighbours
+from .noise import coherence, load_misfit, neighbours
 from .scene import ClothEpisode, ClothScene, read_scene
 from .search import ClothSearch, search
 from .simulate import Simulator
@@ -79,7 +79,12 @@ class ClothStudy(Study):
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
         f = self.found
-        p = f.before.p_value if self.verdict != "adequate" else max(f.before.p_value, self.alpha)
+        p = f.before.p_value
+        if self.fitted[0].load is not None:
+            off = load_misfit(f.plain.residuals, [e.load for e in self.fitted], len(self.scene.markers))
+            p = min(p, off)
+        if self.verdict == "adequate":
+            p = max(p, self.alpha)
         return p, "what neighbouring markers do not share", tuple(self._places())
 
     def _places(self) -> list[Where]:

@@ -22,6 +22,7 @@ IMPOSSIBLE = ({"quadratic_drag", "wind"}, {"buoyancy", "gain_error"})
 PLAUSIBLE = {"gain_error": ("fraction", 0.0, 0.03), "buoyancy": ("fraction", 0.0, 0.03), "wind": ("speed", 0.0, 3.0)}
 ALPHA = 0.05
 FITTED = 1.3
+FORESEEN = 6.0  # what it is worth that a value was known before the drops were seen
 MATERIAL = 0.15  # an effect's own part over the noise, root mean square
 
 
@@ -94,12 +95,17 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     for fit in fits:
         instants = {"together": 0, "late": 1, "free": len(drops)}[fit.mode]
         score = worth * np.log(max(fit.rss, 1e-12) / rows) + price * (len(fit.theta) + instants)
-        score += implausibility(fit, mass, diameter)
+        score += implausibility(fit, mass, diameter) - foreseen(fit.names, mass, diameter)
         candidates.append(Candidate(fit=fit, score=float(score)))
     candidates.sort(key=lambda c: c.score)
     return DropSearch(
         candidates=tuple(candidates), widening=widening, price=price, floor=float(np.sqrt(floor2)), rows=rows
     )
+
+
+def foreseen(names: tuple[str, ...], mass: float | None, diameter: float | None) -> float:
+    """Discount on the price of effects whose value size and mass foretell: such a fit could not bend as it likes."""
+    return FORESEEN if "buoyancy" in names and mass and diameter else 0.0
 
 
 def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> float:
