@@ -128,8 +128,10 @@ def _made(folder: Path, spec: DatasetSpec, missing: list[int], jobs: int,
     except ImportError as error:
         raise CaretreeError("more than one job needs Ray: pip install 'caretree[learn]'") from error
     try:
-        ray.init(address=address, num_cpus=jobs if address is None else None, include_dashboard=False,
-                 log_to_driver=False, ignore_reinit_error=True)
+        if address is None:  # this machine alone: its loopback, whatever its network looks like
+            ray.init(num_cpus=jobs, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1")
+        else:
+            ray.init(address=address)
     except Exception as error:  # Ray raises bare ones
         why = (str(error).splitlines() or [type(error).__name__])[0]
         raise CaretreeError(f"Ray does not start here: {why}" if address is None else
