@@ -2,8 +2,8 @@
 
 All scales are logarithmic: every law in the gown is a product of a parameter with something else, so a clip answers
 to the ratio of two values and not to their difference, and the error is told in per cent.  On a linear scale the
-lowest tenth of the range would hold a factor of six, and the upper half only a factor of two that hardly shows
-(`docs/garment-physics.md` has both measured).
+lowest tenth of the range would hold a factor of six, and the upper half only a factor of two.  What a clip shows on
+these scales is measured in `docs/garment-physics.md`.
 
 The ranges run from a tenth to five times the base value, but for two: a gown above 0.9 kg or with springs below
 18 N/m stretches so far under its own weight (edges at the held vertices to three times their length) that it hangs
