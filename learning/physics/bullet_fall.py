@@ -27,7 +27,7 @@ from .clip_world import CLAMP_MASS, cut_of, steps_per_frame
 
 
 class _Client:
-    """A PyBullet connection that loads cloth with `options` changed.  (BulletClient prints when it connects.)"""
+    """A PyBullet connection that loads cloth with `options` changed; unlike BulletClient it does not print."""
 
     def __init__(self, options: Mapping[str, Any]) -> None:
         import pybullet
