@@ -16,23 +16,27 @@ from .reasons import Reason, SkillFailure
 from .scripted_gown import offer_gown
 from .skill import Skill
 
-RISE = 0.16  # of the hand above the hook [m]
-AWAY = np.deg2rad(30.0)  # from sideways towards the far side of the rail: the other half turns to the robot [rad]
+BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
+AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
 SLACK = 0.95  # of the corner's distance from the hook is used: the hook may not pull at the hand
 
 
 class RaiseCorner(Skill):
     """Carries a corner to the side and above the hook, the neckline all but straight.
 
-    Inputs: `hand` that holds it; `hook`; `weight` that it must then carry [N].  Outputs: `held`, the length of the
-    neckline from the hook to the hand [m].
+    Inputs: `hand` that holds it; `hook`; `away`, how far behind the rail [rad]; `weight` that it must carry in the end
+    [N]; `heavy`, more than one corner weighs before it is above the hook: then folds behind it were taken too [N].
+    Outputs: `held`, the length of the neckline from the hook to the hand [m].
     """
 
     hand = Input(Side)
     hook = Input(GraspPoint)
+    away = Input(float, default=AWAY)
     weight = Input(float, default=0.8)
+    heavy = Input(float, default=2.6)
     held = Output(float)
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED,
+               Reason.MULTI_LAYER)
 
     def steps(self) -> Iterator[None]:
         """Draw, weigh."""
@@ -42,11 +46,17 @@ class RaiseCorner(Skill):
         hook = self.hook.position_in_map
         length = float(np.linalg.norm(pose[:3, 3] - hook))
         sideways = base[:, 1] if self.hand == "left" else -base[:, 1]
-        level = np.sqrt(max((SLACK * length) ** 2 - RISE**2, 0.01))
-        pose[:3, 3] = hook + level * (np.cos(AWAY) * sideways + np.sin(AWAY) * base[:, 0]) + RISE * base[:, 2]
-        yield from move_hands(self, {self.hand: pose}, speed=0.25, free="any", way="either")
-        yield from self.wait(1.0)  # the gown swings out
-        carried = -float(cloth_load(self, self.hand)[2])
+        hangs, carried = bool(pose[2, 3] < hook[2]), 0.0
+        aside = np.cos(self.away) * sideways + np.sin(self.away) * base[:, 0]
+        for rise in (BELOW, RISE) if hangs else (RISE,):
+            level = np.sqrt(max(((SLACK if hangs else 1.0) * length) ** 2 - rise**2, 0.01))
+            pose[:3, 3] = hook + level * aside + rise * base[:, 2]
+            yield from move_hands(self, {self.hand: pose}, speed=0.3, free="any", way="either")
+            yield from self.wait(1.0 if rise > 0.0 else 0.2)  # the gown swings out
+            carried = -float(cloth_load(self, self.hand)[2])
+            if rise < 0.0 and carried > self.heavy:
+                raise SkillFailure(Reason.MULTI_LAYER, f"the {self.hand} hand carries {carried:.1f} N below the hook")
+            self.note(f"draws the corner aside, {carried:.1f} N")
         if carried < self.weight:
             raise SkillFailure(Reason.GRASP_MISSED, f"the {self.hand} hand carries {carried:.1f} N")
         self.held = length

@@ -43,7 +43,9 @@ class TakeCorner(Skill):
     the first.
 
     Inputs: `hand`; `sleeve`, the wearer's side; `known_hook`, where it hangs, and `held` [m], for the second corner;
-    `opening` of the fingers on the way in [m]; `force` [N]; `feel`, the least load that a tug of 3 cm must bring [N].
+    `opening` of the fingers on the way in and `depth` of their tips beyond the corner [m]; `force` [N]; `feel`, the
+    least load that a tug of 3 cm must bring [N].
+
     Outputs: `hook`; `length` from it to the corner [m].
     """
 
@@ -52,6 +54,7 @@ class TakeCorner(Skill):
     known_hook = Input(GraspPoint, default=None)
     held = Input(float, default=None)
     opening = Input(float, default=0.05)
+    depth = Input(float, default=DEPTH)
     force = Input(float, default=30.0)
     feel = Input(float, default=0.06)
     hook = Output(GraspPoint)
@@ -71,7 +74,7 @@ class TakeCorner(Skill):
         approach = yield from self._come_near(seen)
         seen = self._look_again(hook, seen)
         yield from reach_in(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
-                            opening=self.opening, depth=DEPTH)
+                            opening=self.opening, depth=self.depth)
         yield from self.wait(SETTLE)
         try:
             yield from close_gripper(self, self.hand, force=self.force)
@@ -118,7 +121,7 @@ class TakeCorner(Skill):
             approach = turn @ seen.approach_in_map
             try:
                 before, _ = grasp_poses(self, self.hand, seen.position_in_map, approach, np.cross(approach, UP),
-                                        depth=DEPTH)
+                                        depth=self.depth)
                 self.world.send(GripperOpening(side=self.hand, opening=self.opening), retreat=True)
                 yield from move_hands(self, {self.hand: before}, speed=SPEED, way="any")
                 return approach

@@ -50,6 +50,7 @@ SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle 
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 HAND_OF: dict[Side, Side] = {"left": "right", "right": "left"}  # the outside faces the robot: corners are mirrored
 NECKLINE = 0.80  # both strips of a hung gown's neckline together, within 4 cm [m]
+FARTHER_ROUND = float(np.deg2rad(75.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
 
 
@@ -105,10 +106,15 @@ def take_ends(context: Context, first: Side) -> Behaviour:
         take(first, "once more", known_hook=hook, held=held))
     return sequence(
         f"take the ends, {first} first",
-        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.045), attempts=2),
+        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.04, depth=0.006), attempts=2),
         RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
         FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3),
-        Retry(f"the {second} corner, again", take(second, "second", known_hook=hook, held=held), attempts=3),
+        fallback(f"the {second} corner",
+                 Retry(f"the {second} corner, again", take(second, "second", known_hook=hook, held=held), attempts=2),
+                 sequence(f"the {second} corner from farther round",
+                          RaiseCorner(f"turn the gown by the {first} corner", context, hand=HAND_OF[first], hook=hook,
+                                      away=FARTHER_ROUND),
+                          take(second, "from farther round", known_hook=hook, held=held))),
         fallback(f"is it the neckline, {first} first", Condition(
             f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
 
