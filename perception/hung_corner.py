@@ -213,7 +213,8 @@ def _side(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, far: np.ndarray
     """
     from scipy.spatial import KDTree
 
-    gap, nearest = KDTree(collar.points).query(fabric.points, distance_upper_bound=SEWN)
+    found = KDTree(collar.points).query(fabric.points, distance_upper_bound=SEWN)
+    gap, nearest = np.asarray(found[0]), np.asarray(found[1])
     sewn = np.isfinite(gap)
     ends = [np.median(collar.points[part], axis=0) for part in (far < far.min() + 0.03, far > far.max() - 0.03)]
     down = np.diff(project(collar.frame, np.stack(ends))[:, :2], axis=0)[0]
