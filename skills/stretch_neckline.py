@@ -27,7 +27,7 @@ class StretchNeckline(Skill):
     latest [m].  Outputs: `width` between the hands [m].
     """
 
-    pull = Input(float, default=1.6)
+    pull = Input(float, default=1.4)
     widest = Input(float, default=0.92)
     width = Output(float)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)
