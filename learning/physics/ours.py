@@ -21,7 +21,7 @@ from .method import Examples, Method
 from .prior import Prior, fit_prior
 
 SCORES = 128
-ROUNDS = 5  # steps of the correction
+ROUNDS = 9  # steps of the correction
 
 Film = Callable[[np.ndarray], torch.Tensor]
 """Simulates clips: parameters (N, P) in [0, 1] -> frames (N, T, 2, S, S)."""
