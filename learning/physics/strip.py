@@ -18,7 +18,7 @@ def write_strip(path: str | Path, rows: Sequence[tuple[str, np.ndarray]], every:
     """
     from matplotlib.figure import Figure
 
-    pictures = [np.hstack(depth[::every]) for _, depth in rows]
+    pictures = [np.hstack(list(depth[::every])) for _, depth in rows]
     height, width = pictures[0].shape
     figure = Figure(figsize=(width / 60, len(rows) * (height / 60 + 0.25)), layout="constrained")
     axes = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
