@@ -17,7 +17,7 @@ from .scene import ClothEpisode, ClothScene
 from .simulate import Simulator
 
 ALPHA = 0.05
-SCREENED = 2  # episodes hypotheses are screened and verified on; the final fit uses all
+SCREENED = 2  # episodes hypotheses are verified on; they are screened on the worst of them, the final fit uses all
 VERIFIED = 4  # candidates per round that are fitted by simulation
 MOST = 3  # effects and recalibrations at once
 CARRIED = 0.8  # carriers are taken as given where they alone bring the squares below this part
@@ -87,10 +87,16 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         say(f"round {len(chosen) + 1}: {len(pool)} hypotheses, {sim.runs} simulations so far")
         part = some.fit(replace(fit.model, free=()), {})
         part = replace(part, model=fit.model)
-        ranked = _screen(sim, some, part, chosen, pool)
+        worst = int(np.argmax([np.mean((r * weights) ** 2) for r in part.residuals]))
+        alone = ClothFitter(sim, [some.episodes[worst]], weights)
+        seen = replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
+        ranked = _screen(sim, alone, seen, chosen, pool)
         tried = []
+        done = False  # once one explains all, the others only have to show whether they would too
         for k, c in enumerate(ranked[:VERIFIED]):
-            joined = some.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=2)
+            joined = some.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=1 if done else 2)
+            rest = coherence(joined.residuals, pairs, m)
+            done = done or rest.p_value >= 0.01 or rest.shared <= 0.03 * rest.floor**2
             say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(part.rss, 1e-30)):.3f} of the residual left")
             tried.append((c, joined))
         if not tried:
