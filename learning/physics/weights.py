@@ -46,6 +46,7 @@ def save_weights(method: Inversion, path: str | Path, record: dict[str, object])
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
     save_file({k: v.contiguous() for k, v in tensors.items()}, part, metadata=about)
+    part.chmod(0o644)  # safetensors leaves it readable by its owner only
     os.replace(part, path)
     return path
 
@@ -58,7 +59,8 @@ def load_weights(path: str | Path = PACKAGED) -> tuple[Inversion, dict[str, obje
     """
     path = Path(path)
     if not path.is_file():
-        raise CaretreeError(f"{path}: there are no such weights; `caretree learn physics train --ship FILE` makes them")
+        raise CaretreeError(f"{path}: there are no such weights; `caretree learn physics train DATA --method ours --out "
+                            "DIR` makes them, DIR/ours.safetensors")
     try:
         with safe_open(path, "pt") as file:
             about = file.metadata() or {}
