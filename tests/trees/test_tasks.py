@@ -1,6 +1,7 @@
 import pytest
 from caretree.sim.scripted import ScriptedWorld
 from caretree.skills.context import Context
+from caretree.trees.decorators import Stage
 from caretree.trees.guard import GuardedWorld
 from caretree.trees.runner import run
 from caretree.trees.tasks import TaskError, load_task, task_names
@@ -43,6 +44,12 @@ def test_named_tasks_build():
         world, perception = load_task(name).scripted(0)
         guard = GuardedWorld(world)
         load_task(name).build(Context(world=guard, guard=guard, perception=perception))
+
+
+@pytest.mark.parametrize(("stage", "first_letters"), [("", "ABCD"), ("C", "C"), ("C-D", "CD")])
+def test_a_span_of_the_dressing_task_holds_its_stages(stage, first_letters):
+    root = build(load_task("dressing"), stage=stage)
+    assert "".join(node.name[0] for node in root.iterate() if isinstance(node, Stage)) == first_letters
 
 
 def test_a_users_own_file_runs(tmp_path):
