@@ -25,7 +25,7 @@ HUNG = 0.80  # both strips together where they hang, within 4 cm [m]
 UNSURE = 0.085  # of that length, as the other strip tells it [m]
 SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
 TELLS = 0.1  # how clearly that must say which strip it is
-SAME = 0.05  # a corner that is seen again within this distance is the same one [m]
+SAME = 0.08  # a corner that is seen again within this distance is the same one [m]
 DRAWN = 0.20  # sideways of the hook, what hangs farther out belongs to the strip that is drawn aside [m]
 BLUNT = 0.75  # a strip that ends at its corner keeps this much of its width to the last
 ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
@@ -89,7 +89,7 @@ def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
         side: the wearer's; seen from outside, the wearer's right is on the left of the picture.
         hook_in_map: (3,) where the gown hangs, if that is known already [m].
         other_length: from the hook to the other corner, if that is held aside already [m].
-        near_in_map: (3,) where the corner was just now; one that is farther away than 5 cm is another [m].
+        near_in_map: (3,) where the corner was just now; one that is farther away than 8 cm is another [m].
 
     Returns:
         The grasp, just inside both edges of the binding, with a horizontal approach along the view.

@@ -11,6 +11,7 @@ from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Side
 from .context import Context
 from .hands import cloth_load, hand_now, move_hands
+from .motion.errors import MotionError
 from .ports import Input, Output
 from .reasons import Reason, SkillFailure
 from .scripted_gown import offer_gown
@@ -18,6 +19,7 @@ from .skill import Skill
 
 BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
 AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
+SHARES = (1.0, 0.75, 0.5)  # of that, as far as the arm reaches
 SLACK = 0.95  # of the corner's distance from the hook is used: the hook may not pull at the hand
 
 
@@ -47,11 +49,18 @@ class RaiseCorner(Skill):
         length = float(np.linalg.norm(pose[:3, 3] - hook))
         sideways = base[:, 1] if self.hand == "left" else -base[:, 1]
         hangs, carried = bool(pose[2, 3] < hook[2]), 0.0
-        aside = np.cos(self.away) * sideways + np.sin(self.away) * base[:, 0]
         for rise in (BELOW, RISE) if hangs else (RISE,):
             level = np.sqrt(max(((SLACK if hangs else 1.0) * length) ** 2 - rise**2, 0.01))
-            pose[:3, 3] = hook + level * aside + rise * base[:, 2]
-            yield from move_hands(self, {self.hand: pose}, speed=0.3, free="any", way="either")
+            for share in SHARES:
+                angle = share * self.away
+                aside = np.cos(angle) * sideways + np.sin(angle) * base[:, 0]
+                pose[:3, 3] = hook + level * aside + rise * base[:, 2]
+                try:
+                    yield from move_hands(self, {self.hand: pose}, speed=0.3, free="any", way="either")
+                    break
+                except MotionError:  # behind the rail the arm soon ends
+                    if share == SHARES[-1]:
+                        raise
             yield from self.wait(1.0 if rise > 0.0 else 0.2)  # the gown swings out
             carried = -float(cloth_load(self, self.hand)[2])
             if rise < 0.0 and carried > self.heavy:
