@@ -59,8 +59,8 @@ def load_weights(path: str | Path = PACKAGED) -> tuple[Inversion, dict[str, obje
     """
     path = Path(path)
     if not path.is_file():
-        raise CaretreeError(f"{path}: there are no such weights; `caretree learn physics train DATA --method ours --out "
-                            "DIR` makes them, DIR/ours.safetensors")
+        raise CaretreeError(f"{path}: there are no such weights; `caretree learn physics train DATA --method ours "
+                            "--out DIR` makes them, DIR/ours.safetensors")
     try:
         with safe_open(path, "pt") as file:
             about = file.metadata() or {}
