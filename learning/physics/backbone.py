@@ -9,8 +9,8 @@
 
 from __future__ import annotations
 
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 

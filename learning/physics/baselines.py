@@ -8,8 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from .backbone import ClipEmbedding, embed, head
 from .method import Examples, Method

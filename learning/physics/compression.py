@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 CHUNK = 512  # clips at a time
 CLIPS = 1500  # that choose the directions; more change them little and cost more than all the rest of the fit

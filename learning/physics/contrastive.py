@@ -12,7 +12,7 @@ space take the place of a class.
 from __future__ import annotations
 
 import numpy as np
-import torch
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 MARGIN = 1.0
 CLASSES_PER_BATCH = 16

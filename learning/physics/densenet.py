@@ -6,8 +6,8 @@ ImageNet weights cannot be had offline: where the paper starts from ImageNet, th
 
 from __future__ import annotations
 
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 GROWTH = 32
 BLOCKS = (6, 12, 24, 16)  # layers per block: with two convolutions each, and 5 more layers, 121

@@ -9,8 +9,8 @@ closed form.  A parameter that the clip does not show gets a large n and is answ
 from __future__ import annotations
 
 import numpy as np
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 SUBSET = 800  # clips that choose length and noise: the cost grows with the cube
 LENGTHS = np.geomspace(0.3, 8.0, 8)

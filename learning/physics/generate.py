@@ -124,7 +124,7 @@ def _made(folder: Path, spec: DatasetSpec, missing: list[int], jobs: int,
             yield number, make_shard(spec, number, folder)
         return
     try:
-        import ray  # type: ignore[import-not-found]
+        import ray  # type: ignore[import-not-found]  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
         raise CaretreeError("more than one job needs Ray: pip install 'caretree[learn]'") from error
     try:

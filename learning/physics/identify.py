@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 from ...sim.gown import GOWNS

@@ -73,7 +73,7 @@ def main(argv: list[str]) -> int:
     """
     options = parser().parse_args(argv)
     try:
-        import torch
+        import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
         raise CaretreeError(f"`caretree learn physics {options.command}` needs PyTorch: "
                             "pip install 'caretree[learn]'") from error

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
-import torch
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 
 @dataclass(frozen=True, kw_only=True)

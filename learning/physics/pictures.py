@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import torch
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.gown import GOWNS, GownSpec
 from .backbone import embed

@@ -8,8 +8,8 @@ The pairs it learns from are those it will meet: a clip and one of its nearest n
 from __future__ import annotations
 
 import numpy as np
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from .backbone import head
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch
-from torch import nn
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 

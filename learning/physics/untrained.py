@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-import torch
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from .method import Method
 from .parameters import BASE, NAMES

@@ -7,9 +7,9 @@ import os
 from pathlib import Path
 
 import numpy as np
-import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save_file
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from safetensors import SafetensorError, safe_open  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from safetensors.torch import save_file  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 from .compression import Compression
