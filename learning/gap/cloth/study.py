@@ -154,10 +154,8 @@ class ClothStudy(Study):
         f = self.found
         effects, recalibration = [], []
         fitter = self._fitter(self.fitted)
-        scale = max(
-            float(np.sqrt(np.sum([np.sum((r * fitter.weights) ** 2) for r in f.fit.residuals]) / max(f.worth, 1.0))),
-            0.0,
-        )
+        # the covariance is that of columns weighted by the noise, so the residual must be weighted too
+        scale = float(np.sqrt(f.fit.rss / max(f.worth, 1.0)))
         half = 1.96 * scale * np.sqrt(np.maximum(np.diag(f.fit.covariance), 0.0))
         for c in f.chosen:
             values = []
