@@ -55,14 +55,15 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
                 "swing": 3.0,
             }[n],
         )
+        change = 0.0
         for _ in range(24):
             middle = 0.5 * (low + high)
             other = _fly({**air, n: middle}, top, rate)
             both = min(len(other), len(plain))
-            change = np.sqrt(np.mean((other[:both] - plain[:both]) ** 2))
+            change = float(np.sqrt(np.mean((other[:both] - plain[:both]) ** 2)))
             low, high = (middle, high) if change < size[n] * noise else (low, middle)
         values[n] = high
-        size[n] = min(size[n], 1.05 * float(change / noise))  # a body can only be braked so much
+        size[n] = min(size[n], 1.05 * change / noise)  # a body can only be braked so much
     header: dict = {"system": "fall"}
     if "buoyancy" in values or rng.random() < 0.5:  # a ball whose lift is what its size and mass make it
         diameter = rng.uniform(0.05, 0.4)

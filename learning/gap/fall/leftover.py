@@ -44,6 +44,7 @@ def repeating(fit: DropFit, times: list[np.ndarray]) -> tuple[float, float, floa
     ends = np.cumsum([len(t) for t in times])[:-1]
     theta = _solve(both, r)
     already = r - own @ _solve(own, r)
+    white_r, white_own, white_both = r, own, both
     for _ in range(2):
         noise = _colour(np.split(r - both @ theta, ends))
         white_r, white_own, white_both = (_whiten(x, ends, noise) for x in (r, own, both))
@@ -75,7 +76,7 @@ def _colour(residuals: list[np.ndarray]) -> tuple[float, float]:
 
     def misfit(x: np.ndarray) -> float:
         memory, mix = np.tanh(x)
-        power = sum(float(np.sum(lfilter([1.0, -memory], [1.0, mix], r) ** 2)) for r in residuals)
+        power = sum(float(np.sum(np.square(lfilter([1.0, -memory], [1.0, mix], r)))) for r in residuals)
         return float(np.log(power + 1e-30))
 
     tried = [minimize(misfit, s, method="Nelder-Mead", options={"maxiter": 60}) for s in STARTS]
