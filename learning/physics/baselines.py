@@ -107,7 +107,8 @@ def fit_supervised(train: Examples, budget: Budget, *, seed: int, folder: Path, 
     objective = SupervisedObjective(train, backbone, (unit - centre) / spread)
     about = {"method": "supervised", "data": train.hash, "clips": len(train), "backbone": backbone}
     fit(objective, budget, seed=seed, folder=folder / "supervised", about=about, say=say)
-    embedding, *rest = objective.network
+    embedding, *rest = objective.network.children()
+    assert isinstance(embedding, ClipEmbedding)
     return Regressor("supervised", embedding, nn.Sequential(*rest), centre=centre, spread=spread)
 
 

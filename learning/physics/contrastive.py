@@ -72,9 +72,9 @@ class Groups:
             self.members = [np.flatnonzero(class_id == c) for c in np.unique(class_id)]
             self.members = [m for m in self.members if len(m) > 1]
         else:
-            from scipy.spatial import cKDTree
+            from scipy.spatial import KDTree
 
-            near = cKDTree(unit).query(unit, k=min(CLIPS_PER_CLASS, len(unit)))[1]
+            near = KDTree(unit).query(unit, k=min(CLIPS_PER_CLASS, len(unit)))[1]
             self.members = list(np.asarray(near))
 
     def draw(self, rng: np.random.Generator, classes: int = CLASSES_PER_BATCH) -> tuple[np.ndarray, np.ndarray]:

@@ -77,10 +77,10 @@ def table(results: dict[str, Any]) -> str:
 
 def _line(title: str, rows: list[dict[str, Any]]) -> str:
     medians = [row["median"] for row in rows]
-    text = f"{_percent(np.mean(medians))}"
+    text = f"{_percent(float(np.mean(medians)))}"
     text += (f" ({', '.join(_percent(m) for m in medians)})" if len(rows) > 1
              else f" ({_percent(rows[0]['low'])} to {_percent(rows[0]['high'])})")
-    each = [_percent(np.mean([row["parameters"][name] for row in rows])) for name in NAMES]
+    each = [_percent(float(np.mean([row["parameters"][name] for row in rows]))) for name in NAMES]
     held = f"{100 * rows[0]['coverage_shown']:.0f} %" if "coverage_shown" in rows[0] else ""
     first, everything = (_percent(float(np.mean([row[k] for row in rows]))) for k in ("median_first", "median_all"))
     return f"| {' | '.join([title, text, first, everything, *each, held])} |"

@@ -142,7 +142,7 @@ class Study:
         path = self._file(test, method, seed)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part.npz")
-        np.savez(part, **{"true": clips.unit, **arrays})
+        np.savez(part, allow_pickle=False, **{"true": clips.unit, **arrays})
         os.replace(part, path)
 
     def predictions(self) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
