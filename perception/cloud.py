@@ -87,3 +87,8 @@ def geodesic(points: np.ndarray, start: int, gap: float) -> np.ndarray:
     lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
     graph = coo_matrix((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
     return dijkstra(graph.tocsr(), directed=False, indices=start)
+
+
+def thinned(points: np.ndarray, most: int = 1500) -> np.ndarray:
+    """Every k-th of the points (n, ...), so that no more than `most` are left."""
+    return points[:: max(1, len(points) // most + (len(points) % most > 0))]

@@ -9,17 +9,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..sim.world import Frame, Side
-from .cloud import clusters, points_in_map, surface_normal, unit
+from .cloud import clusters, points_in_map, surface_normal, thinned, unit
 from .colours import GOWN_SURFACES, Surface
 from .errors import PerceptionFailure, Problem
 from .estimates import SLEEVE_OF, SleeveOpening
 from .garment import gown_labels
-from .strap_edge import strap_between
+from .strap_edge import AROUND, HALF_LENGTH, strap_between
 
 WIDTH = 0.055  # of the binding and of the strap [m]
-HALF_LENGTH = 0.082  # from the binding's end to the middle of the strap [m]
 _AGREE = 0.04  # two ways to see the strap that are no farther apart mean the same place [m]
-_AROUND = 0.25  # how far from the expected place to look [m]
 _STEP = 0.0137  # of the walk along the strap; six lead to its middle [m]
 _FEWEST = 6  # points of the gown around a step
 
@@ -53,29 +51,25 @@ def sleeve_strap(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpe
             return past
     except PerceptionFailure:
         pass
-    cloud, labels = points_in_map(frame), gown_labels(frame)
-    rim = _thinned(cloud[(labels == Surface.ARMHOLE) & (frame.depth > 0)])
-    rim = rim[np.linalg.norm(rim - near_in_map, axis=1) < _AROUND]
-    gown = cloud[np.isin(labels, GOWN_SURFACES) & (frame.depth > 0)]
     # a strap folded over, its inside up, is held the other way round: see above what closing means
-    normal = surface_normal(gown[np.linalg.norm(gown - between.middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
+    across = -between.across if between.inside else between.across
     return SleeveOpening(stamp=frame.stamp, confidence=min(0.6, between.points / 200), target=SLEEVE_OF[side],
-                         position_in_map=between.middle, approach_in_map=-normal,
-                         closing_in_map=-between.across if between.inside else between.across,
-                         ring_points_in_map=rim, centre_in_map=np.percentile(rim, (5, 95), axis=0).mean(axis=0))
+                         position_in_map=between.middle, approach_in_map=-between.normal, closing_in_map=across,
+                         ring_points_in_map=between.rim,
+                         centre_in_map=np.percentile(between.rim, (5, 95), axis=0).mean(axis=0))
 
 
 def _past_binding(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
     """The strap along the line of the neck binding, past its end."""
     labels, cloud = gown_labels(frame), points_in_map(frame)
-    near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < _AROUND
-    rim = _thinned(cloud[(labels == Surface.ARMHOLE) & near])
-    navy = _thinned(cloud[(labels == Surface.COLLAR) & near])
+    near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < AROUND
+    rim = thinned(cloud[(labels == Surface.ARMHOLE) & near])
+    navy = thinned(cloud[(labels == Surface.COLLAR) & near])
     if len(rim) < 15 or len(navy) < 30:
         what = "rim" if len(rim) < 15 else "end of the neck binding beside"
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"{what} of the {side} armhole")
     rim, navy = rim[clusters(rim, 0.03) == 0], navy[clusters(navy, 0.02) == 0]
-    gown = _thinned(cloud[np.isin(labels, GOWN_SURFACES) & near], 4000)
+    gown = thinned(cloud[np.isin(labels, GOWN_SURFACES) & near], 4000)
     eye = frame.pose_camera_in_map[:3, 3]
     start, along, headward = _end_of_binding(navy, rim, gown, eye)
     middle, along, headward, found = _walk(gown, start, along, headward, eye)
@@ -141,7 +135,3 @@ def _walk(gown: np.ndarray, start: np.ndarray, along: np.ndarray, headward: np.n
             up = unit(normal + 0.5 * (up - (up @ along) * along))
             headward = unit(np.cross(along, up)) * np.sign(np.cross(along, up) @ headward)
     return here, along, headward, found
-
-
-def _thinned(points: np.ndarray, most: int = 1500) -> np.ndarray:
-    return points[:: max(1, len(points) // most + (len(points) % most > 0))]

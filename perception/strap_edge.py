@@ -10,15 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ..sim.world import Frame
-from .cloud import clusters, points_in_map, surface_normal, unit
+from .cloud import clusters, points_in_map, surface_normal, thinned, unit
 from .colours import GOWN_SURFACES, Surface
 from .errors import PerceptionFailure, Problem
 from .garment import gown_labels
 
-_AROUND = 0.25  # how far from the expected place to look [m]
+AROUND = 0.25  # how far from the expected place to look [m]
 _BORDER = (0.012, 0.048)  # points of the strap are that far from either border; it is 0.055 wide [m]
 _WIDEST = 0.085  # from border to border, where the cloth is curved [m]
-_HALF_LENGTH = 0.082  # from the end of the neck binding to the middle of the strap [m]
+HALF_LENGTH = 0.082  # from the end of the neck binding to the middle of the strap [m]
 _HEADWARD = 0.2  # the edge is headward of the rim: greatest share of the way across that leads to the feet
 _GRIPPER = 0.03  # what is nearer to the camera by this stands in front of the gown [m]
 _FEWEST = 12
@@ -30,12 +30,16 @@ class Strap(NamedTuple):
     Attributes:
         middle: (3,) [m].
         across: (3,) unit vector from the rim to the edge.
+        normal: (3,) unit vector off the side that is seen, towards the camera.
+        rim: (n, 3) points of the armhole beside it [m].
         inside: whether it lies with the gown's inside up, folded over.
         points: how many points of it were seen.
     """
 
     middle: np.ndarray
     across: np.ndarray
+    normal: np.ndarray
+    rim: np.ndarray
     inside: bool
     points: int
 
@@ -53,14 +57,14 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
     from scipy.spatial import KDTree
 
     labels, cloud = gown_labels(frame), points_in_map(frame)
-    near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < _AROUND
-    rim = _thinned(cloud[(labels == Surface.ARMHOLE) & near], 1500)
+    near = np.nan_to_num(np.linalg.norm(cloud - near_in_map, axis=2), nan=np.inf) < AROUND
+    rim = thinned(cloud[(labels == Surface.ARMHOLE) & near])
     if len(rim) < 15:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "rim of the armhole")
     rim = rim[clusters(rim, 0.03) == 0]
     edge = cloud[_edge(frame, labels) & near]
     plain = np.isin(labels, (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR)) & near
-    gown, sides = _thinned(cloud[plain], 4000), _thinned(labels[plain], 4000)
+    gown, sides = thinned(cloud[plain], 4000), thinned(labels[plain], 4000)
     if len(edge) < _FEWEST or len(gown) < _FEWEST:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "edge of the gown beside the armhole")
     (to_rim, at_rim), (to_edge, at_edge) = KDTree(rim).query(gown), KDTree(edge).query(gown)
@@ -74,16 +78,16 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
     points, span, sides = gown[strip], span[strip] / width[strip, None], sides[strip]
     largest = clusters(points, 0.02) == 0
     points, span, sides = points[largest], span[largest], sides[largest]
-    navy = _thinned(cloud[(labels == Surface.COLLAR) & near], 500)
+    navy = thinned(cloud[(labels == Surface.COLLAR) & near], 500)
     middle = np.median(points, axis=0)
     if len(navy) >= 20:
-        off = np.abs(KDTree(navy).query(points)[0] - _HALF_LENGTH)
+        off = np.abs(KDTree(navy).query(points)[0] - HALF_LENGTH)
         middle = np.median(points[off <= np.percentile(off, 25)], axis=0)
     normal = surface_normal(gown[np.linalg.norm(gown - middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
     across = unit(np.median(span, axis=0))
     around = sides[np.linalg.norm(points - middle, axis=1) < 0.03]
     inside = bool((around == Surface.INSIDE).sum() > (around == Surface.OUTSIDE).sum())
-    return Strap(middle, unit(across - (across @ normal) * normal), inside, len(points))
+    return Strap(middle, unit(across - (across @ normal) * normal), normal, rim, inside, len(points))
 
 
 def _edge(frame: Frame, labels: np.ndarray) -> np.ndarray:
@@ -96,7 +100,3 @@ def _edge(frame: Frame, labels: np.ndarray) -> np.ndarray:
     beyond = cv2.dilate(np.where(filled, 0.0, depth).astype(np.float32), np.ones((7, 7), np.uint8))
     before = cv2.erode(np.where(filled, 9.0, depth).astype(np.float32), np.ones((9, 9), np.uint8))
     return gown & (beyond > frame.depth - 0.012) & (before > frame.depth - _GRIPPER)
-
-
-def _thinned(points: np.ndarray, most: int) -> np.ndarray:
-    return points[:: max(1, len(points) // most + (len(points) % most > 0))]

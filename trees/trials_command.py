@@ -22,7 +22,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("-n", type=int, metavar="N", help="number of trials, seeds 0 to N-1 (10)")
     parser.add_argument("--seeds", metavar="A-B", help="seeds A to B instead, or a list like 3,7,9")
     parser.add_argument("--stage", metavar="STAGE",
-                        help="run one stage alone, from a world prepared for it: A, B, C or D")
+                        help="run one stage alone, or a span such as C-D, from a world prepared for it")
     parser.add_argument("--jobs", type=int, default=1, metavar="J", help="runs at the same time (1)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the campaign (runs/trials-TASK)")
     for name in PASSED_ON:
