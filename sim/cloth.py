@@ -45,14 +45,14 @@ class Cloth:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "gown.obj"
             path.write_text("".join("v {:.9f} {:.9f} {:.9f}\n".format(*v) for v in mesh.vertices)
-                            + "".join("f {} {} {}\n".format(*(face + 1)) for face in mesh.faces))
+                            + "".join("f {} {} {}\n".format(*(face + 1)) for face in mesh.sewn))
             self.body: int = client.loadSoftBody(
                 str(path), mass=spec.mass, useMassSpring=1, useBendingSprings=1, useNeoHookean=0,
                 springElasticStiffness=units.force(spec.elastic), springDampingStiffness=units.rate(spec.damping),
                 springDampingAllDirections=1, springBendingStiffness=units.force(spec.bending), useSelfCollision=0,
                 frictionCoeff=spec.friction, collisionMargin=MARGIN)
         client.changeDynamics(self.body, -1, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
-        self.edges = np.array(list(edge_counts(mesh.faces)))
+        self.edges = np.array(list(edge_counts(mesh.sewn)))
         self.rest_lengths = np.linalg.norm(mesh.vertices[self.edges[:, 0]] - mesh.vertices[self.edges[:, 1]], axis=1)
         self.place(vertices)
 

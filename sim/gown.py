@@ -4,6 +4,10 @@ Local frame of the rest shape: x across the gown towards the wearer's right, z u
 edge at z = 0), y out of the gown's outside.  Unwrapped, a back-opening gown is a sheet: left back panel,
 front panel, right back panel; its upper edge is the neckline, and the armholes lie just below it, so that
 the strap above each armhole is the shoulder seam.
+
+A sleeve is sewn with stays, the stiff tape of dressmakers: in cells of 5 cm, springs along the edges alone let a tube
+fold without resistance, and every sleeve fell through its own armhole as soon as the gown lay slanted.  Real
+sleeves do not: they resist as shells, and their seams are four layers thick.
 """
 
 from __future__ import annotations
@@ -60,7 +64,8 @@ class GownSpec:
         Raises:
             CaretreeError: a size is not positive or the armhole does not fit the length.
         """
-        if min(self.spacing, self.mass, self.elastic) <= 0 or min(self.front, self.back, self.sleeve, *self.hole) < 1:
+        if (min(self.spacing, self.mass, self.elastic) <= 0
+                or min(self.front, self.back, self.strap, self.sleeve, *self.hole) < 1):
             raise CaretreeError(f"gown '{self.name}': sizes, mass and stiffness must be positive")
         if self.strap + self.hole[1] >= self.length:
             raise CaretreeError(f"gown '{self.name}': an armhole of {self.hole[1]} cells does not fit "
@@ -91,6 +96,8 @@ class GownMesh:
         collar: (n,) vertex ids of the neckline, the bound part of the upper edge, from the wearer's left to the right.
         corners: vertex ids of the two ends of the neckline, where it meets the shoulder seams, (left, right).
         front: (n,) vertex ids of the front panel.
+        stays: (S, 3) int, triangles (a, b, c) along a seam or a sleeve whose spring from a to c keeps a-b-c from
+            folding; nobody sees them.
     """
 
     spec: GownSpec
@@ -101,6 +108,12 @@ class GownMesh:
     collar: np.ndarray
     corners: tuple[int, int]
     front: np.ndarray
+    stays: np.ndarray
+
+    @property
+    def sewn(self) -> np.ndarray:
+        """(F + S, 3) all triangles whose edges are springs: the faces and the stays."""
+        return np.vstack([self.faces, self.stays])
 
 
 def build_gown(spec: GownSpec) -> GownMesh:
@@ -126,33 +139,39 @@ def build_gown(spec: GownSpec) -> GownMesh:
         faces += [(a, b, c), (b, d, c)] if (i + j) % 2 else [(a, b, d), (a, d, c)]
         labels += [COLLAR if j == 0 and i in panel else FABRIC] * 2
     loops: dict[str, np.ndarray] = {}
+    stays: list[tuple[int, int, int]] = []
     for side, columns in holes.items():
         loop = _hole_loop(index, columns, rows)
         loops[f"armhole_{side}"] = np.array(loop)
-        ring = loop
+        around = _hole_loop(index, columns, rows, out=1)  # the panel's vertices one cell off the armhole
+        rings = [around, loop]
         for step in range(1, spec.sleeve + 1):
             fresh = []
             for k in loop:
                 fresh.append(len(vertices))
                 vertices.append(vertices[k] + (0.0, step * h, 0.0))
             label = CUFF if step == spec.sleeve else ARMHOLE if step == 1 else FABRIC
+            ring = rings[-1]
             for q in range(len(loop)):
                 a, b, c, d = ring[q], ring[(q + 1) % len(loop)], fresh[q], fresh[(q + 1) % len(loop)]
                 faces += [(a, b, d), (a, d, c)] if q % 2 else [(a, b, c), (b, d, c)]
                 labels += [label] * 2
-            ring = fresh
-        loops[f"cuff_{side}"] = np.array(ring)
+            rings.append(fresh)
+        loops[f"cuff_{side}"] = np.array(rings[-1])
+        for three in zip(rings, rings[1:], rings[2:], strict=False):
+            stays += zip(*three, strict=True)
     front = [index[i, j] for i, j in used if panel.start <= i <= panel.stop]
     collar = np.array([index[i, 0] for i in range(panel.start, panel.stop + 1)])
     return GownMesh(spec=spec, vertices=np.array(vertices), faces=np.array(faces), labels=np.array(labels), loops=loops,
-                    collar=collar, corners=(int(collar[0]), int(collar[-1])), front=np.array(front))
+                    collar=collar, corners=(int(collar[0]), int(collar[-1])), front=np.array(front),
+                    stays=np.array(stays))
 
 
-def _hole_loop(index: dict[tuple[int, int], int], columns: range, rows: range) -> list[int]:
-    """Vertex ids around a hole; the right-hand normal is +y (z turns into x)."""
+def _hole_loop(index: dict[tuple[int, int], int], columns: range, rows: range, out: int = 0) -> list[int]:
+    """Vertex ids around a hole, or square off it by `out` cells; the right-hand normal is +y (z turns into x)."""
     i0, i1, j0, j1 = columns.start, columns.stop, rows.start, rows.stop
-    path = ([(i, j0) for i in range(i0, i1)] + [(i1, j) for j in range(j0, j1)]
-            + [(i, j1) for i in range(i1, i0, -1)] + [(i0, j) for j in range(j1, j0, -1)])
+    path = ([(i, j0 - out) for i in range(i0, i1)] + [(i1 + out, j) for j in range(j0, j1)]
+            + [(i, j1 + out) for i in range(i1, i0, -1)] + [(i0 - out, j) for j in range(j1, j0, -1)])
     return [index[key] for key in path]
 
 

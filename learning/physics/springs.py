@@ -81,7 +81,7 @@ class Weave:
 def weave(mesh: GownMesh) -> Weave:
     """Edges and pairs two edges apart, as Bullet's `generateBendingConstraints(2)` finds them."""
     vertices, count = mesh.vertices, len(mesh.vertices)
-    edges = np.array(sorted(edge_counts(mesh.faces)))
+    edges = np.array(sorted(edge_counts(mesh.sewn)))
     near: list[set[int]] = [set() for _ in range(count)]
     for a, b in edges.tolist():
         near[a].add(b)
@@ -92,8 +92,8 @@ def weave(mesh: GownMesh) -> Weave:
     length = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
     one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
     order = np.argsort(one, kind="stable")
-    a, b, c = (vertices[mesh.faces[:, k]] for k in range(3))
-    area = np.bincount(mesh.faces.ravel(), minlength=count,
+    a, b, c = (vertices[mesh.sewn[:, k]] for k in range(3))
+    area = np.bincount(mesh.sewn.ravel(), minlength=count,
                        weights=np.repeat(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0, 3))
     return Weave(start=np.searchsorted(one[order], np.arange(count + 1)), other=np.ascontiguousarray(other[order]),
                  rest=np.tile(length, 2)[order], bends=np.tile(bends, 2)[order], area=area)

@@ -32,7 +32,7 @@ def test_with_the_clamp_the_two_stay_close(still_air):
 def test_springs_are_bullets(small_gown):
     mesh = build_gown(small_gown)
     woven = weave(mesh)
-    edges = {tuple(edge) for edge in edge_counts(mesh.faces)}
+    edges = {tuple(edge) for edge in edge_counts(mesh.sewn)}
     one = np.repeat(np.arange(len(mesh.vertices)), np.diff(woven.start))
     near = {(int(a), int(b)) for a, b, bend in zip(one, woven.other, woven.bends, strict=True) if a < b and not bend}
     far = {(int(a), int(b)) for a, b, bend in zip(one, woven.other, woven.bends, strict=True) if a < b and bend}
@@ -44,7 +44,7 @@ def test_springs_are_bullets(small_gown):
         sides.setdefault(b, set()).add(a)
     assert all(sides[a] & sides[b] for a, b in far)  # two edges apart
     np.testing.assert_allclose(woven.area.sum(), sum(
-        0.5 * np.linalg.norm(np.cross(*(mesh.vertices[face[1:]] - mesh.vertices[face[0]]))) for face in mesh.faces))
+        0.5 * np.linalg.norm(np.cross(*(mesh.vertices[face[1:]] - mesh.vertices[face[0]]))) for face in mesh.sewn))
 
 
 def moving(gown, seed=0):
