@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-
 from caretree.sim.errors import CaretreeError
 from caretree.sim.gown import GOWNS, build_gown, edge_counts
 
