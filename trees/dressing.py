@@ -1,7 +1,5 @@
-"""The dressing tree: stages A to D, each with its precondition, retries and recoveries, under one fail-safe.
+"""Stages C and D of the dressing tree, and what is owed whenever a stage fails.
 
-A  take the gown down: go to the side of the rail that shows the outside, take both ends of the neckline, lift it off
-B  unfold it and lay it on the person, outside up, arms bare
 C  dress the right arm, drive round the foot of the bed, dress the left arm
 D  draw the collar to the neck on both sides
 """
@@ -15,28 +13,17 @@ from ..perception.estimates import Cover
 from ..sim.world import SIDES, Side
 from ..skills.bedside import LIFTING, PULLING, stance
 from ..skills.context import Context
-from ..skills.flip_side_check import FlipSideCheck
 from ..skills.grasp_sleeve import GraspSleeve
-from ..skills.lay_gown import LayGown
 from ..skills.lift_arm import LiftArm
 from ..skills.look_at_person import LookAtPerson
 from ..skills.navigate import Navigate
 from ..skills.ports import Key
-from ..skills.pre_grasp_manipulate import PreGraspManipulate
 from ..skills.present_sleeve import PresentSleeve
 from ..skills.pull_along_arm import PullAlongArm
-from ..skills.raise_corner import RaiseCorner
 from ..skills.reasons import Reason
-from ..skills.release import Release
 from ..skills.release_arm import ReleaseArm
 from ..skills.retreat import Retreat
-from ..skills.segment_and_grasp import SegmentAndGrasp
 from ..skills.spread import Spread
-from ..skills.stretch_neckline import StretchNeckline
-from ..skills.take_corner import TakeCorner
-from ..skills.take_down import TakeDown
-from ..skills.unhook import Unhook
-from ..skills.view_around import ViewAround
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
@@ -48,85 +35,7 @@ SEAT: dict[Side, float] = {"right": -0.08, "left": -0.06}
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
-HAND_OF: dict[Side, Side] = {"left": "right", "right": "left"}  # the outside faces the robot: corners are mirrored
-NECKLINE = 0.80  # both strips of a hung gown's neckline together, within 4 cm [m]
-FARTHER_ROUND = float(np.deg2rad(75.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
-
-
-def take_down(context: Context) -> Behaviour:
-    """Stage A."""
-    find_outside = fallback(
-        "find the outside",
-        FlipSideCheck("outside to the front", context, hung=True, sure=0.0),
-        Navigate("go behind the rail", context, goal="rail_back"))
-    by_both_ends = sequence(
-        "by both ends of the neckline",
-        fallback("take both ends of the neckline", take_ends(context, "left"),
-                 sequence("the other one first", Retreat("let go of both ends", context), take_ends(context, "right"))),
-        TakeDown("lift it off the hook", context, hook=Key("hook")))
-    return Stage("A take down", None, Timeout("A in time", sequence(
-        "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
-        fallback("take it", by_both_ends, from_one_hand(context))), seconds=260.0))
-
-
-def from_one_hand(context: Context) -> Behaviour:
-    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
-    views, holder, former = Key("views"), Key("holder"), Key("former")
-    return sequence(
-        "from one hand",
-        Retreat("let go of the neckline", context),
-        SegmentAndGrasp("take it near the hook", context, side="right"),
-        Unhook("lift it off with one hand", context, side="right"),
-        ViewAround("look at it from all sides", context, side="right", views=views),
-        PreGraspManipulate("take one corner", context, views=views, holder=holder, former=former),
-        Release("let the place near the hook go", context, side=former),
-        ViewAround("look at it again from all sides", context, side=holder, views=views),
-        PreGraspManipulate("take the other corner", context, views=views, nearest=0.3))
-
-
-def take_ends(context: Context, first: Side) -> Behaviour:
-    """Both ends of the hung gown's neckline: `first`, the other one, the first again where that was not it."""
-    second: Side = "right" if first == "left" else "left"
-    hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key("held")
-
-    def take(corner: Side, name: str, **ports: object) -> TakeCorner:
-        return TakeCorner(f"take the {corner} corner {name}", context, hand=HAND_OF[corner], sleeve=corner,
-                          length=lengths[corner], **ports)
-
-    def complete(context: Context) -> bool:
-        """Both strips together are as long as a neckline."""
-        return abs(sum(context.board.get(key.name) for key in lengths.values()) - NECKLINE) < 0.06
-
-    again = sequence(
-        f"the {first} corner was not it",
-        Retreat(f"let the {first} one go", context, hands=HAND_OF[first]),
-        RaiseCorner(f"draw the {second} corner aside for the {first}", context, hand=HAND_OF[second], hook=hook,
-                    held=held),
-        take(first, "once more", known_hook=hook, held=held))
-    return sequence(
-        f"take the ends, {first} first",
-        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.04, depth=0.006), attempts=2),
-        RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
-        FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3),
-        fallback(f"the {second} corner",
-                 take(second, "second", known_hook=hook, held=held, opening=0.035),
-                 take(second, "with wide fingers", known_hook=hook, held=held),
-                 sequence(f"the {second} corner from farther round",
-                          RaiseCorner(f"turn the gown by the {first} corner", context, hand=HAND_OF[first], hook=hook,
-                                      away=FARTHER_ROUND),
-                          take(second, "from farther round", known_hook=hook, held=held))),
-        fallback(f"is it the neckline, {first} first", Condition(
-            f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
-
-
-def unfold(context: Context) -> Behaviour:
-    """Stage B."""
-    width = Key("neckline_width")
-    return Stage("B unfold", _holds_gown, Timeout("B in time", sequence(
-        "unfold and lay", StretchNeckline("stretch the neckline", context, width=width),
-        FlipSideCheck("outside to the robot", context, sure=0.9),
-        LayGown("lay it on the person", context, width=width)), seconds=120.0))
 
 
 def dress_arm(context: Context, arm: Side) -> Behaviour:
@@ -225,8 +134,3 @@ def _chest_covered(context: Context) -> bool:
     cover = context.perceive("chest_cover", context.world.look("head"), shoulders_in_map=shoulders)
     assert isinstance(cover, Cover)
     return cover.share > COVERED
-
-
-def _holds_gown(context: Context) -> bool:
-    """Both hands together carry what a gown weighs [N]."""
-    return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > 2.5)

@@ -9,7 +9,9 @@ from ...sim.errors import CaretreeError
 from ...skills.context import Context
 from ..composers import sequence
 from ..decorators import FailSafe
-from ..dressing import dress, make_safe, spread, take_down, unfold
+from ..dressing import dress, make_safe, spread
+from ..lay import unfold
+from ..take_down import take_down
 
 STAGES = {"A": take_down, "B": unfold, "C": dress, "D": spread}
 
