@@ -14,6 +14,7 @@ from .estimates import COLLAR_OF, CORNER_OF, CollarLine, GraspPoint
 from .garment import gown_labels
 
 _MOST = 1200  # points of the binding that are worked on
+_END = 0.06  # the end of the binding is grasped in the middle of that much of it [m]
 _GAP = 0.03  # larger steps between neighbours are depth steps [m]
 
 
@@ -152,26 +153,29 @@ def collar_corner(frame: Frame, corner: Side, exclude: np.ndarray | None = None,
                       closing_in_map=across(best.outward_in_map, approach))
 
 
-def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray, rng: np.random.Generator) -> GraspPoint:
-    """Stage D: a random place on the neck binding within 150 px (of the paper's images) of the person's shoulder.
+def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
+    """Stage D: the place on the neck binding that lies nearest to the person's shoulder.
+
+    The paper takes a random one within 150 px of its images; the nearest pulls the most at the sleeve.
 
     Args:
         frame: a view from above the person.
         side: of the person.
         shoulder_in_map: (3,) from the tracked posture [m].
-        rng: the only source of chance.
 
     Raises:
-        PerceptionFailure: no binding is seen that close.
+        PerceptionFailure: no binding is seen within those 150 px.
     """
     pixels, points = _binding(frame)
     u, v, _ = project(frame, shoulder_in_map)[0]
     near = np.hypot(pixels[:, 0] - u, pixels[:, 1] - v) <= 150 * pixel_scale(frame)
     if near.sum() < 8:
         raise PerceptionFailure(Problem.OUT_OF_REACH, f"neck binding near the {side} shoulder")
-    position = points[near][int(rng.integers(near.sum()))]
-    strip = points[np.linalg.norm(points - position, axis=1) < 0.05]
-    position = np.median(points[np.linalg.norm(points - position, axis=1) < 0.02], axis=0)
+    points = points[near]
+    away = np.linalg.norm(points - shoulder_in_map, axis=1)
+    end = np.median(points[away <= np.sort(away)[7]], axis=0)
+    strip = points[np.linalg.norm(points - end, axis=1) < _END]
+    position = np.median(strip, axis=0)
     normal = surface_normal(strip, frame.pose_camera_in_map[:3, 3])
     return GraspPoint(stamp=frame.stamp, confidence=min(1.0, near.sum() / 60), target=COLLAR_OF[side],
                       position_in_map=position, approach_in_map=-normal,

@@ -76,9 +76,6 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
               **details: Any) -> LayerCount:
         return layers([*frames, frame], side, pose_hand_in_map, **details)
 
-    def near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-        return collar_near_shoulder(frame, side, shoulder_in_map, rng)
-
     def head(frame: Frame) -> Estimate:
         return head_seen(frame, room.bed)
 
@@ -98,4 +95,4 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
             "sleeve_opening": sleeve_opening, "hook": hook, "hung_corner": hung_corner,
             "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
-            "collar_near_shoulder": near_shoulder, "head": head, "chest_cover": cover, "arm": arm}
+            "collar_near_shoulder": collar_near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

@@ -29,6 +29,7 @@ ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
+_ON, _TAUT = -0.2, 4.5  # a grip beyond this place that pulls so hard [N] has the sleeve on: threads stretch by 0.8
 _LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
@@ -59,7 +60,7 @@ class PullAlongArm(Skill):
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
-        ring, travelled, begun = RingWatch(self, self.grip), 0.0, self.now()
+        ring, travelled, begun = RingWatch(self, self.grip.arm, self.grip.hand), 0.0, self.now()
         while True:
             path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
             seen = self.world.observe()
@@ -69,7 +70,7 @@ class PullAlongArm(Skill):
                 travelled += np.sign(before - place) * path.distance(before, place)
             if place < _LAST and np.isfinite(self.seat):
                 ring.follow(path, hand[:3, 3])
-            if self._there(ring.place, place):
+            if self._there(ring.place, place) or (place < _ON and np.linalg.norm(load) > _TAUT):
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:

@@ -6,10 +6,10 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import Cover, SleeveOpening
+from ..sim.world import Side
 from .arm_path import ArmPath
 from .bedside import outwards
 from .skill import Skill
-from .strap_grip import StrapGrip
 
 PERIOD = 0.2  # between two looks [s]
 # Where the armhole's outer edge belongs, outwards of the arm's axis [m].  The hoop is 0.17 m wide, and its inner
@@ -33,8 +33,8 @@ class RingWatch:
         place: where along the arm `follow` saw the armhole, the median over what shows of it; None when it is hidden.
     """
 
-    def __init__(self, skill: Skill, grip: StrapGrip) -> None:
-        self._skill, self._grip = skill, grip
+    def __init__(self, skill: Skill, arm: Side, hand: Side) -> None:
+        self._skill, self._arm, self._hand = skill, arm, hand
         self.aside = self.off = 0.0
         self.place: float | None = None
         self._looked = self._placed = -np.inf
@@ -51,11 +51,11 @@ class RingWatch:
             return
         self._looked = self._skill.now()
         across = path.frame(place)[:, 0]
-        side = float(np.sign(across @ outwards(self._grip.arm)))
+        side = float(np.sign(across @ outwards(self._arm)))
         edges = []
-        for camera in ("head", f"{self._grip.hand}_hand"):
+        for camera in ("head", f"{self._hand}_hand"):
             try:
-                ring = self._skill.context.perceive("held_armhole", self._skill.world.look(camera), side=self._grip.arm,
+                ring = self._skill.context.perceive("held_armhole", self._skill.world.look(camera), side=self._arm,
                                                     near_in_map=grip_in_map)
             except PerceptionFailure:
                 continue
@@ -73,7 +73,7 @@ class RingWatch:
             return
         self._looked = now
         try:
-            ring = self._skill.context.perceive("held_armhole", self._skill.world.look("head"), side=self._grip.arm,
+            ring = self._skill.context.perceive("held_armhole", self._skill.world.look("head"), side=self._arm,
                                                 near_in_map=grip_in_map)
         except PerceptionFailure:
             if now - self._placed > _STALE:
@@ -85,7 +85,7 @@ class RingWatch:
 
     def missed(self, path: ArmPath) -> bool:
         """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""
-        frame = self._skill.world.look(f"{self._grip.hand}_hand")
+        frame = self._skill.world.look(f"{self._hand}_hand")
         hand = np.array([path.point(float(place)) for place in _HAND])
         try:
             cover = self._skill.context.perceive("hand_cover", frame, points_in_map=hand)

@@ -1,4 +1,4 @@
-"""Stage D: take the collar near a shoulder, lift it a little, and draw it up to the neck."""
+"""Stage D: take the collar near a shoulder, lift it a little, and draw it on until the sleeve sits at the shoulder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from ..perception.cloud import unit
 from ..perception.estimates import GraspPoint
 from ..sim.world import SIDES, HandTwist, Side
-from .arm_path import UP
+from .arm_path import UP, ArmPath
 from .bedside import outwards
 from .context import Context
 from .hands import cloth_load, hand_now, move_hands, open_gripper
@@ -18,20 +18,24 @@ from .ports import Input, Output
 from .pull_law import PullLaw
 from .reasons import Reason, SkillFailure
 from .retreat import withdraw
+from .ring_watch import RingWatch
 from .scripted_person import offer_person
 from .skill import Skill
 from .tracking import watch_arm
 
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
-DRAW = 0.07  # and then drawn at most this far [m]
-SPEED = 0.08  # [m/s]
-TAUT = 4.0  # a collar that pulls this hard is where it can be [N]
-_NECK = np.array((0.12, -0.03, 0.10))  # goal for the collar from a shoulder: inwards, headward, above [m]
+DRAW = 0.20  # and then drawn at most this far [m]
+SPEED = 0.10  # [m/s]
+TAUT = 4.5  # a collar that pulls this hard is where it can be [N]
+SEATED = -0.45  # place along the arm, beyond its shoulder, where a seated armhole shows: what is seen of it leans over
 _STEEPEST = np.deg2rad(35.0)  # the hand comes from above, at most this far off the vertical
 
 
 class Spread(Skill):
-    """Grasps the neck binding near one shoulder and draws it to the neck, so that the gown lies straight.
+    """Grasps the neck binding near one shoulder and draws it on along the line of the upper arm.
+
+    That takes the sleeve to the shoulder, where it may have slipped from while the other arm was dressed, and the
+    collar to the neck.
 
     Inputs: `side` of the person; `hand` that does it.  Output: `grasp`, the place it took.
     It ends with the hand open and drawn back, whether it succeeds or misses.
@@ -46,7 +50,8 @@ class Spread(Skill):
     def steps(self) -> Iterator[None]:
         """Look, reach in, pinch, lift, draw, let go."""
         self.note(f"looks for the collar near the {self.side} shoulder")
-        shoulder = watch_arm(self, self.side).points_in_map[0]
+        path = ArmPath.of(watch_arm(self, self.side))
+        shoulder = path.points[0]
         point = self.context.perceive("collar_near_shoulder", self.world.look("head"), side=self.side,
                                       shoulder_in_map=shoulder)
         approach = _from_above(point.approach_in_map, outwards(self.side))
@@ -62,25 +67,28 @@ class Spread(Skill):
         lifted = hand_now(self, self.hand)
         lifted[:3, 3] += LIFT * UP
         yield from move_hands(self, {self.hand: lifted}, speed=SPEED, way="either")
-        yield from self._draw(shoulder)
+        yield from self._draw(path)
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], 0.12)
         self.grasp = point
 
-    def _draw(self, shoulder: np.ndarray) -> Iterator[None]:
-        """Pull towards the neck until there, far enough, or taut."""
-        n, law = SIDES.index(self.hand), PullLaw()
-        goal = shoulder + _NECK * np.where(np.arange(3) == 0, -outwards(self.side)[0], 1.0)
+    def _draw(self, path: ArmPath) -> Iterator[None]:
+        """Pull on until the armhole is seen at the shoulder, far enough, or taut."""
+        n, law, ring = SIDES.index(self.hand), PullLaw(), RingWatch(self, self.side, self.hand)
+        way = unit(-path.direction(0.0) * (1.0, 1.0, 0.0))
         start = hand_now(self, self.hand)[:3, 3]
         end = self.now() + 2.0 * DRAW / SPEED
         while self.now() < end:
             here = self.world.observe().pose_hand_in_map[n, :3, 3]
             load = cloth_load(self, self.hand)
-            way = goal - here
-            if np.linalg.norm(way) < 0.01 or np.linalg.norm(here - start) > DRAW or np.linalg.norm(load) > TAUT:
+            ring.follow(path, here)
+            seated = ring.place is not None and ring.place < SEATED
+            if seated or (here - start) @ way > DRAW or np.linalg.norm(load) > TAUT:
                 return
-            speed = min(SPEED, 2.0 * float(np.linalg.norm(way))) * law.ease(load)
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(speed * unit(way), np.zeros(3))))
+            gone = float((here - start) @ way)
+            self.note(f"draws the {self.side} collar: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
+            linear = SPEED * law.ease(load) * way
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
 
     @classmethod

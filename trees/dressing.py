@@ -29,8 +29,8 @@ from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
 # The first sleeve slips back a little while the second is pulled.
-HEAD_END: dict[Side, float] = {"right": -0.22, "left": -0.24}
-SEAT: dict[Side, float] = {"right": -0.08, "left": -0.06}
+HEAD_END: dict[Side, float] = {"right": -0.45, "left": -0.45}
+SEAT: dict[Side, float] = {"right": -0.30, "left": -0.30}
 # How hard a sleeve is drawn on its way to the hand; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
