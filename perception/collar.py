@@ -15,6 +15,7 @@ from .garment import gown_labels
 
 _MOST = 1200  # points of the binding that are worked on
 _END = 0.06  # the end of the binding is grasped in the middle of that much of it [m]
+_AROUND, _RIM = 0.3, 40  # the armhole of a shoulder is that near [m]; points of it to look at
 _GAP = 0.03  # larger steps between neighbours are depth steps [m]
 
 
@@ -154,9 +155,10 @@ def collar_corner(frame: Frame, corner: Side, exclude: np.ndarray | None = None,
 
 
 def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-    """Stage D: the place on the neck binding that lies nearest to the person's shoulder.
+    """Stage D: the end of the neck binding at the armhole that sits near the person's shoulder.
 
-    The paper takes a random one within 150 px of its images; the nearest pulls the most at the sleeve.
+    The paper takes a random place within 150 px of its images; the end next to the armhole pulls the most at the
+    sleeve.  Where no armhole shows, it is the place nearest to the shoulder.
 
     Args:
         frame: a view from above the person.
@@ -173,6 +175,10 @@ def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) 
         raise PerceptionFailure(Problem.OUT_OF_REACH, f"neck binding near the {side} shoulder")
     points = points[near]
     away = np.linalg.norm(points - shoulder_in_map, axis=1)
+    armhole = _armhole_points(frame)
+    armhole = armhole[np.linalg.norm(armhole - shoulder_in_map, axis=1) < _AROUND]
+    if len(armhole) >= _RIM:
+        away = 0.3 * away + np.linalg.norm(points[:, None] - armhole[:: len(armhole) // _RIM], axis=2).min(axis=1)
     end = np.median(points[away <= np.sort(away)[7]], axis=0)
     strip = points[np.linalg.norm(points - end, axis=1) < _END]
     position = np.median(strip, axis=0)

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..perception.cloud import unit
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.world import SIDES, HandTwist, Side
 from .arm_path import UP, ArmPath
 from .bedside import outwards
 from .context import Context
 from .hands import cloth_load, hand_now, move_hands, open_gripper
+from .motion.errors import MotionError
 from .pinch import pinch, reach_in
 from .ports import Input, Output
 from .pull_law import PullLaw
@@ -23,6 +25,7 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .tracking import watch_arm
 
+TUGS = 2
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
 DRAW = 0.20  # and then drawn at most this far [m]
 SPEED = 0.10  # [m/s]
@@ -48,12 +51,21 @@ class Spread(Skill):
                Reason.FORCE_LIMIT, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
-        """Look, reach in, pinch, lift, draw, let go."""
+        """Draw the collar, and once more: cloth that is stuck under the arm follows a little each time."""
+        for tug in range(TUGS):
+            try:
+                yield from self._tug()
+            except (SkillFailure, PerceptionFailure, MotionError):
+                if tug == 0:
+                    raise
+                return  # it has been drawn once already
+
+    def _tug(self) -> Iterator[None]:
+        """Take the collar, draw it, let it go."""
         self.note(f"looks for the collar near the {self.side} shoulder")
         path = ArmPath.of(watch_arm(self, self.side))
-        shoulder = path.points[0]
         point = self.context.perceive("collar_near_shoulder", self.world.look("head"), side=self.side,
-                                      shoulder_in_map=shoulder)
+                                      shoulder_in_map=path.points[0])
         approach = _from_above(point.approach_in_map, outwards(self.side))
         yield from reach_in(self, self.hand, point.position_in_map, approach, point.closing_in_map)
         try:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..perception.cloud import project, unit
+from ..perception.colours import Surface, surfaces
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture, Head
 from ..sim.world import SIDES, Frame, Side
@@ -114,8 +115,10 @@ def visible_share(frame: Frame, posture: ArmPosture) -> float:
     u, v, depth = project(frame, axis).T
     height, width = frame.depth.shape
     inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
-    seen = frame.depth[np.where(inside, np.round(v), 0).astype(int), np.where(inside, np.round(u), 0).astype(int)]
-    return float((inside & (seen > depth - _BEHIND)).mean())
+    rows, columns = (np.where(inside, np.round(x), 0).astype(int) for x in (v, u))
+    seen = frame.depth[rows, columns]
+    skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN  # an arm in front of where it was is not hidden
+    return float((inside & (skin | (seen > depth - _BEHIND))).mean())
 
 
 def see_person(skill: Skill) -> list[Side]:

@@ -70,8 +70,9 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
-                     stand=stance(arm, "shoulder")))
+        RecoverBy(f"up to the {arm} shoulder", PullAlongArm(
+            f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
+            stand=stance(arm, "shoulder")), {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
         (Reason.ARM_SLIPPED, "slipped arm"), (Reason.GRASP_MISSED, "missed grasp"), (Reason.ARM_LOST, "lost arm"),

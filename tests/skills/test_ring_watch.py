@@ -35,7 +35,7 @@ def make(points=None, share=1.0):
     estimators = {"held_armhole": ring,
                   "hand_cover": lambda frame, **_: Cover(stamp=frame.stamp, confidence=0.9, share=share)}
     skill = Watcher("watch", Context(world=guard, guard=guard, perception=Perception(estimators)))
-    return RingWatch(skill, GRIP), world
+    return RingWatch(skill, GRIP.arm, GRIP.hand), world
 
 
 def hoop(place, outer):

@@ -12,12 +12,13 @@ from caretree.trees.guard import GuardedWorld
 DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
 
-def looking_down(stamp=0.0, covered=()):
+def looking_down(stamp=0.0, covered=(), colour=(0, 0, 0)):
     """A view straight down on the bed, whose mattress is 1.6 m away; `covered` pixel columns show something nearer."""
     depth = np.full((150, 200), 1.6, np.float32)
     depth[:, list(covered)] = 1.2
     depth += 1e-3 * np.random.default_rng(int(1000 * stamp)).standard_normal(depth.shape).astype(np.float32)
-    return Frame(camera="head", stamp=stamp, rgb=np.zeros((150, 200, 3), np.uint8), depth=depth,
+    rgb = np.full((150, 200, 3), colour, np.uint8)
+    return Frame(camera="head", stamp=stamp, rgb=rgb, depth=depth,
                  intrinsics=(150.0, 150.0, 100.0, 75.0), pose_camera_in_map=DOWN)
 
 
@@ -40,6 +41,12 @@ def test_one_look_serves_several_ticks():
         world.clock.wait_until(world.clock.now() + 1 / 15)
     assert 3 <= len(asked) <= 5
     assert "right arm" in watch_of(skill).parts
+
+
+def test_an_arm_in_front_of_where_it_was_is_not_hidden():
+    lifted = range(200)
+    assert visible_share(looking_down(covered=lifted), lying_posture("right")) == 0.0
+    assert visible_share(looking_down(covered=lifted, colour=(214, 158, 124)), lying_posture("right")) == 1.0
 
 
 def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
