@@ -65,7 +65,7 @@ def bullet_fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES,
     if spec.air_drag > 0:
         air = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": spec.air_drag})
         settings = ClothSettings(friction=spec.friction, gravity=(0.0, 0.0, -GRAVITY))
-        patch = ClothPatch((air,), mesh.vertices, mesh.sewn, spec.mass, settings, set(mesh.corners), None,
+        patch = ClothPatch((air,), mesh.vertices, mesh.faces, spec.mass, settings, set(mesh.corners), None,
                            units.PER_SECOND)
         if patch.cloth_mass < spec.mass / 2:
             raise CaretreeError(f"gown '{spec.name}' weighs {spec.mass * 1e3:.0f} g, with air PyBullet needs more than "

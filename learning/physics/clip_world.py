@@ -20,7 +20,7 @@ from ...sim.gown import GownMesh, GownSpec, build_gown
 from .clip import FRAMES, RATE, Clip
 from .film_camera import FilmCamera, standard_camera
 from .hang import hang, held_start
-from .springs import Springs, Weave, advance, weave
+from .springs import Springs, Weave, advance, damped, weave
 
 CLAMP_MASS = 0.03  # of the clamp that falls with the released vertex [kg]
 STIFFNESS_MAX = 0.35  # elastic * dt^2 / vertex mass: half of what is stable; the step is chosen to keep below it
@@ -82,9 +82,10 @@ def fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES, clamp: float =
     free[mesh.corners[0]] = False
     steps = steps_per_frame(spec, len(start))
     x, v = start.copy(), np.zeros_like(start)
+    system = damped(springs, free, 1.0 / RATE / steps)
     out = [x.copy()]
     for _ in range(frames - 1):
-        advance(springs, x, v, free, 1.0 / RATE / steps, steps)
+        advance(springs, x, v, free, 1.0 / RATE / steps, steps, system)
         out.append(x.copy())
     return np.array(out)
 

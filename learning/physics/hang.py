@@ -14,13 +14,12 @@ parameters.
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sparse
 from numba import njit
-from scipy.sparse.linalg import splu
 
 from ...sim.cloth import GRAVITY
 from ...sim.gown import GownMesh
-from .springs import Springs
+from .band import factor, solve
+from .springs import Springs, laplacian
 
 NEARER = 0.8  # distance of the two held vertices over their distance at rest
 CURL = 1.5  # of the start: curvature of the roll about the vertical [1/m]
@@ -49,50 +48,27 @@ def held_start(mesh: GownMesh, held: tuple[int, int]) -> np.ndarray:
 
 @njit(cache=True, fastmath=True)
 def _turned(x, base, start, other, stiffness, rest, row, out):
-    """Right-hand side of the balance into `out` (free, 3): held part and weight, and every spring at rest length."""
+    """Right-hand side of the balance into `out` (3, free): held part and weight, and every spring at rest length."""
     out[:] = base
     for i in range(x.shape[0]):
         a = row[i]
         for q in range(start[i], start[i + 1]):
             j = other[q]
-            if j < i:  # each spring once
-                continue
             dx, dy, dz = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], x[i, 2] - x[j, 2]
             share = stiffness[q] * rest[q] / np.sqrt(dx * dx + dy * dy + dz * dz)
             if a >= 0:
-                out[a, 0] += share * dx
-                out[a, 1] += share * dy
-                out[a, 2] += share * dz
+                out[0, a] += share * dx
+                out[1, a] += share * dy
+                out[2, a] += share * dz
             b = row[j]
             if b >= 0:
-                out[b, 0] -= share * dx
-                out[b, 1] -= share * dy
-                out[b, 2] -= share * dz
+                out[0, b] -= share * dx
+                out[1, b] -= share * dy
+                out[2, b] -= share * dz
 
 
 @njit(cache=True, fastmath=True)
-def _solve(begin, below, lower, diagonal, y):
-    """Turn y into (L D L^T)^-1 y in place; L has a unit diagonal and its columns' lower parts are listed."""
-    n = len(diagonal)
-    for c in range(n):
-        y0, y1, y2 = y[c, 0], y[c, 1], y[c, 2]
-        for q in range(begin[c], begin[c + 1]):
-            k = below[q]
-            y[k, 0] -= lower[q] * y0
-            y[k, 1] -= lower[q] * y1
-            y[k, 2] -= lower[q] * y2
-    for c in range(n - 1, -1, -1):
-        y0, y1, y2 = y[c, 0] / diagonal[c], y[c, 1] / diagonal[c], y[c, 2] / diagonal[c]
-        for q in range(begin[c], begin[c + 1]):
-            k = below[q]
-            y0 -= lower[q] * y[k, 0]
-            y1 -= lower[q] * y[k, 1]
-            y2 -= lower[q] * y[k, 2]
-        y[c, 0], y[c, 1], y[c, 2] = y0, y1, y2
-
-
-@njit(cache=True, fastmath=True)
-def _search(x, base, start, other, stiffness, rest, row, begin, below, lower, diagonal, rounds, momentum):
+def _search(x, base, start, other, stiffness, rest, row, lower, rounds, momentum):
     now, before, ahead = x.copy(), x.copy(), x.copy()
     out = np.empty_like(base)
     for _ in range(rounds):
@@ -102,11 +78,11 @@ def _search(x, base, start, other, stiffness, rest, row, begin, below, lower, di
                     ahead[i, d] = now[i, d] + momentum * (now[i, d] - before[i, d])
                     before[i, d] = now[i, d]
         _turned(ahead, base, start, other, stiffness, rest, row, out)
-        _solve(begin, below, lower, diagonal, out)
+        solve(lower, out)
         for i in range(x.shape[0]):
             if row[i] >= 0:
                 for d in range(3):
-                    now[i, d] = out[row[i], d]
+                    now[i, d] = out[d, row[i]]
     return now
 
 
@@ -122,23 +98,11 @@ def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = R
     Returns:
         (V, 3) [m].
     """
-    count = len(x)
-    one = np.repeat(np.arange(count), np.diff(springs.start))
-    degree = np.bincount(one, weights=springs.stiffness, minlength=count)
-    pulls = sparse.csr_matrix((springs.stiffness, (one, springs.other)), (count, count))
-    matrix = (sparse.diags(degree) - pulls).tocsc()
-    free = np.setdiff1d(np.arange(count), held)
-    # the matrix is symmetric and diagonally dominant: with diagonal pivots and one order for rows and columns its
-    # factors are L and D L^T
-    order = np.argsort(splu(matrix[free][:, free], permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-                            options={"SymmetricMode": True}).perm_c)
-    free = free[order]
-    row = np.full(count, -1)
-    row[free] = np.arange(len(free))
-    base = -(matrix[free][:, list(held)] @ x[list(held)])
-    base[:, 2] -= springs.mass[free] * GRAVITY
-    factor = splu(matrix[free][:, free].tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0,
-                  options={"SymmetricMode": True})
-    lower = sparse.csc_matrix(sparse.tril(factor.L, -1))
-    return _search(x, base, springs.start, springs.other, springs.stiffness, springs.rest, row, lower.indptr,
-                   lower.indices, lower.data, factor.U.diagonal(), rounds, MOMENTUM)
+    free = np.ones(len(x), bool)
+    free[list(held)] = False
+    pulls = laplacian(springs, springs.stiffness)
+    system = factor(pulls, free)
+    base = np.ascontiguousarray(-(pulls[system.free][:, list(held)] @ x[list(held)]).T)
+    base[2] -= springs.mass[system.free] * GRAVITY
+    return _search(x, base, springs.start, springs.other, springs.stiffness, springs.rest, system.row, system.lower,
+                   rounds, MOMENTUM)

@@ -19,23 +19,22 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
+import scipy.sparse as sparse
 
 from ...sim.cloth import GRAVITY
 from ...sim.gown import GownMesh, edge_counts
-
-TOLERANCE = 1e-5  # of the implicit damping, relative to the momentum
-ROUNDS_MAX = 200  # conjugate gradient rounds a step
+from .band import Band, factor, solve
 
 
 @dataclass(frozen=True, kw_only=True)
 class Springs:
-    """A gown's springs, each listed at both of its ends.
+    """A gown's springs, each listed once, at the end with the lower number.
 
     Attributes:
         start: (V + 1,) where each vertex's springs begin in the lists below.
-        other: (2 S,) vertex at the other end.
-        stiffness: (2 S,) [N/m].
-        rest: (2 S,) rest lengths [m].
+        other: (S,) vertex at the other end.
+        stiffness: (S,) [N/m].
+        rest: (S,) rest lengths [m].
         mass: (V,) [kg].
         area: (V,) a third of the faces around each vertex [m^2].
         damping: of every spring, in all directions [N s/m].
@@ -58,9 +57,9 @@ class Weave:
 
     Attributes:
         start: (V + 1,) as in `Springs`.
-        other: (2 S,) as in `Springs`.
-        rest: (2 S,) rest lengths [m].
-        bends: (2 S,) bool, a bending spring (two edges apart).
+        other: (S,) as in `Springs`.
+        rest: (S,) rest lengths [m].
+        bends: (S,) bool, a bending spring (two edges apart).
         area: (V,) [m^2].
     """
 
@@ -90,13 +89,13 @@ def weave(mesh: GownMesh) -> Weave:
     pairs = np.vstack([edges, np.array(apart).reshape(-1, 2)])
     bends = np.arange(len(pairs)) >= len(edges)
     length = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
-    one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
-    order = np.argsort(one, kind="stable")
-    a, b, c = (vertices[mesh.sewn[:, k]] for k in range(3))
-    area = np.bincount(mesh.sewn.ravel(), minlength=count,
+    order = np.argsort(pairs[:, 0], kind="stable")
+    one, other = pairs[order].T
+    a, b, c = (vertices[mesh.faces[:, k]] for k in range(3))  # the air does not feel the stays
+    area = np.bincount(mesh.faces.ravel(), minlength=count,
                        weights=np.repeat(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0, 3))
-    return Weave(start=np.searchsorted(one[order], np.arange(count + 1)), other=np.ascontiguousarray(other[order]),
-                 rest=np.tile(length, 2)[order], bends=np.tile(bends, 2)[order], area=area)
+    return Weave(start=np.searchsorted(one, np.arange(count + 1)), other=np.ascontiguousarray(other),
+                 rest=length[order], bends=bends[order], area=area)
 
 
 @numba.njit(cache=True, fastmath=True)
@@ -106,8 +105,6 @@ def _pull(x, start, other, stiffness, rest, force):
     for i in range(x.shape[0]):
         for q in range(start[i], start[i + 1]):
             j = other[q]
-            if j < i:  # each spring once
-                continue
             dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
             pull = stiffness[q] * (1.0 - rest[q] / np.sqrt(dx * dx + dy * dy + dz * dz))
             force[i, 0] += pull * dx
@@ -119,81 +116,46 @@ def _pull(x, start, other, stiffness, rest, force):
 
 
 @numba.njit(cache=True, fastmath=True)
-def _damp(p, start, other, mass, free, coupling, image):
-    """(M + coupling L) p into `image`; returns p . image.  Held vertices have p = 0."""
-    product = 0.0
-    for i in range(p.shape[0]):
-        if not free[i]:
-            continue
-        sx = sy = sz = 0.0
-        for q in range(start[i], start[i + 1]):
-            j = other[q]
-            sx += p[j, 0]
-            sy += p[j, 1]
-            sz += p[j, 2]
-        own = mass[i] + coupling * (start[i + 1] - start[i])
-        image[i, 0] = own * p[i, 0] - coupling * sx
-        image[i, 1] = own * p[i, 1] - coupling * sy
-        image[i, 2] = own * p[i, 2] - coupling * sz
-        product += p[i, 0] * image[i, 0] + p[i, 1] * image[i, 1] + p[i, 2] * image[i, 2]
-    return product
-
-
-@numba.njit(cache=True, fastmath=True)
-def _advance(x, v, start, other, stiffness, rest, mass, area, free, damping, drag, gravity, dt, steps, tolerance):
-    """`steps` steps in place; returns the conjugate gradient rounds they took."""
+def _advance(x, v, start, other, stiffness, rest, mass, area, row, lower, drag, gravity, dt, steps):
+    """`steps` steps in place."""
     n = x.shape[0]
-    w, r, p, image = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
-    coupling = dt * damping
-    rounds = 0
-    for step in range(steps):
-        _pull(x, start, other, stiffness, rest, image)
-        scale = 0.0
+    force, momentum = np.zeros((n, 3)), np.empty((3, lower.shape[0]))
+    for _ in range(steps):
+        _pull(x, start, other, stiffness, rest, force)
         for i in range(n):
-            if not free[i]:
+            a = row[i]
+            if a < 0:
                 continue
-            push = dt / mass[i]
             air = drag * area[i] * np.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
             for d in range(3):
-                before = v[i, d]
-                last = before - w[i, d] if step > 0 else 0.0  # what damping changed in the last step: a good guess
-                w[i, d] = before + push * (image[i, d] - air * before) - (dt * gravity if d == 2 else 0.0)
-                v[i, d] = w[i, d] + last
-                scale += (mass[i] * w[i, d]) ** 2
-        _damp(v, start, other, mass, free, coupling, image)
-        left = 0.0
+                momentum[d, a] = mass[i] * v[i, d] + dt * (force[i, d] - air * v[i, d])
+            momentum[2, a] -= dt * gravity * mass[i]
+        solve(lower, momentum)
         for i in range(n):
-            if free[i]:
+            a = row[i]
+            if a >= 0:
                 for d in range(3):
-                    r[i, d] = mass[i] * w[i, d] - image[i, d]
-                    p[i, d] = r[i, d]
-                    left += r[i, d] ** 2
-        k = 0
-        while left > tolerance * tolerance * scale and k < ROUNDS_MAX:
-            share, before_left = left / _damp(p, start, other, mass, free, coupling, image), left
-            left = 0.0
-            for i in range(n):
-                if free[i]:
-                    for d in range(3):
-                        v[i, d] += share * p[i, d]
-                        r[i, d] -= share * image[i, d]
-                        left += r[i, d] ** 2
-            turn = left / before_left
-            for i in range(n):
-                if free[i]:
-                    for d in range(3):
-                        p[i, d] = r[i, d] + turn * p[i, d]
-            k += 1
-        rounds += k
-        for i in range(n):
-            if free[i]:
-                for d in range(3):
+                    v[i, d] = momentum[d, a]
                     x[i, d] += dt * v[i, d]
-    return rounds
+
+
+def laplacian(springs: Springs, weights: np.ndarray) -> sparse.csr_matrix:
+    """(V, V) graph Laplacian of the springs with `weights` (S,) on them, listed as in `Springs`."""
+    count = len(springs.mass)
+    one = np.repeat(np.arange(count), np.diff(springs.start))
+    joined = sparse.csr_matrix((weights, (one, springs.other)), (count, count))
+    joined = joined + joined.T
+    return (sparse.diags(joined.sum(axis=1).A1) - joined).tocsr()
+
+
+def damped(springs: Springs, free: np.ndarray, dt: float) -> Band:
+    """The left side of a step of `dt` [s], M + dt d L, factored; `free` is (V,) bool, the others are held."""
+    damping = laplacian(springs, np.full(len(springs.other), dt * springs.damping))
+    return factor((sparse.diags(springs.mass) + damping).tocsr(), free)
 
 
 def advance(springs: Springs, x: np.ndarray, v: np.ndarray, free: np.ndarray, dt: float, steps: int,
-            tolerance: float = TOLERANCE) -> int:
+            system: Band | None = None) -> None:
     """Move `x` and `v`, both (V, 3) [m], [m/s], in place by `steps` steps of `dt` [s].
 
     Args:
@@ -203,10 +165,8 @@ def advance(springs: Springs, x: np.ndarray, v: np.ndarray, free: np.ndarray, dt
         free: (V,) bool; the others stay where they are.
         dt: step [s].
         steps: how many.
-        tolerance: of the implicit damping.
-
-    Returns:
-        Rounds of conjugate gradients, the measure of what it cost.
+        system: what `damped` made of the same gown, vertices and step; made anew when omitted.
     """
-    return _advance(x, v, springs.start, springs.other, springs.stiffness, springs.rest, springs.mass, springs.area,
-                    free, springs.damping, springs.air_drag, GRAVITY, dt, steps, tolerance)
+    system = system or damped(springs, free, dt)
+    _advance(x, v, springs.start, springs.other, springs.stiffness, springs.rest, springs.mass, springs.area,
+             system.row, system.lower, springs.air_drag, GRAVITY, dt, steps)

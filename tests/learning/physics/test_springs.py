@@ -44,7 +44,7 @@ def test_springs_are_bullets(small_gown):
         sides.setdefault(b, set()).add(a)
     assert all(sides[a] & sides[b] for a, b in far)  # two edges apart
     np.testing.assert_allclose(woven.area.sum(), sum(
-        0.5 * np.linalg.norm(np.cross(*(mesh.vertices[face[1:]] - mesh.vertices[face[0]]))) for face in mesh.sewn))
+        0.5 * np.linalg.norm(np.cross(*(mesh.vertices[face[1:]] - mesh.vertices[face[0]]))) for face in mesh.faces))
 
 
 def moving(gown, seed=0):
