@@ -23,7 +23,6 @@ from .tracking import Hold, careful, watch_arm
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
-_PAGE, _LOW = (0.80, 0.72, 0.64, 0.56), 0.18  # beyond the fingertips, and above the bed, to turn a sleeve over [m]
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
 
@@ -53,7 +52,6 @@ class PresentSleeve(Skill):
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
-        yield from holding(self, self.hold, self._turn_over(path))
         yield from holding(self, self.hold, self._carry_out(path))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
@@ -63,22 +61,6 @@ class PresentSleeve(Skill):
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
         yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
-
-    def _turn_over(self, path: ArmPath) -> Iterator[None]:
-        """Carry the strap low over its own armhole towards the feet, as far as reach and cloth allow, like a page.
-
-        The outside of the armhole then faces down, and a sleeve that lay inside falls out of it.
-        """
-        for beyond in _PAGE:
-            place = presenting_place(path, beyond)
-            place[2] = self.world.room.bed[1, 2] + _LOW
-            goal = presenting(self.grip, path.direction(2.5), place)
-            try:
-                yield from self._until_taut(move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED),
-                                                       way="either"))
-                return
-            except MotionError:
-                continue  # nearer by is better than not at all
 
     def _carry_out(self, path: ArmPath) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""

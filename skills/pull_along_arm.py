@@ -29,7 +29,7 @@ ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
-_ON, _TAUT = -0.2, 4.5  # a grip beyond this place that pulls so hard [N] has the sleeve on: threads stretch by 0.8
+_ON, _TAUT = -0.1, 4.5  # a grip beyond this place that stands or pulls so hard [N] has the sleeve on
 _LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
@@ -75,6 +75,8 @@ class PullAlongArm(Skill):
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:
                 window.popleft()
+            if place < _ON and self._stands(window):
+                break  # as far as the arm, or the cloth, goes
             self._judge(window)
             if place > _THROUGH:
                 ring.look(path, place, hand[:3, 3])
@@ -101,15 +103,19 @@ class PullAlongArm(Skill):
             return grip <= self.upto
         return ring <= self.seat or grip <= self.upto - (_FARTHER if ring > self.seat + _LAGGING else 0.0)
 
+    def _stands(self, window: deque[tuple[float, float, float]]) -> bool:
+        """The hand has not come on for a while."""
+        return window[-1][0] - window[0][0] > 0.9 * STUCK_FOR and window[-1][1] - window[0][1] < ADVANCE
+
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
         """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""
         if window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
             return
         _, way, load = np.array(window).T
         moved = float(way[-1] - way[0])
-        if moved < ADVANCE and load.mean() > CAUGHT:
+        if self._stands(window) and load.mean() > CAUGHT:
             raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{load.mean():.1f} N and {moved * 100:.1f} cm in {STUCK_FOR} s")
-        if moved < ADVANCE:
+        if self._stands(window):
             raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand came on {moved * 100:.1f} cm in {STUCK_FOR} s")
         if load.max() < LOST:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"at most {load.max():.2f} N on the {self.grip.hand} hand")

@@ -21,8 +21,7 @@ from .strap_grip import StrapGrip, presenting, strap_grip
 
 DEPTH = 0.014  # of the fingertips below the cloth [m]
 STANDOFF = 0.10  # the straight way in [m]
-# From the fingertip to where the sleeve is presented first, as far as the arm reaches [m].  Carried that far the sleeve
-# is turned over like a page: its armhole hangs with the outside down, so that the sleeve falls out of it and not in.
+# From the fingertip to where the sleeve is presented first, as far as the arm reaches [m].  It swings out ahead.
 BEYOND = (0.50, 0.40, 0.30)
 _TILTS = np.deg2rad((25.0, 40.0, 55.0, 72.0, 88.0))  # of the approach below the horizontal
 _SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction

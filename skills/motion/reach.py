@@ -12,7 +12,7 @@ from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked, Unreachable
 from .ik import FreeAxis, solve_ik
 from .rrt import connect, segment_free
-from .trajectory import HandSpeed, plan_joint_motion
+from .trajectory import HandSpeed, plan_joint_motion, standing_contacts
 
 _LINE_STEP = 0.02  # [m]
 _LINE_TURN = 0.1  # [rad]
@@ -105,9 +105,12 @@ def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndar
     if checker is None:
         return timed(np.stack((start, goal)))
     arms = np.array(arm_positions, float)
+    given = standing_contacts(checker, moving, pose_base_in_map, arms)
 
     def free(q: np.ndarray) -> bool:
         arms[index] = q.reshape(-1, 7)
+        if given:
+            return given.issuperset(checker.collisions(pose_base_in_map, arms))
         return checker.free(pose_base_in_map, arms)
 
     if segment_free(start, goal, free):

@@ -71,15 +71,28 @@ def check_motion(checker: CollisionChecker, sides: list[Side], samples: np.ndarr
     if other_arm is not None and len(sides) == 1:
         arms[1 - SIDES.index(sides[0])] = other_arm
     leaving: set[tuple[str, str]] = set()
+    given: set[tuple[str, str]] | None = None
     chosen = np.unique(np.append(np.arange(0, len(samples), max(1, len(samples) // 60)), len(samples) - 1))
     for k in chosen:
         for n, side in enumerate(sides):
             arms[SIDES.index(side)] = samples[k, 7 * n:7 * n + 7]
-        touching = [] if checker.free(pose_base_in_map, arms) else checker.collisions(pose_base_in_map, arms)
+        if given is None:
+            given = standing_contacts(checker, sides, pose_base_in_map, arms)
+        touching = [] if checker.free(pose_base_in_map, arms) else [
+            hit for hit in checker.collisions(pose_base_in_map, arms) if hit not in given]
         leaving = set(touching) if k == 0 else leaving & set(touching)
         if not leaving.issuperset(touching) or (touching and k == chosen[-1]):
             a, b = touching[0]
             raise MotionBlocked(f"the motion would bring {a.replace('_', ' ')} against {b.replace('_', ' ')}")
+
+
+def standing_contacts(checker: CollisionChecker, moving: list[Side], pose_base_in_map: np.ndarray,
+                      arms: np.ndarray) -> set[tuple[str, str]]:
+    """What an arm that stays where it is touches already, which is no reason for the other one not to move."""
+    if len(moving) == len(SIDES):
+        return set()
+    return {hit for hit in checker.collisions(pose_base_in_map, arms)
+            if not any(name.startswith(side) for side in moving for name in hit)}
 
 
 def _distinct(points: np.ndarray) -> np.ndarray:

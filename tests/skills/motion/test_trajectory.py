@@ -139,6 +139,14 @@ def test_reaching_goes_round_what_is_in_the_way(kinematics):
     np.testing.assert_array_equal(again.positions, round_it.positions)
 
 
+def test_an_arm_moves_while_the_other_one_touches_something(kinematics):
+    hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
+    at_the_other = CollisionChecker(kinematics, np.array(((hand - 0.05, hand + 0.05),)))
+    assert not at_the_other.free(BASE, model.READY)
+    motion = plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, sides=("right",), checker=at_the_other)
+    np.testing.assert_allclose(motion.positions[-1], 0.9 * model.READY[1], atol=1e-6)
+
+
 def test_no_way_out_of_a_box_is_told(kinematics):
     hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
     inside = CollisionChecker(kinematics, np.array(((hand - 0.3, hand + 0.3),)))
