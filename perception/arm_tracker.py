@@ -32,7 +32,7 @@ _FADE = 0.4  # time after which a motion has died out [s]
 _RECENT = 0.5  # what was seen or held that lately may be moving [s]
 # Speed of the joints, standard deviation [m/s]: in view anything goes; held by the robot it may be moving where it
 # is not seen; an arm that its owner cannot move, unseen and not held, stays where it is but for small slips.
-_SPEED_SEEN, _SPEED_HELD, _SPEED_HIDDEN = 0.10, 0.03, 0.01
+_SPEED_SEEN, _SPEED_HELD, _SPEED_HIDDEN = 0.10, 0.03, 0.003
 _SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard deviation [m]
 _EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
 _WORST = 6.0  # mean squared residual of a fit that is believed

@@ -54,7 +54,7 @@ class LiftArm(Skill):
     def steps(self) -> Iterator[None]:
         """Look, go over the arm, down, take it, swing it up."""
         self.note(f"takes the {self.side} arm")
-        posture = watch_arm(self, self.side, period=0.0, patience=0.0)
+        posture = watch_arm(self, self.side, period=0.0)
         yield from open_gripper(self, self.hand)
         above = over_arm(posture, self.place, lift=ABOVE)
         above = top_down_reachable(self, self.hand, above, (0.0, 0.25))

@@ -49,7 +49,19 @@ class LookAtPerson(Skill):
                     self.posture = posture
                     return
                 yield from self.wait(0.1)
-        raise lost
+        posture = self._remembered(lost)
+        self.note(f"takes the {self.side} arm, which is covered, to lie where it was")
+        self.posture = posture
+
+    def _remembered(self, lost: PerceptionFailure) -> ArmPosture:
+        """Where an arm that now lies under the gown was seen before."""
+        try:
+            posture = watch_arm(self, self.side)
+        except PerceptionFailure:
+            raise lost from None
+        if float(posture.deviation.max()) > _SETTLED:
+            raise lost
+        return posture
 
     @classmethod
     def example(cls, context: Context) -> Skill:

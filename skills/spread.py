@@ -17,6 +17,7 @@ from .hands import cloth_load, hand_now, move_hands, open_gripper
 from .motion.errors import MotionError
 from .pinch import pinch, reach_in
 from .ports import Input, Output
+from .pull_along_arm import HEADWARD
 from .pull_law import PullLaw
 from .reasons import Reason, SkillFailure
 from .retreat import withdraw
@@ -25,17 +26,17 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .tracking import watch_arm
 
-TUGS = 2
+TUGS = 2  # cloth that is stuck under the arm follows a little each time
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
-DRAW = 0.20  # and then drawn at most this far [m]
+DRAW = 0.15  # and then drawn at most this far [m]
 SPEED = 0.10  # [m/s]
-TAUT = 4.5  # a collar that pulls this hard is where it can be [N]
+TAUT = 3.5  # a collar that pulls this hard is where it can be [N]
 SEATED = -0.45  # place along the arm, beyond its shoulder, where a seated armhole shows: what is seen of it leans over
 _STEEPEST = np.deg2rad(35.0)  # the hand comes from above, at most this far off the vertical
 
 
 class Spread(Skill):
-    """Grasps the neck binding near one shoulder and draws it on along the line of the upper arm.
+    """Grasps the neck binding near one shoulder and draws it on, along the line of the upper arm and headward.
 
     That takes the sleeve to the shoulder, where it may have slipped from while the other arm was dressed, and the
     collar to the neck.
@@ -51,7 +52,7 @@ class Spread(Skill):
                Reason.FORCE_LIMIT, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
-        """Draw the collar, and once more: cloth that is stuck under the arm follows a little each time."""
+        """Draw the collar, and once more."""
         for tug in range(TUGS):
             try:
                 yield from self._tug()
@@ -87,7 +88,7 @@ class Spread(Skill):
     def _draw(self, path: ArmPath) -> Iterator[None]:
         """Pull on until the armhole is seen at the shoulder, far enough, or taut."""
         n, law, ring = SIDES.index(self.hand), PullLaw(), RingWatch(self, self.side, self.hand)
-        way = unit(-path.direction(0.0) * (1.0, 1.0, 0.0))
+        way = unit(unit(-path.direction(0.0) * (1.0, 1.0, 0.0)) + HEADWARD)
         start = hand_now(self, self.hand)[:3, 3]
         end = self.now() + 2.0 * DRAW / SPEED
         while self.now() < end:

@@ -23,7 +23,7 @@ from .arm_path import ArmPath
 from .skill import Skill
 
 PERIOD = 0.25  # between two looks [s]
-PATIENCE = 30.0  # an arm under the gown is taken to stay where it was for this long [s]
+PATIENCE = 300.0  # an arm under the gown, which its owner cannot move, is taken to stay for this long [s]
 _VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
 _BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
 NEAR_SPEED, _NEAR = 0.13, 0.34  # of a hand this near to the person; the guard's limits are 0.135 and 0.30 [m/s], [m]

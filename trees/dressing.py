@@ -101,7 +101,7 @@ def dress(context: Context) -> Behaviour:
 
 
 def spread(context: Context) -> Behaviour:
-    """Stage D: on the left, where the robot stands, then on the right; what counts in the end is a covered chest."""
+    """Stage D: what counts is a covered chest; where it is not, the collar is drawn on the left, then on the right."""
     order: tuple[tuple[Side, str], ...] = (("left", "bed_left"), ("right", "bed_right"))
     sides: list[Behaviour] = []
     for side, waypoint in order:
@@ -115,8 +115,13 @@ def spread(context: Context) -> Behaviour:
             Retreat(f"leave the {side} shoulder", context, back=0.3))
         as_it_is = Retreat(f"leave the {side} shoulder as it is", context, back=0.3)
         sides.append(fallback(f"the {side} shoulder, as far as it goes", draw, as_it_is))
-    covered = Condition("the chest is covered", _chest_covered, Reason.NOTHING_SEEN)
-    return Stage("D spread", None, Timeout("D in time", sequence("spread the gown", *sides, covered), seconds=200.0))
+
+    def covered(name: str) -> Behaviour:
+        return Condition(name, _chest_covered, Reason.NOTHING_SEEN)
+
+    return Stage("D spread", None, Timeout("D in time", fallback(
+        "spread the gown", covered("it lies spread already"),
+        sequence("draw it straight", *sides, covered("the chest is covered"))), seconds=200.0))
 
 
 def make_safe(context: Context) -> Behaviour:
