@@ -29,9 +29,7 @@ ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
-_ON, _TAUT = -0.1, 4.5  # a grip beyond this place that stands or pulls so hard [N] has the sleeve on
-HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
-_HEADWARD, _GENTLY = 0.12, 3.5  # the sleeve is drawn on at most this far [m] and this hard [N]
+_ON, _TAUT = -0.1, 4.4  # a grip beyond this place that stands or pulls so hard [N] has the sleeve on
 _LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
@@ -98,27 +96,6 @@ class PullAlongArm(Skill):
                 self._drive(follower, seen)
             self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
             yield
-        if np.isfinite(self.seat):
-            yield from self._draw_headward()
-
-    def _draw_headward(self) -> Iterator[None]:
-        """On towards the head of the bed: it brings along the armhole's lower half, which lags behind the strap."""
-        n, window, start = SIDES.index(self.grip.hand), deque[tuple[float, float, float]](), None
-        while True:
-            seen = self.world.observe()
-            hand, load = seen.pose_hand_in_map[n, :3, 3], seen.wrench_hand_in_map[n, :3]
-            start = hand if start is None else start
-            gone = float((hand - start) @ HEADWARD)
-            window.append((seen.time, gone, float(np.linalg.norm(load))))
-            while window[0][0] < seen.time - STUCK_FOR:
-                window.popleft()
-            if gone > _HEADWARD or np.linalg.norm(load) > _GENTLY or self._stands(window):
-                return
-            self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
-            linear = SPEED * self.law.ease(load) * HEADWARD
-            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.append(linear, np.zeros(3))))
-            yield
-
     def _there(self, ring: float | None, grip: float) -> bool:
         """The armhole lags behind the grip, more or less: as far as it is seen, it decides where the pull ends."""
         if ring is None or not np.isfinite(self.seat):

@@ -17,12 +17,12 @@ from .hands import cloth_load, hand_now, move_hands, open_gripper
 from .motion.errors import MotionError
 from .pinch import pinch, reach_in
 from .ports import Input, Output
-from .pull_along_arm import HEADWARD
 from .pull_law import PullLaw
 from .reasons import Reason, SkillFailure
 from .retreat import withdraw
 from .ring_watch import RingWatch
 from .scripted_person import offer_person
+from .seat_sleeve import HEADWARD
 from .skill import Skill
 from .tracking import watch_arm
 

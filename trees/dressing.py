@@ -23,6 +23,7 @@ from ..skills.pull_along_arm import PullAlongArm
 from ..skills.reasons import Reason
 from ..skills.release_arm import ReleaseArm
 from ..skills.retreat import Retreat
+from ..skills.seat_sleeve import SeatSleeve
 from ..skills.spread import Spread
 from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
@@ -72,7 +73,8 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
         RecoverBy(f"up to the {arm} shoulder", PullAlongArm(
             f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
-            stand=stance(arm, "shoulder")), {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2))
+            stand=stance(arm, "shoulder")), {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2),
+        SeatSleeve(f"seat the {arm} sleeve", context, grip=grip))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
         (Reason.ARM_SLIPPED, "slipped arm"), (Reason.GRASP_MISSED, "missed grasp"), (Reason.ARM_LOST, "lost arm"),

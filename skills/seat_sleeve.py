@@ -1,0 +1,87 @@
+"""Stage C: once the strap is over the shoulder, draw it headward and hold it there until the arm rests."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..perception.errors import PerceptionFailure
+from ..sim.world import SIDES, HandTwist
+from .context import Context
+from .hands import cloth_load
+from .ports import Input
+from .pull_law import PullLaw
+from .reasons import Reason
+from .scripted_person import offer_person
+from .skill import Skill
+from .strap_grip import StrapGrip
+from .tracking import watch_arm
+
+HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
+FARTHEST, TAUT = 0.12, 3.5  # the strap is drawn at most this far [m] and this hard [N]
+SPEED = 0.11  # [m/s]
+WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
+SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
+
+
+class SeatSleeve(Skill):
+    """Draws the strap on towards the head of the bed, then keeps it there while the arm sinks.
+
+    The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
+    was let go draws the sleeve back by a tenth of its length.  It ends with the hand still closed.
+
+    Inputs: `grip`, how the strap is held; `law`, constants of the pull.
+    """
+
+    grip = Input(StrapGrip)
+    law = Input(PullLaw, default=PullLaw())
+    reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
+
+    def steps(self) -> Iterator[None]:
+        """Draw, hold."""
+        yield from self._draw()
+        self.note(f"holds the {self.grip.arm} sleeve until the arm rests")
+        yield from self._hold()
+
+    def _draw(self) -> Iterator[None]:
+        """Headward until far enough, taut, or standing."""
+        n, window = SIDES.index(self.grip.hand), deque[tuple[float, float]]()
+        start = self.world.observe().pose_hand_in_map[n, :3, 3]
+        while True:
+            seen, load = self.world.observe(), cloth_load(self, self.grip.hand)
+            gone = float((seen.pose_hand_in_map[n, :3, 3] - start) @ HEADWARD)
+            window.append((seen.time, gone))
+            while window[0][0] < seen.time - WINDOW:
+                window.popleft()
+            stands = seen.time - window[0][0] > 0.9 * WINDOW and gone - window[0][1] < STANDS
+            if gone > FARTHEST or np.linalg.norm(load) > TAUT or stands:
+                return
+            self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
+            linear = SPEED * self.law.ease(load) * HEADWARD
+            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.append(linear, np.zeros(3))))
+            yield
+
+    def _hold(self) -> Iterator[None]:
+        """Wait for the arm to come to rest, as far as it is seen."""
+        window: deque[tuple[float, np.ndarray]] = deque()
+        end = self.now() + SINKING
+        while self.now() < end:
+            try:
+                window.append((self.now(), watch_arm(self, self.grip.arm).points_in_map))
+            except PerceptionFailure:
+                return
+            while window[0][0] < self.now() - WINDOW:
+                window.popleft()
+            sunk = float(np.linalg.norm(window[-1][1] - window[0][1], axis=1).max())
+            if self.now() - window[0][0] > 0.9 * WINDOW and sunk < RESTS:
+                return
+            yield
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+        return cls("seat sleeve", context, grip=grip)
