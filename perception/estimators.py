@@ -15,6 +15,7 @@
 | collar_near_shoulder | side, shoulder_in_map | GraspPoint `collar_*` |
 | hook | | GraspPoint `near_hang`: where the gown hangs |
 | hung_side | | GownSide |
+| shown_corner | hook_in_map, side | GraspPoint `collar_corner_*`: the one that shows best |
 | hung_corner | side, hook_in_map, other_length, near_in_map | GraspPoint `collar_corner_*` |
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
@@ -42,7 +43,7 @@ from .grip import gripped_cloth, layers
 from .hand_cover import hand_cover
 from .hanging import grasp_near_hang
 from .held_armhole import held_armhole
-from .hung_corner import hook, hung_corner
+from .hung_corner import hook, hung_corner, shown_corner
 from .hung_side import hung_side
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
@@ -92,7 +93,7 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
 
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hook": hook, "hung_corner": hung_corner,
-            "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
+            "sleeve_opening": sleeve_opening, "hook": hook, "shown_corner": shown_corner,
+            "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
             "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": collar_near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

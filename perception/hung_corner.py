@@ -1,8 +1,8 @@
 """The hung gown's hook and the two corners of its neckline, where the navy binding ends at the shoulders.
 
-The binding falls from the hook in two strips.  A strip that is seen down to its end, with the armhole beside it, shows
-its corner.  Where one corner is drawn aside already, the other strip falls alone; if it hangs in a narrow fold, the
-corner is where the fold opens below it, for there the binding ends.
+The binding falls from the hook in two strips.  A strip that is seen down to its end, flat to the camera, shows its
+corner to within a centimetre; from one of three places about the rail at least one does.  Where that one is drawn aside
+already, the other strip falls alone; if it hangs in a narrow fold, the corner is where the fold opens below it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..sim.world import Frame, Side
 from .cloud import clusters, points_in_map, project, unit
-from .colours import Surface
+from .colours import GOWN_SURFACES, Surface
 from .errors import PerceptionFailure, Problem
 from .estimates import CORNER_OF, GraspPoint, GraspTarget
 from .garment import gown_labels
@@ -24,18 +24,20 @@ LENGTH = (0.21, 0.62)  # of a strip from the hook to its corner, through the air
 HUNG = 0.80  # both strips together where they hang, within 4 cm [m]
 UNSURE = 0.085  # of that length, as the other strip tells it [m]
 SEWN = 0.015  # fabric this near to a strip is sewn to it [m]
-TELLS = 0.1  # how clearly that must say which strip it is
+TELLS = 0.6  # how clearly that must say which strip it is
 SAME = 0.08  # a corner that is seen again within this distance is the same one [m]
 DRAWN = 0.20  # sideways of the hook, what hangs farther out belongs to the strip that is drawn aside [m]
 BLUNT = 0.75  # a strip that ends at its corner keeps this much of its width to the last
-ASIDE = 0.03  # of the hook, where a strip that does not tell what it is belongs to that side [m]
-GAP = 0.025  # points of one strip lie nearer together than this [m]
+GAPS = (0.013, 0.009)  # points of one strip lie nearer together; the less, the better crossing strips part [m]
 POINTS = 25  # a smaller patch is noise
 END = 0.045  # this much of a strip counts as its end [m]
 NARROW = 0.03  # a strip of which less is seen hangs in a fold [m]
 BESIDE = 0.10  # from a corner the armhole's binding is this near [m]
 STRAP = 0.025  # from what is seen of an armhole up to the corner beside it [m]
 LEAN = 0.28  # of a free edge in a fold towards the camera, for each metre that it falls [m]
+FLAT, WHOLE, HIDDEN = 0.043, 0.85, 0.15  # width [m], bluntness and cut of a strip that shows its end
+BEFORE = 0.02  # nearer to the camera than this is before it, not beside it [m]
+CLEAR, WIDE = 0.04, 0.07  # round a corner without other cloth, and where its own sheet is followed [m]
 INSIDE_EDGE = 0.003  # of the grasp, from both edges of a binding that shows [m]
 
 
@@ -53,6 +55,7 @@ class Strip:
         armhole: share of what should be seen of the armhole's binding beside it, 0 to 1.
         tells: from -1, the wearer's left strip, to 1, the right one.
         blunt: width of the last of it, as a share of `width`: a fold that closes cuts a strip to a point.
+        cut: share of what is seen just beyond its end that lies nearer to the camera: the strip goes on behind that.
     """
 
     corner_in_map: np.ndarray
@@ -64,6 +67,12 @@ class Strip:
     armhole: float
     tells: float
     blunt: float
+    cut: float
+
+    @property
+    def shows(self) -> bool:
+        """Whether it is seen down to its end, flat to the camera."""
+        return self.width > FLAT and self.blunt > WHOLE and self.cut < HIDDEN
 
 
 def hook(frame: Frame) -> GraspPoint:
@@ -80,70 +89,97 @@ def hook(frame: Frame) -> GraspPoint:
     return _grasp(frame, top, "near_hang", 0.9)
 
 
-def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray | None = None,
-                other_length: float | None = None, near_in_map: np.ndarray | None = None) -> GraspPoint:
-    """One corner of the neckline of a gown that hangs with its outside to the camera.
+def shown_corner(frame: Frame, hook_in_map: np.ndarray, side: Side | None = None) -> GraspPoint:
+    """The corner of a hung gown's neckline that shows best; the target tells which one it is.
+
+    Only a strip that is seen down to its end, flat to the camera, with its fabric beside it, counts.  Of two the one
+    that hangs clear of other cloth is chosen, or else the higher one: nothing hangs in front of it.
+
+    Args:
+        frame: of a camera that sees the gown's outside.
+        hook_in_map: (3,) where the gown hangs [m].
+        side: the wearer's, if only that one is wanted.
+
+    Returns:
+        The grasp, just inside both edges of the binding, with a horizontal approach along the view.  Its confidence is
+        below 0.5 where other cloth hangs so near that the fingers might take it too.
+
+    Raises:
+        PerceptionFailure: neither shows.
+    """
+    wanted = {None: 0.0, "left": -1.0, "right": 1.0}[side]
+    told = [strip for strip in strips(frame, hook_in_map) if strip.shows and abs(strip.tells) > TELLS
+            and LENGTH[0] < strip.length < LENGTH[1] and strip.tells * wanted >= 0.0]
+    if not told:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "a corner of the hung gown's neckline")
+    crowded = {id(strip): _crowded(frame, strip.corner_in_map) for strip in told}
+    best = min(told, key=lambda strip: (crowded[id(strip)], strip.length))
+    target = CORNER_OF["right" if best.tells > 0.0 else "left"]
+    return _grasp(frame, _inside(best), target, abs(best.tells) * (0.4 if crowded[id(best)] else 1.0))
+
+
+def _crowded(frame: Frame, corner: np.ndarray) -> bool:
+    """Whether cloth that is not the corner's own sheet is seen beside a corner (3,)."""
+    cloud = points_in_map(frame)[np.isin(gown_labels(frame), GOWN_SURFACES) & (frame.depth > 0)]
+    away = np.linalg.norm(cloud - corner, axis=1)
+    near, away = cloud[away < WIDE], away[away < WIDE]
+    if len(near) == 0:
+        return False
+    sheet = clusters(near, GAPS[0])
+    return int(((sheet != sheet[np.argmin(away)]) & (away < CLEAR)).sum()) >= POINTS // 2
+
+
+def hung_corner(frame: Frame, side: Side, hook_in_map: np.ndarray, other_length: float | None = None,
+                near_in_map: np.ndarray | None = None) -> GraspPoint:
+    """One corner of a hung gown's neckline: one that was seen just now, or the second one.
 
     Args:
         frame: of a camera that sees the gown's outside.
         side: the wearer's; seen from outside, the wearer's right is on the left of the picture.
-        hook_in_map: (3,) where the gown hangs, if that is known already [m].
+        hook_in_map: (3,) where the gown hangs [m].
         other_length: from the hook to the other corner, if that is held aside already [m].
         near_in_map: (3,) where the corner was just now; one that is farther away than 8 cm is another [m].
 
     Returns:
-        The grasp, just inside both edges of the binding, with a horizontal approach along the view.
+        The grasp, just inside both edges of the binding, with a horizontal approach along the view.  Below a confidence
+        of 0.5 it is inferred from what hangs there, or other cloth hangs beside it while the first one is looked for.
 
     Raises:
         PerceptionFailure: the corner is not seen.
     """
-    top = hook(frame).position_in_map if hook_in_map is None else np.asarray(hook_in_map, float)
-    sign = 1.0 if side == "right" else -1.0
+    top = np.asarray(hook_in_map, float)
     found = strips(frame, top)
-    length = LENGTH[1] if other_length is None else NECKLINE - other_length
-    fits = [strip for strip in found if LENGTH[0] < strip.length < length + UNSURE]
     if near_in_map is not None:
         fits = [strip for strip in found if np.linalg.norm(strip.corner_in_map - near_in_map) < SAME]
-    elif other_length is None:
-        fits = _first(frame, fits, top, sign)
+        fits.sort(key=lambda strip: (not strip.shows, np.linalg.norm(strip.corner_in_map - near_in_map)))
     else:  # the other strip is drawn aside, to its own side
-        sideways = sign * frame.pose_camera_in_map[:3, 0]
-        fits = [strip for strip in fits if (strip.corner_in_map - top) @ sideways < DRAWN]
-        fits = [strip for strip in fits if strip.armhole > 0.5
-                or (strip.blunt > BLUNT and strip.width > 0.4 * NARROW and abs(strip.length - length) < UNSURE)]
+        length = HUNG / 2 if other_length is None else NECKLINE - other_length
+        sideways = (1.0 if side == "right" else -1.0) * frame.pose_camera_in_map[:3, 0]
+        fits = [strip for strip in found if LENGTH[0] < strip.length < LENGTH[1] + UNSURE
+                and (strip.corner_in_map - top) @ sideways < DRAWN]
+        fits = [strip for strip in fits if strip.shows or (strip.length < length + UNSURE and (
+            strip.armhole > 0.5 or (strip.blunt > BLUNT and strip.width > 0.4 * NARROW
+                                    and abs(strip.length - length) < UNSURE)))]
+        fits.sort(key=lambda strip: (not strip.shows, -strip.length))
         if not fits:
             return _grasp(frame, _in_fold(frame, found, top, length), CORNER_OF[side], 0.4)
     if not fits:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"the {side} corner of the hung gown's neckline")
-    best = max(fits, key=lambda strip: strip.length)
-    margin = INSIDE_EDGE if best.width > NARROW else -INSIDE_EDGE  # what lies behind a fold's edge is not to be taken
-    position = best.corner_in_map - margin * (best.outward_in_map + best.along_in_map)
-    confidence = min(1.0, best.width / 0.045) * (0.5 + 0.5 * best.armhole)
-    return _grasp(frame, position, CORNER_OF[side], confidence)
+    best = fits[0]
+    confidence = 0.9 if best.shows else 0.5 + 0.3 * min(1.0, best.width / FLAT) * best.armhole
+    if other_length is None and _crowded(frame, best.corner_in_map):
+        confidence *= 0.4
+    return _grasp(frame, _inside(best), CORNER_OF[side], confidence)
 
 
-def _first(frame: Frame, found: list[Strip], top: np.ndarray, sign: float) -> list[Strip]:
-    """Strips that may lead to one corner while both hang: by what tells them, and by the length of the other.
-
-    Args:
-        frame: where they were found.
-        found: all of them.
-        top: (3,) of the hook [m].
-        sign: -1 for the wearer's left corner, 1 for the right one.
-    """
-    sideways = -sign * frame.pose_camera_in_map[:3, 0]
-    fits = [strip for strip in found if sign * strip.tells > TELLS
-            or (abs(strip.tells) <= TELLS and (strip.corner_in_map - top) @ sideways > ASIDE)]
-    others = [strip for strip in found if sign * strip.tells < -0.3 and strip.armhole > 0.5 and strip.width > NARROW]
-    if others:  # a strip that is as long as the other one leaves is better than one that a fold cuts short
-        left = HUNG - max(strip.length for strip in others)
-        whole = [strip for strip in found if strip not in others and abs(strip.length - left) < UNSURE]
-        return whole or fits
-    return fits
+def _inside(strip: Strip) -> np.ndarray:
+    """Where to take a strip (3,): what lies behind a fold's edge is not to be taken with it."""
+    margin = INSIDE_EDGE if strip.width > NARROW else -INSIDE_EDGE
+    return strip.corner_in_map - margin * (strip.outward_in_map + strip.along_in_map)
 
 
 def strips(frame: Frame, top: np.ndarray) -> list[Strip]:
-    """The strips that fall from the hook at `top` (3,), the largest first."""
+    """The strips that fall from the hook at `top` (3,), as they part at either of two gaps."""
     labels, cloud = gown_labels(frame), points_in_map(frame)
     seen = frame.depth > 0
     armhole = cloud[(labels == Surface.ARMHOLE) & seen]
@@ -155,11 +191,11 @@ def strips(frame: Frame, top: np.ndarray) -> list[Strip]:
     collar = _Pixels(frame, lower, cloud)
     if len(collar.points) < POINTS:
         return []
-    patch = clusters(collar.points, GAP)
     found = []
-    for k in np.flatnonzero(np.bincount(patch) >= POINTS):
-        mine = collar.only(patch == k)
-        found.append(_strip(mine, fabric, outside, armhole, top))
+    for gap in GAPS:
+        patch = clusters(collar.points, gap)
+        for k in np.flatnonzero(np.bincount(patch) >= POINTS):
+            found.append(_strip(collar.only(patch == k), fabric, outside, armhole, top))
     return found
 
 
@@ -202,7 +238,19 @@ def _strip(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, armhole: np.nd
     last = points[run > run.max() - 0.015]
     blunt = float(np.ptp(last @ outward)) / max(float(high - low), 1e-3)
     return Strip(corner, np.median(last, axis=0), along, outward, float(high - low),
-                 float(np.linalg.norm(corner - top)), min(1.0, beside / 12), _side(collar, fabric, outside, far), blunt)
+                 float(np.linalg.norm(corner - top)), min(1.0, beside / 12), _side(collar, fabric, outside, far), blunt,
+                 _cut(collar.frame, middle, along, outward, 0.4 * float(high - low)))
+
+
+def _cut(frame: Frame, end: np.ndarray, along: np.ndarray, outward: np.ndarray, half: float) -> float:
+    """Share of the places just beyond the end (3,) of a strip where something nearer to the camera is seen."""
+    places = np.array([end + (0.5 * END + step) * along + side * half * outward
+                       for step in (0.005, 0.015, 0.025) for side in (-1.0, 0.0, 1.0)])
+    u, v, z = project(frame, places).T
+    height, width = frame.depth.shape
+    column, row = np.clip(np.rint(u).astype(int), 0, width - 1), np.clip(np.rint(v).astype(int), 0, height - 1)
+    there = frame.depth[row, column]
+    return float(np.mean((there > 0) & (there < z - BEFORE)))
 
 
 def _side(collar: _Pixels, fabric: _Pixels, outside: np.ndarray, far: np.ndarray) -> float:

@@ -19,12 +19,13 @@ from .skill import Skill
 
 BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
 AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
+ENOUGH = 2.8  # of a gown that weighs 4.0 to 4.8 N: an open hook lets go of cloth that hardly pulls [N]
 SHARES = (1.0, 0.75, 0.5)  # of that, as far as the arm reaches
 SLACK = 0.95  # of the corner's distance from the hook is used: the hook may not pull at the hand
 
 
 class RaiseCorner(Skill):
-    """Carries a corner to the side and above the hook, the neckline all but straight.
+    """Carries a corner to the side and above the hook, the neckline all but straight, unless it grows too heavy before.
 
     Inputs: `hand` that holds it; `hook`; `away`, how far behind the rail [rad]; `weight` that it must carry in the end
     [N]; `heavy`, more than one corner weighs before it is above the hook: then folds behind it were taken too [N].
@@ -56,7 +57,7 @@ class RaiseCorner(Skill):
                 aside = np.cos(angle) * sideways + np.sin(angle) * base[:, 0]
                 pose[:3, 3] = hook + level * aside + rise * base[:, 2]
                 try:
-                    yield from move_hands(self, {self.hand: pose}, speed=0.3, free="any", way="either")
+                    yield from self._carry(pose)
                     break
                 except MotionError:  # behind the rail the arm soon ends
                     if share == SHARES[-1]:
@@ -69,6 +70,14 @@ class RaiseCorner(Skill):
         if carried < self.weight:
             raise SkillFailure(Reason.GRASP_MISSED, f"the {self.hand} hand carries {carried:.1f} N")
         self.held = length
+
+    def _carry(self, pose: np.ndarray) -> Iterator[None]:
+        """To a pose (4, 4), or until the hand carries so much that the rest hardly holds the gown on its hook."""
+        for _ in move_hands(self, {self.hand: pose}, speed=0.3, free="any", way="either"):
+            if -cloth_load(self, self.hand)[2] > ENOUGH:
+                self.world.stop()
+                break
+            yield
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -28,6 +28,9 @@ def offer_gown(context: Context) -> None:
     def hung(frame: Frame, side: Side, **_: Any) -> Estimate:
         return point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE)
 
+    def shown(frame: Frame, side: Side | None = None, **_: Any) -> Estimate:
+        return hung(frame, side or "left")
+
     def hang(frame: Frame) -> Estimate:
         return point(frame, "near_hang", 0.0)
 
@@ -46,7 +49,7 @@ def offer_gown(context: Context) -> None:
     def layers(frame: Frame, side: Side, **_: Any) -> Estimate:
         return LayerCount(stamp=frame.stamp, confidence=0.9, side=side, layers=1)
 
-    for name, estimator in (("hang_point", hang), ("hook", hang), ("hung_corner", hung),
+    for name, estimator in (("hang_point", hang), ("hook", hang), ("hung_corner", hung), ("shown_corner", shown),
                             ("gown_side", facing), ("hung_side", facing),
                             ("gripped_cloth", held), ("pre_grasp", corner), ("layers", layers)):
         context.perception.offer(name, estimator)

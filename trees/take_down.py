@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
-from ..sim.world import SIDES, Side
 from ..skills.context import Context
+from ..skills.find_corner import FindCorner
 from ..skills.flip_side_check import FlipSideCheck
 from ..skills.navigate import Navigate
 from ..skills.ports import Key
@@ -23,9 +23,10 @@ from ..skills.view_around import ViewAround
 from .composers import fallback, sequence
 from .decorators import Condition, Retry, Stage, Timeout
 
-HAND_OF: dict[Side, Side] = {"left": "right", "right": "left"}  # the outside faces the robot: corners are mirrored
-NECKLINE = 0.80  # both strips of a hung gown's neckline together, within 4 cm [m]
-FARTHER_ROUND = float(np.deg2rad(75.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
+NECKLINE = (0.70, 0.98)  # both strips of a hung gown's neckline together: less, and one was not held by its end [m]
+FARTHER_ROUND = float(np.deg2rad(60.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
+OPEN = 0.02  # of fingers that hold nothing [m]
+SEEN = 0.45  # confidence of a corner that is seen, not inferred
 
 
 def take_down(context: Context) -> Behaviour:
@@ -36,12 +37,43 @@ def take_down(context: Context) -> Behaviour:
         Navigate("go behind the rail", context, goal="rail_back"))
     by_both_ends = sequence(
         "by both ends of the neckline",
-        fallback("take both ends of the neckline", take_ends(context, "left"),
-                 sequence("the other one first", Retreat("let go of both ends", context), take_ends(context, "right"))),
-        TakeDown("lift it off the hook", context, hook=Key("hook")))
+        fallback("free hands", Condition("nothing is held", _hands_open), Retreat("let go of both ends", context)),
+        take_ends(context), TakeDown("lift it off the hook", context, hook=Key("hook")))
     return Stage("A take down", None, Timeout("A in time", sequence(
         "take the gown down", Navigate("go to the rail", context, goal="rail"), find_outside,
-        fallback("take it", by_both_ends, from_one_hand(context))), seconds=260.0))
+        fallback("take it", Retry("the other end first", by_both_ends, attempts=3), from_one_hand(context))),
+        seconds=260.0))
+
+
+def take_ends(context: Context) -> Behaviour:
+    """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one."""
+    hook, held, lengths = Key("hook"), Key("held"), (Key("strip"), Key("other_strip"))
+    found = {port: Key(f"corner_{port}") for port in ("found", "sleeve", "other", "hand", "other_hand")}
+    first, second = found["hand"], found["other_hand"]
+
+    def take_other(how: str, **ports: object) -> TakeCorner:
+        return TakeCorner(f"take the other corner {how}", context, hand=second, sleeve=found["other"], hook=hook,
+                          held=held, length=lengths[1], **ports)
+
+    def complete(context: Context) -> bool:
+        """Both strips together are as long as a neckline."""
+        return NECKLINE[0] < sum(context.board.get(key.name) for key in lengths) < NECKLINE[1]
+
+    return sequence(
+        "take both ends",
+        FindCorner("look for a corner", context, hook=hook, **found),
+        Retry("a corner, again", TakeCorner(
+            "take a corner", context, hand=first, sleeve=found["sleeve"], hook=hook, found=found["found"],
+            length=lengths[0], opening=0.04, depth=0.006), attempts=2),
+        RaiseCorner("draw it aside", context, hand=first, hook=hook, held=held),
+        FlipSideCheck("outside still to the front", context, sure=0.3),
+        fallback("the other corner",
+                 take_other("as it hangs", sure=SEEN, opening=0.035),
+                 sequence("from farther round",
+                          RaiseCorner("draw it farther round", context, hand=first, hook=hook, held=held,
+                                      away=FARTHER_ROUND),
+                          take_other("from farther round"))),
+        Condition("both ends of the neckline", complete, Reason.GRASP_MISSED))
 
 
 def from_one_hand(context: Context) -> Behaviour:
@@ -59,36 +91,6 @@ def from_one_hand(context: Context) -> Behaviour:
         PreGraspManipulate("take the other corner", context, views=views, nearest=0.3))
 
 
-def take_ends(context: Context, first: Side) -> Behaviour:
-    """Both ends of the hung gown's neckline: `first`, the other one, the first again where that was not it."""
-    second: Side = "right" if first == "left" else "left"
-    hook, lengths, held = Key("hook"), {side: Key(f"{side}_strip") for side in SIDES}, Key("held")
-
-    def take(corner: Side, name: str, **ports: object) -> TakeCorner:
-        return TakeCorner(f"take the {corner} corner {name}", context, hand=HAND_OF[corner], sleeve=corner,
-                          length=lengths[corner], **ports)
-
-    def complete(context: Context) -> bool:
-        """Both strips together are as long as a neckline."""
-        return abs(sum(context.board.get(key.name) for key in lengths.values()) - NECKLINE) < 0.06
-
-    again = sequence(
-        f"the {first} corner was not it",
-        Retreat(f"let the {first} one go", context, hands=HAND_OF[first]),
-        RaiseCorner(f"draw the {second} corner aside for the {first}", context, hand=HAND_OF[second], hook=hook,
-                    held=held),
-        take(first, "once more", known_hook=hook, held=held))
-    return sequence(
-        f"take the ends, {first} first",
-        Retry(f"the {first} corner, again", take(first, "first", hook=hook, opening=0.04, depth=0.006), attempts=2),
-        RaiseCorner(f"draw the {first} corner aside first", context, hand=HAND_OF[first], hook=hook, held=held),
-        FlipSideCheck(f"outside still to the front, {first} corner aside", context, sure=0.3),
-        fallback(f"the {second} corner",
-                 take(second, "second", known_hook=hook, held=held, opening=0.035),
-                 take(second, "with wide fingers", known_hook=hook, held=held),
-                 sequence(f"the {second} corner from farther round",
-                          RaiseCorner(f"turn the gown by the {first} corner", context, hand=HAND_OF[first], hook=hook,
-                                      away=FARTHER_ROUND),
-                          take(second, "from farther round", known_hook=hook, held=held))),
-        fallback(f"is it the neckline, {first} first", Condition(
-            f"both ends, {first} first", complete, Reason.GRASP_MISSED), again))
+def _hands_open(context: Context) -> bool:
+    """Both grippers stand open [m]."""
+    return bool(np.all(context.world.observe().gripper_opening > OPEN))

@@ -1,0 +1,77 @@
+"""Looking for a corner of the hung gown's neckline from place to place."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import CORNER_OF, GraspPoint
+from caretree.sim.scripted import ScriptedWorld
+from caretree.skills.context import Context
+from caretree.skills.find_corner import ROUND, STAND, FindCorner
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+HOOK = np.array((2.7, 0.4, 1.55))
+NOTHING = PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
+
+
+def grasp(target, place=HOOK):
+    return GraspPoint(stamp=0.0, confidence=0.9, target=target, position_in_map=place,
+                      approach_in_map=np.array((0.0, 1.0, 0.0)), closing_in_map=np.array((1.0, 0.0, 0.0)))
+
+
+class Room:
+    """The robot before the rail; `shown` answers where a corner is seen, from place to place."""
+
+    def __init__(self, shown):
+        self.world = ScriptedWorld(seed=1)
+        self.guard = GuardedWorld(self.world)
+        self.asked = []
+
+        def corner(frame, **details):
+            self.asked.append(details["side"])
+            return shown(len(self.asked), details["side"])
+
+        self.context = Context(world=self.guard, guard=self.guard, seed=1, perception=scripted_perception(
+            {"hook": grasp("near_hang"), "shown_corner": corner}))
+
+    def run(self):
+        skill = FindCorner("find", self.context)
+        for _ in range(2000):
+            self.context.lease.advance()
+            skill.tick_once()
+            self.world.clock.wait_until(self.world.clock.now() + 1 / 15)
+            if skill.status != Status.RUNNING:
+                break
+        return skill
+
+
+def test_goes_round_until_one_shows():
+    room = Room(lambda n, side: NOTHING if n < 2 else grasp(CORNER_OF["right"]))
+    found = room.run()
+    assert found.status == Status.SUCCESS
+    assert (found.sleeve, found.other, found.hand, found.other_hand) == ("right", "left", "left", "right")
+    pose = room.world.observe().pose_base_in_map
+    ahead = np.array((np.cos(pose[2]), np.sin(pose[2])))
+    assert pose[:2] + STAND * ahead == pytest.approx(HOOK[:2], abs=0.06)
+    turns = [abs((pose[2] - room.world.room.waypoints[name][2] - ROUND[1] + np.pi) % (2 * np.pi) - np.pi)
+             for name in ("rail", "rail_back") if name in room.world.room.waypoints]
+    assert min(turns) < 0.06
+
+
+def test_asked_again_it_looks_for_the_other_one_first():
+    room = Room(lambda n, side: grasp(CORNER_OF[side or "left"]))
+    assert room.run().sleeve == "left"
+    assert room.run().sleeve == "right"
+    assert room.asked == [None, "right"]
+
+
+def test_takes_the_same_again_where_the_other_shows_from_nowhere():
+    room = Room(lambda n, side: NOTHING if side == "right" else grasp(CORNER_OF["left"]))
+    room.run()
+    assert room.run().sleeve == "left"
+    assert room.asked == [None, *["right", None] * len(ROUND), None]
+
+
+def test_fails_where_nothing_shows():
+    assert Room(lambda n, side: NOTHING).run().status == Status.FAILURE
