@@ -62,7 +62,7 @@ def write_cloth_case(seed: int, folder: Path) -> Truth:
     markers = sorted(
         {int(j * n + i) for j in np.linspace(0, m - 1, 4).astype(int) for i in np.linspace(0, n - 1, 4).astype(int)}
     )
-    episodes, count, duration = [], 3, 1.3
+    episodes, count, duration = [], 3, 1.0
     t = np.arange(0.0, duration, 1.0 / 60.0)
     for e in range(count):
         pins, header = _pins(rng, folder, e, n, t)
@@ -104,7 +104,7 @@ def write_cloth_case(seed: int, folder: Path) -> Truth:
 
 
 def _sheet(rng: np.random.Generator):
-    n, m, h = int(rng.integers(8, 12)), int(rng.integers(8, 12)), 0.055
+    n, m, h = int(rng.integers(6, 9)), int(rng.integers(6, 9)), 0.07
     v = np.array([(i * h, 0.0, 1.5 - j * h) for j in range(m) for i in range(n)])
     f = [(a, a + n, a + 1) for j in range(m - 1) for a in range(j * n, j * n + n - 1)]
     f += [(a + 1, a + n, a + n + 1) for j in range(m - 1) for a in range(j * n, j * n + n - 1)]

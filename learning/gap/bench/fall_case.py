@@ -34,10 +34,9 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
     if set(names) in ({"buoyancy", "gain_error"}, {"quadratic_drag", "wind"}):  # one is the other by construction
         names = [names[0], "delay"]
     # two effects of a few times the noise are mostly one smooth curve, so pairs are drawn up to where they part
-    low, high = (2.0, 100.0) if kind == "two" else (0.5, 8.0)
+    # (and what the bank lacks mostly looks like a set of it, so it is drawn as far)
+    low, high = (2.0, 100.0) if kind in ("two", "outside") else (0.5, 8.0)
     size = {n: float(np.exp(rng.uniform(np.log(low), np.log(high)))) for n in names}
-    if kind == "outside":
-        size = {n: float(np.exp(rng.uniform(np.log(2.0), np.log(10.0)))) for n in names}
     air = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(2.0, 6.0))} if "wind" in names else {}
     values, plain = dict(air), _fly({}, top, rate)
     for n in names:  # size: root mean square change of the drop over the noise
@@ -50,9 +49,9 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
                 "wind": 1.0,
                 "gain_error": 0.5,
                 "delay": 0.5,
-                "gust": 9.0,
+                "gust": 60.0,
                 "cubic_drag": 0.2,
-                "swing": 3.0,
+                "swing": 30.0,
             }[n],
         )
         change = 0.0
@@ -90,7 +89,7 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
         entries.append({"file": file.name, "role": "heldout" if e >= episodes - max(1, episodes // 3) else "fit"})
     (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
     truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
-    if kind in ("single", "two"):
+    if names:
         lift = values["buoyancy"] if "mass" in header else None
         until = max(float(t[-1]) for t, *_ in seen) + 0.5
 

@@ -22,6 +22,7 @@ FREE = {
     "delay": (("delay", 0.02, -0.5, 0.5),),
 }
 CONTAINS = {"wind": "quadratic_drag"}  # the richer one always fits as well
+MOST = 4
 SCALE = {"gain_error": "buoyancy"}  # and so does a free scale where the lift is known
 
 
@@ -49,12 +50,14 @@ def apart(
     """Distance of the truth from the nearest other set that is no richer [standard deviations].
 
     Args:
-        hidden: effects of the truth.
+        hidden: effects of the truth; where one is outside the bank, every set of up to two is its rival.
         drops: time [s], height without noise [m] and whitening matrix of each fitted drop.
         path: values -> time since release [s] and height above the release [m].
         known_lift: buoyancy a stated size and mass imply, or None.
     """
     most = _count(hidden, known_lift)  # a rival with more numbers loses to its own price, not to the data
+    if not set(hidden) <= set(FREE):
+        most = MOST  # what no set of the bank contains is noticed only where none of them can follow it
     best = np.inf
     singles = [(n,) for n in FREE]
     for rival in [(), *singles, *combinations(FREE, 2)]:
@@ -74,7 +77,7 @@ def _contains(rival: Sequence[str], hidden: Sequence[str], lift_known: bool) -> 
 
 def _count(names: Sequence[str], known_lift: float | None) -> int:
     """Numbers a set brings; a known lift brings none."""
-    return sum(len(FREE[n]) for n in names if n != "buoyancy" or not known_lift)
+    return sum(len(FREE.get(n, ())) for n in names if n != "buoyancy" or not known_lift)
 
 
 def _distance(

@@ -98,6 +98,7 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
         two = [r for r in mine if r["kind"] == "two"]
         none = [r for r in mine if r["kind"] in ("none", "recalibration")]
         outside = [r for r in mine if r["kind"] == "outside"]
+        far = [r for r in outside if _apart(r) >= APART]
         local = [r for r in mine if r["overlap"] is not None and r["size"] >= 2.0]
         for question, asked, key in (
             ("single effect, size >= 2, exact set", big, "exact"),
@@ -109,6 +110,7 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
             (f"two effects, apart >= {APART:g} sd, exact set", [r for r in two if _apart(r) >= APART], "exact"),
             (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),
             ("false alarm where nothing is missing", none, "false_alarm"),
+            (f"single, size >= 2, apart >= {APART:g} sd, exact set", [r for r in big if _apart(r) >= APART], "exact"),
             ("right joint, single effect, size >= 2", big, "joint"),
         ):
             if asked:
@@ -118,6 +120,7 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
         for question, asked, good in (
             ("recalibration named as such", recalibrated, "recalibration"),
             ("unknown on effects outside the bank", outside, "unknown"),
+            (f"unknown, outside the bank, apart >= {APART:g} sd", far, "unknown"),
         ):
             if asked:
                 hits = sum(r["verdict"] == good for r in asked)

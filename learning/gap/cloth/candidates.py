@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothModel, Free
 from .scene import ClothEpisode, ClothScene
 
+MOMENT = 0.02  # [s] by which the instant of a slip is moved in a fit
 PATCHES = 7  # places of the cloth where a mass or a snag is tried
 
 
@@ -118,7 +119,8 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
             )
     if any(e.pins for e in episodes):
         for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
-            out.append(_effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",)))
+            slip = _effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",))
+            out.append(replace(slip, steps={("grip_slip", "time"): MOMENT}))
     return out
 
 

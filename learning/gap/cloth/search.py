@@ -23,6 +23,7 @@ MOST = 3  # effects and recalibrations at once
 CARRIED = 0.8  # carriers are taken as given where they alone bring the squares below this part
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained
+HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
 SAME = 12.0  # criterion within which two explanations fit alike
 
 
@@ -90,10 +91,14 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         worst = int(np.argmax([np.mean((r * weights) ** 2) for r in part.residuals]))
         alone = ClothFitter(sim, [some.episodes[worst]], weights)
         seen = replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
-        ranked = _screen(sim, alone, seen, chosen, pool)
+        ranked, left = _screen(sim, alone, seen, chosen, pool)
         tried = []
         done = False  # once one explains all, the others only have to show whether they would too
         for k, c in enumerate(ranked[:VERIFIED]):
+            # screening saw one recording, fits see several
+            least = min((f.rss for _, f in tried), default=0.0) * seen.rss / max(part.rss, 1e-30)
+            if done and left[c.name] > max(HOPELESS * least, 0.25 * seen.rss):
+                continue
             joined = some.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=1 if done else 2)
             rest = coherence(joined.residuals, pairs, m)
             done = done or rest.p_value >= 0.01 or rest.shared <= 0.03 * rest.floor**2
@@ -157,8 +162,12 @@ def _steps(chosen: list[Candidate]) -> dict[Free, float]:
 
 def _screen(
     sim: Simulator, fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], pool: list[Candidate]
-) -> list[Candidate]:
-    """Candidates by how much a linear use of one simulation each would explain, best first, one per name first."""
+) -> tuple[list[Candidate], dict[str, float]]:
+    """Candidates by how much a linear use of one simulation each would explain, best first, one of each name.
+
+    Returns:
+        The candidates, and the weighted sum of squares each would leave.
+    """
     runs = []
     for c in pool:
         for f in c.start.free:
@@ -188,22 +197,16 @@ def _screen(
         push = c.push.moved(sizes) if sizes else c.push
         if all(abs(push.value(f) - c.start.value(f)) < 1e-9 for f in c.start.free):
             continue  # it would have to act the wrong way round
-        steps = {
-            f: (
-                0.3 * abs(push.value(f) - c.start.value(f)) + 1e-6
-                if c.name not in ("grip_slip",) and sizes
-                else c.steps[f]
-            )
-            for f in c.steps
-        }
+        steps = {f: 0.3 * abs(push.value(f) - c.start.value(f)) + 1e-6 if sizes else c.steps[f] for f in c.steps}
         steps = {f: max(s, 0.1 * abs(c.steps[f])) for f, s in steps.items()}
         scored.append((left, replace(c, push=push, steps=steps)))
     scored.sort(key=lambda pair: pair[0])
     firsts: dict[str, Candidate] = {}
-    for _, c in scored:
+    lefts: dict[str, float] = {}
+    for left, c in scored:
         firsts.setdefault(c.name, c)
-    order = list(firsts.values())
-    return order
+        lefts.setdefault(c.name, left)
+    return list(firsts.values()), lefts
 
 
 def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
@@ -222,6 +225,16 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
             if fitter.rss(residuals) < best.rss:
                 best = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
         fit = best
+    if last.name == "grip_slip":  # from the screened instants' spacing down to a few time steps
+        away = 0.1 * float(max(e.t[-1] for e in fitter.episodes))
+        while away > 0.002:
+            here = fit.model.value(("grip_slip", "time"))
+            for t in (here - away, here + away):
+                model = fit.model.moved({("grip_slip", "time"): t})
+                residuals = fitter.residuals(model)
+                if fitter.rss(residuals) < fit.rss:
+                    fit = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
+            away *= 0.6
     if last.name == "snag":
         free = (*fit.model.free, ("snag", "t0"), ("snag", "t1"))
         steps = {**_steps(chosen), ("snag", "t0"): 0.15, ("snag", "t1"): 0.15}

@@ -263,9 +263,7 @@ def _run(
     return np.clip(np.nan_to_num(out, nan=50.0), -50.0, 50.0)  # a blown-up run must lose, not crash
 
 
-def _hold(
-    p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float, pull: float
-) -> dict[str, Any]:
+def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float, pull: float) -> dict[str, Any]:
     """Pin vertices: to the world where they never move, else to a body that is dragged along."""
     start = scene.vertices[list(pin.vertices)].mean(axis=0)
     mass = total * len(pin.vertices) / len(scene.vertices)

@@ -17,11 +17,12 @@ START = {"rate": 0.1, "coefficient": 0.02, "fraction": 0.0, "speed": 0.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Drop:
-    """One recorded drop.  t: (T,) [s] from its first sample, h: (T,) [m]."""
+    """One recorded drop.  t: (T,) [s] from its first sample, h: (T,) [m]; white: (T, T) makes its noise white."""
 
     name: str
     t: np.ndarray
     h: np.ndarray
+    white: np.ndarray | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +37,9 @@ class DropFit:
         releases: (E, 2) release height [m] and instant [s] of each drop.
         residuals: one (T,) per drop [m].
         jacobian: d residual / d (theta, releases), stacked.
-        rss: residual sum of squares.
+        rss: residual sum of squares, whitened where the drops carry their noise's colour.
+        parts: (T,) squares it consists of, per drop.
+        information: (p, p) of theta and releases, for noise of unit variance.
     """
 
     names: tuple[str, ...]
@@ -47,6 +50,8 @@ class DropFit:
     residuals: list[np.ndarray]
     jacobian: np.ndarray
     rss: float
+    parts: list[np.ndarray]
+    information: np.ndarray
 
 
 def unpack(names: tuple[str, ...], theta: np.ndarray) -> dict[str, dict[str, float]]:
@@ -74,6 +79,7 @@ def fit_drops(
     mode: str = "free",
     start: np.ndarray | None = None,
     late: float | None = None,
+    near: DropFit | None = None,
 ) -> DropFit:
     """Least squares over effects and releases.
 
@@ -83,6 +89,7 @@ def fit_drops(
         mode: what is assumed of the release instants, one of `MODES`.
         start: keep the effects' parameters at these values and fit the releases alone.
         late: keep the common lateness at this value [s].
+        near: begin at this fit of the same effects and mode.
     """
     parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
     theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
@@ -106,11 +113,20 @@ def fit_drops(
         return read, [v for _, v in pairs], scale
 
     measured = np.concatenate([d.h for d in drops])
+    ends = np.cumsum([len(d.t) for d in drops])[:-1]
+
+    white = [d.white for d in drops if d.white is not None]
+
+    def whitened(x: np.ndarray) -> np.ndarray:
+        return np.concatenate([w @ y for w, y in zip(white, np.split(x, ends), strict=True)]) if white else x
 
     def residual(x: np.ndarray) -> np.ndarray:
-        return model(x)[0] - measured
+        return whitened(model(x)[0] - measured)
 
     def jacobian(x: np.ndarray) -> np.ndarray:
+        return whitened(change(x))
+
+    def change(x: np.ndarray) -> np.ndarray:
         base, speeds, scale = model(x)
         J = np.zeros((len(base), len(x)))
         for j in range(moving):
@@ -127,6 +143,9 @@ def fit_drops(
             at += len(d.t)
         return J
 
+    if near is not None:
+        instant = {"together": [], "late": near.releases[:1, 1][:instants], "free": near.releases[:, 1]}[mode]
+        first = np.concatenate([near.theta[:moving], near.releases[:, 0], instant])
     first[:moving] = np.clip(first[:moving], low[:moving] + 1e-9, high[:moving] - 1e-9)
     solved = least_squares(
         residual,
@@ -136,16 +155,17 @@ def fit_drops(
         x_scale="jac",
         max_nfev=60,
     )
-    r = residual(solved.x)
+    r, J = residual(solved.x), jacobian(solved.x)
     values, tops, release = split(solved.x)
-    ends = np.cumsum([len(d.t) for d in drops])[:-1]
     return DropFit(
         names=names,
         mode=mode,
         values=unpack(names, values),
         theta=values,
         releases=np.stack([tops, release], axis=1),
-        residuals=np.split(-r, ends),
-        jacobian=jacobian(solved.x),
+        residuals=np.split(measured - model(solved.x)[0], ends),
+        jacobian=change(solved.x),
         rss=float(r @ r),
+        parts=np.split(r**2, ends),
+        information=J.T @ J,
     )

@@ -1,84 +1,115 @@
-"""Whether a force that repeats from drop to drop is left over: then something the bank cannot name is missing."""
+"""Whether something is left over that repeats from drop to drop: then what is missing is not in the bank.
+
+Three free forms are tried: a force that bends slowly over the time since release, one that bends quickly, and a reading
+of the height that is bent.  Effects and releases may give way to each of them, and the noise's colour is asked anew, so
+that neither what the bank can still take up nor slow noise is mistaken for a discovery.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.optimize import minimize
-from scipy.signal import lfilter
 from scipy.stats import f as fisher
 
-from .fit import DropFit
+from .colour import Colour, grid, likelihood
+from .drop import height
+from .fit import RELEASE, DropFit, table_of
 
-PIECES = 10  # of the acceleration over the time since release
-STARTS = ((0.5, -0.3), (1.4, -0.7))  # of the noise's two numbers, before tanh
+FORCES = (6, 14)  # pieces of the acceleration over the time since release
+READING = 8  # pieces of a bent reading over the height
 
 
-def repeating(fit: DropFit, times: list[np.ndarray]) -> tuple[float, float, float]:
-    """Add a free acceleration over the time since release, the same in all drops, and see whether it pays.
+@dataclass(frozen=True, kw_only=True)
+class Leftover:
+    """What a free form removes beyond a set of effects.
 
-    The noise of what remains is taken as first-order coloured plus white and filtered out before the two fits are
-    compared, so that slow noise is not mistaken for a force.
+    Attributes:
+        energy: mean square it removes [m^2].
+        p_value: of noise alone doing as well, corrected for the forms tried.
+        what: the form, in words.
+    """
+
+    energy: float
+    p_value: float
+    what: str
+
+
+def repeating(fit: DropFit, times: list[np.ndarray]) -> Leftover:
+    """Let each free form, the same in all drops, compete with noise; the surest is returned.
 
     Args:
         fit: the best set of effects.
         times: sample times of each drop [s].
-
-    Returns:
-        (mean square it removes [m^2], p-value, time since release at which it is largest [s]).
     """
+    none = Leftover(energy=0.0, p_value=1.0, what="")
     if len(times) < 2:
-        return 0.0, 1.0, 0.0  # one drop cannot tell a repeating force from slow noise
+        return none  # one drop cannot tell a repeating force from slow noise
     since = [np.maximum(t - r, 0.0) for t, r in zip(times, fit.releases[:, 1], strict=True)]
+    colours = grid(times)
+    found = [_force(fit, since, pieces, colours) for pieces in FORCES]
+    found.append(_reading(fit, _paths(fit, times), colours))
+    best = min(found, key=lambda x: x.p_value)
+    return Leftover(energy=best.energy, p_value=min(len(found) * best.p_value, 1.0), what=best.what)
+
+
+def _paths(fit: DropFit, times: list[np.ndarray]) -> list[np.ndarray]:
+    """Heights the fit predicts, per drop [m]."""
+    table, scale = table_of(fit.values, max(float(t[-1]) for t in times) + RELEASE + 0.1)
+    return [
+        top + scale * (height(t, table, top, when)[0] - top) for t, (top, when) in zip(times, fit.releases, strict=True)
+    ]
+
+
+def _pieces(low: float, high: float, count: int) -> list[BSpline]:
+    knots = np.concatenate([[low] * 3, np.linspace(low, high, count - 2), [high] * 3])
+    return [BSpline.basis_element(knots[i : i + 5], extrapolate=False) for i in range(count)]
+
+
+def _force(fit: DropFit, since: list[np.ndarray], count: int, colours: list[Colour]) -> Leftover:
     end = max(float(s[-1]) for s in since)
-    knots = np.concatenate([[0.0] * 3, np.linspace(0.0, end, PIECES - 2), [end] * 3])
-    pieces = [BSpline.basis_element(knots[i : i + 5], extrapolate=False) for i in range(PIECES)]
-    grid = np.linspace(0.0, end, 600)
-    step = grid[1]
-    bumps = np.stack([np.nan_to_num(b(grid)) for b in pieces], axis=1)
-    fallen = np.cumsum(np.cumsum(bumps, axis=0) * step, axis=0) * step
-    B = np.concatenate([np.stack([np.interp(s, grid, f) for f in fallen.T], axis=1) for s in since])
+    moments = np.linspace(0.0, end, 600)
+    step = moments[1]
+    bumps = np.stack([np.nan_to_num(b(moments)) for b in _pieces(0.0, end, count)], axis=1)
+    way = np.cumsum(np.cumsum(bumps, axis=0) * step, axis=0) * step
+    columns = np.concatenate([np.stack([np.interp(s, moments, f) for f in way.T], axis=1) for s in since])
+    energy, p, theta = _pays(fit, columns, colours)
+    when = float(moments[int(np.argmax(np.abs(bumps @ theta)))])
+    return Leftover(
+        energy=energy, p_value=p, what=f"a force that repeats from drop to drop, largest {when:.2f} s after release"
+    )
+
+
+def _reading(fit: DropFit, heights: list[np.ndarray], colours: list[Colour]) -> Leftover:
+    low, high = min(float(h.min()) for h in heights), max(float(h.max()) for h in heights)
+    columns = np.concatenate(
+        [np.stack([np.nan_to_num(b(h)) for b in _pieces(low - 1e-6, high + 1e-6, READING)], axis=1) for h in heights]
+    )
+    energy, p, _ = _pays(fit, columns, colours)
+    return Leftover(energy=energy, p_value=p, what="a reading that is bent over the height, the same in all drops")
+
+
+def _pays(fit: DropFit, columns: np.ndarray, colours: list[Colour]) -> tuple[float, float, np.ndarray]:
+    """Mean square [m^2] the columns remove, p-value, and their coefficients."""
     r = np.concatenate(fit.residuals)
     own = fit.jacobian / (np.linalg.norm(fit.jacobian, axis=0) + 1e-12)  # what effects and releases could still take up
-    both = np.column_stack([own, B / (np.linalg.norm(B, axis=0) + 1e-12)])
-    ends = np.cumsum([len(t) for t in times])[:-1]
-    theta = _solve(both, r)
-    already = r - own @ _solve(own, r)
-    white_r, white_own, white_both = r, own, both
-    for _ in range(2):
-        noise = _colour(np.split(r - both @ theta, ends))
-        white_r, white_own, white_both = (_whiten(x, ends, noise) for x in (r, own, both))
-        theta = _solve(white_both, white_r)
-    plain = float(np.sum((white_r - white_own @ _solve(white_own, white_r)) ** 2))
-    rich = float(np.sum((white_r - white_both @ theta) ** 2)) + 1e-30
-    spent = np.linalg.matrix_rank(white_both, tol=1e-6)
-    gained = max(int(spent - np.linalg.matrix_rank(white_own, tol=1e-6)), 1)
-    free = max(len(r) - int(spent), 1)
-    p_value = float(fisher.sf(max(plain - rich, 0.0) / gained / (rich / free), gained, free))
-    profile = bumps @ (theta[-PIECES:] / (np.linalg.norm(B, axis=0) + 1e-12))
-    left = r - both @ theta
+    size = np.linalg.norm(columns, axis=0) + 1e-12
+    both = np.column_stack([own, columns / size])
+    colour = max(colours, key=lambda c: likelihood(c, r, both))
+    white_r, white_own, white_both = colour.apply(r), colour.apply(own), colour.apply(both)
+    plain, spent = _left(white_own, white_r)
+    rich, full = _left(white_both, white_r)
+    gained, free = max(full - spent, 1), max(len(r) - full, 1)
+    p_value = float(fisher.sf(max(plain - rich, 0.0) / gained / (rich / free + 1e-30), gained, free))
+    theta = np.linalg.lstsq(white_both, white_r, rcond=1e-6)[0]
+    already, left = r - own @ np.linalg.lstsq(white_own, white_r, rcond=1e-6)[0], r - both @ theta
     energy = max(float(already @ already - left @ left) / len(r), 0.0)
-    return energy, p_value, float(grid[int(np.argmax(np.abs(profile)))])
+    return energy, p_value, theta[own.shape[1] :] / size
 
 
-def _solve(columns: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return np.linalg.lstsq(columns, y, rcond=1e-9)[0]
-
-
-def _whiten(x: np.ndarray, ends: np.ndarray, noise: tuple[float, float]) -> np.ndarray:
-    """Each drop's rows filtered so that noise of this colour becomes white."""
-    memory, mix = noise
-    return np.concatenate([lfilter([1.0, -memory], [1.0, mix], part, axis=0) for part in np.split(x, ends)])
-
-
-def _colour(residuals: list[np.ndarray]) -> tuple[float, float]:
-    """Memory and mix of first-order coloured plus white noise, each within +-1, by least squares of the innovations."""
-
-    def misfit(x: np.ndarray) -> float:
-        memory, mix = np.tanh(x)
-        power = sum(float(np.sum(np.square(lfilter([1.0, -memory], [1.0, mix], r)))) for r in residuals)
-        return float(np.log(power + 1e-30))
-
-    tried = [minimize(misfit, s, method="Nelder-Mead", options={"maxiter": 60}) for s in STARTS]
-    memory, mix = np.tanh(min(tried, key=lambda o: o.fun).x)
-    return float(memory), float(np.clip(mix, -0.98, 0.98))
+def _left(columns: np.ndarray, y: np.ndarray) -> tuple[float, int]:
+    """Residual sum of squares, and how many directions the columns span."""
+    u, s, _ = np.linalg.svd(columns, full_matrices=False)
+    u = u[:, s > 1e-6 * s[0]]
+    return float(np.sum((y - u @ (u.T @ y)) ** 2)), u.shape[1]

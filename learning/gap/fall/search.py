@@ -1,29 +1,35 @@
 """Which set of effects explains the drops: every set of up to two effects is fitted and compared.
 
-Drops are few and short, and their noise is coloured (a tracked ball wanders by a pixel for several frames), so a
-sample is worth 1 / widening of an independent one.  Large changes of scale or of weight are implausible beforehand:
-a height scale is usually right within 3 %, and the lift of air follows from mass and diameter where both are known.
+Drops are few and short and their noise is coloured (a tracked ball wanders by a pixel for several frames).  All sets
+are first fitted plainly, the richest tells the noise's colour, and with it all are fitted again.  The sets near the
+best are then compared under every colour that is the likeliest for one of them.  Large changes of scale or of weight
+are implausible beforehand: a height scale is usually right within 3 %, and the lift of air follows from mass and
+diameter where both are known.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from scipy.stats import chi2
 
 from ....sim.effects.body_bank import BODY_EFFECTS
 from ....sim.effects.buoyancy import AIR_DENSITY
+from .colour import Colour, estimated, grid
 from .fit import MODES, Drop, DropFit, fit_drops
 
 SEARCHED = ("linear_drag", "quadratic_drag", "buoyancy", "gain_error", "wind")
 IMPOSSIBLE = ({"quadratic_drag", "wind"}, {"buoyancy", "gain_error"})
 PLAUSIBLE = {"gain_error": ("fraction", 0.0, 0.03), "buoyancy": ("fraction", 0.0, 0.03), "wind": ("speed", 0.0, 3.0)}
-ALPHA = 0.05
-FITTED = 1.3
+NUMBER = 5.0  # what one more number costs: along it noise gains as much with probability 2.5 %
+EFFECT = 2.0  # and one more effect beside it: fewer are likelier, e : 1
+FIRST = 3.0  # the first also has to beat the number of sets tried
 FORESEEN = 6.0  # what it is worth that a value was known before the drops were seen
-MATERIAL = 0.15  # an effect's own part over the noise, root mean square
+CLOSE = 30.0  # criterion beyond the best from which on a set's own noise is not worked out
+SAME = 6.0  # criterion within which two sets fit alike
+MOST_EQUAL = 4
+MATERIAL = 0.05  # an effect's own part over the noise, root mean square, both whitened
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +39,11 @@ class Candidate:
     fit: DropFit
     score: float
 
+    @property
+    def effects(self) -> frozenset[str]:
+        """Names, with `delay` where all drops are released equally late."""
+        return frozenset(self.fit.names) | ({"delay"} if self.fit.mode == "late" else set())
+
 
 @dataclass(frozen=True, kw_only=True)
 class DropSearch:
@@ -40,14 +51,16 @@ class DropSearch:
 
     Attributes:
         candidates: best first.
-        widening: how many samples are worth one.
-        price: of one parameter.
+        drops: the drops with their noise's colour.
+        worth: samples beyond those the fit takes up.
+        price: of one number.
         floor: root mean square the richest fit leaves [m].
         rows: samples.
     """
 
     candidates: tuple[Candidate, ...]
-    widening: float
+    drops: tuple[Drop, ...]
+    worth: float
     price: float
     floor: float
     rows: int
@@ -62,45 +75,69 @@ class DropSearch:
         """The chosen fit."""
         return self.candidates[0].fit
 
-
-def widening_of(residuals: list[np.ndarray]) -> float:
-    """Variance inflation of a mean-like coefficient from residual autocorrelation, bias-corrected, at least 1."""
-    n = sum(len(r) for r in residuals)
-    zero = sum(float(r @ r) for r in residuals) + 1e-30
-    first = sum(float(r[1:] @ r[:-1]) for r in residuals) / zero
-    first = min(max(first + (1.0 + 4.0 * max(first, 0.0)) / n, 0.0), 0.97)
-    running, best = 1.0, 1.0
-    for k in range(1, max(2, min(len(r) for r in residuals) // 4)):
-        running += 2.0 * sum(float(r[k:] @ r[:-k]) for r in residuals) / zero
-        best = max(best, running)
-    # fitted residuals forget faster than the noise did
-    return max((1.0 + first) / (1.0 - first), best) * FITTED
+    def refit(self, names: tuple[str, ...], mode: str) -> DropFit:
+        """Another set on the same drops."""
+        return fit_drops(list(self.drops), names, mode)
 
 
 def search(drops: list[Drop], mass: float | None, diameter: float | None) -> DropSearch:
     """Fit every plausible set and rank them."""
     sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
     sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
-    fits = [
+    plain = [
         fit_drops(drops, names, mode) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3
     ]  # one or two drops cannot tell late from each at its own instant
+    colours = grid([d.t for d in drops])
+    cleanest = min(plain, key=lambda f: f.rss)
+    white = _coloured(drops, estimated(colours, np.concatenate(cleanest.residuals), cleanest.jacobian))
+    fits = [fit_drops(white, f.names, f.mode, near=f) for f in plain]
     rows = sum(len(d.t) for d in drops)
-    cleanest = min(fits, key=lambda f: f.rss)
     spent = len(cleanest.theta) + 2 * len(drops)
-    floor2 = cleanest.rss / max(rows - spent, 1)
-    widening = widening_of(cleanest.residuals)
-    worth = max(rows - spent, 4) / widening
-    price = max(float(chi2.isf(ALPHA / (2.0 * len(SEARCHED) * len(MODES)), 1)), worth * MATERIAL**2)
+    worth = float(max(rows - spent, 4))
+    number = max(NUMBER, worth * MATERIAL**2)
+
+    def price(fit: DropFit) -> float:
+        paid = price_of(fit.names, fit.mode, len(drops), number) - foreseen(fit.names, mass, diameter)
+        return paid + implausibility(fit, mass, diameter)
+
+    rough = [worth * float(np.log(max(f.rss, 1e-12) / rows)) + price(f) for f in fits]
+    close = [f for f, score in zip(fits, rough, strict=True) if score - min(rough) < CLOSE]
+    # a set that bends away from the drops may call its misfit slow noise, at that noise's price
+    own = [estimated(colours, np.concatenate(f.residuals), f.jacobian) for f in close]
+    likely = {(c.memory, c.slow): c for c in own}
     candidates = []
-    for fit in fits:
-        instants = {"together": 0, "late": 1, "free": len(drops)}[fit.mode]
-        score = worth * np.log(max(fit.rss, 1e-12) / rows) + price * (len(fit.theta) + instants)
-        score += implausibility(fit, mass, diameter) - foreseen(fit.names, mass, diameter)
-        candidates.append(Candidate(fit=fit, score=float(score)))
+    for fit in close:
+        options = []
+        for c in likely.values():
+            other = fit_drops(_coloured(drops, c), fit.names, fit.mode, near=fit)
+            deviance = rows * float(np.log(max(other.rss, 1e-12) / rows)) + c.volume
+            # what a fit takes up itself does not count
+            options.append(Candidate(fit=other, score=worth / rows * deviance + price(other)))
+        candidates.append(min(options, key=lambda o: o.score))
+    behind = max(c.score for c in candidates) - min(rough)
+    far = [(f, x) for f, x in zip(fits, rough, strict=True) if x - min(rough) >= CLOSE]
+    candidates += [Candidate(fit=f, score=behind + x) for f, x in far]
     candidates.sort(key=lambda c: c.score)
+    best = candidates[0].fit
     return DropSearch(
-        candidates=tuple(candidates), widening=widening, price=price, floor=float(np.sqrt(floor2)), rows=rows
+        candidates=tuple(candidates),
+        drops=tuple(_coloured(drops, estimated(colours, np.concatenate(best.residuals), best.jacobian))),
+        worth=worth,
+        price=number,
+        floor=float(np.sqrt(cleanest.rss / max(rows - spent, 1))),
+        rows=rows,
     )
+
+
+def _coloured(drops: list[Drop], colour: Colour) -> list[Drop]:
+    return [replace(d, white=w) for d, w in zip(drops, colour.white, strict=True)]
+
+
+def price_of(names: tuple[str, ...], mode: str, drops: int, number: float) -> float:
+    """What a set has to gain: for each number, for each effect, and for being the first."""
+    numbers = sum(len(BODY_EFFECTS[n].parameters) for n in names) + {"together": 0, "late": 1, "free": drops}[mode]
+    effects = len(names) + (mode != "together")
+    return numbers * number + effects * EFFECT + (FIRST if effects else 0.0)
 
 
 def foreseen(names: tuple[str, ...], mass: float | None, diameter: float | None) -> float:
@@ -121,15 +158,18 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
     return total
 
 
-def equals(found: DropSearch, name: str) -> list[tuple[str, DropFit]]:
-    """Sets that differ from the best in one effect only and fit as well: (replacement, fit)."""
-    best = found.candidates[0]
-    rest = set(best.fit.names) - {name}
+def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:
+    """What could stand in for one effect of a fit, the others unchanged, and fit as well: (replacement, fit)."""
+    mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
+    rest = mine.effects - {name}
     out = []
-    for c in found.candidates[1:]:
-        other = set(c.fit.names) - rest
-        if rest <= set(c.fit.names) and len(c.fit.names) == len(best.fit.names) and c.score - best.score < 6.0:
-            new = next(iter(other))
-            if name not in BODY_EFFECTS[new].contains and new not in [n for n, _ in out]:
-                out.append((new, c.fit))
-    return out
+    for c in found.candidates:
+        other = c.effects - rest
+        if not rest <= c.effects or name in c.effects or not other or c.score - mine.score >= SAME:
+            continue
+        if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
+            continue
+        new = " + ".join(sorted(other))
+        if not any(name in BODY_EFFECTS[n].contains for n in other) and new not in [n for n, _ in out]:
+            out.append((new, c.fit))
+    return out[:MOST_EQUAL]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,13 +17,15 @@ from ..pictures import Curve
 from ..regions import phase_of
 from ..study import Study
 from .fit import Drop, DropFit, fit_drops
-from .leftover import repeating
-from .search import DropSearch, equals, foreseen, search
+from .leftover import Leftover, repeating
+from .search import EFFECT, FIRST, DropSearch, equals, foreseen, price_of, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
-SURE = 1e-4  # `unknown` below this p-value of what repeats
-CLEAN = 0.01  # a set leaves nothing that repeats at or above it
+SURE = 2e-3  # `unknown` below this p-value of what repeats
+CLEAN = 0.05  # a set leaves nothing that repeats at or above it
+NEAR = 12.0  # criterion within which another set is asked before `unknown` is said
 CONFIDENCE = 0.8
+MOST_ROWS = 500  # of one drop
 
 
 def drop_of(episode: Episode) -> Drop:
@@ -48,7 +51,9 @@ def drop_of(episode: Episode) -> Drop:
         t, h = t[:lowest], h[:lowest]
     if len(t) < 12 or h[0] - h[-1] < 0.05:
         raise GapError(f"{episode.file}: column 'h' does not fall (rows 2 to {len(episode.t) + 1})")
-    return Drop(name=episode.name, t=t, h=h)
+    k = -(-len(t) // MOST_ROWS)  # a drop is smooth: means over a few milliseconds lose nothing of it
+    whole = len(t) // k * k
+    return Drop(name=episode.name, t=t[:whole].reshape(-1, k).mean(axis=1), h=h[:whole].reshape(-1, k).mean(axis=1))
 
 
 class FallStudy(Study):
@@ -83,21 +88,21 @@ class FallStudy(Study):
         taken instead: the bank is asked twice before `unknown` is said.
         """
         best = self.found.best
-        fit = best
+        fit = self.found.refit(best.names, best.mode)
         if best.names:
-            kept = self._kept(best)
+            kept = self._kept(fit)
             names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
-            fit = best if names == best.names else fit_drops(self.fitted, names, best.mode)
-        if self._repeats(fit)[1] >= SURE:
+            fit = fit if names == best.names else self.found.refit(names, best.mode)
+        if self._repeats(fit).p_value >= SURE:
             return fit
         for c in self.found.candidates:
-            if c.score - self.found.candidates[0].score > self.found.price:
+            if c.score - self.found.candidates[0].score > NEAR:
                 break
-            if c.fit.names and c.fit.names != fit.names and self._repeats(c.fit)[1] >= CLEAN:
-                return c.fit
+            if c.effects and c.fit.names != fit.names and self._repeats(c.fit).p_value >= CLEAN:
+                return self.found.refit(c.fit.names, c.fit.mode)
         return fit
 
-    def _repeats(self, fit: DropFit) -> tuple[float, float, float]:
+    def _repeats(self, fit: DropFit) -> Leftover:
         return repeating(fit, [d.t for d in self.fitted])
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
@@ -105,16 +110,18 @@ class FallStudy(Study):
         rng = np.random.default_rng(0)
         out = {}
         for name in fit.names:
-            without = fit_drops(self.fitted, tuple(n for n in fit.names if n != name), fit.mode)
-            parts = [
-                (np.sum(a**2), np.sum(b**2))
-                for x, y in zip(without.residuals, fit.residuals, strict=True)
-                for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)
-            ]
-            table = np.array(parts)
-            price = self.found.price * len(BODY_EFFECTS[name].parameters)
-            price -= foreseen((name,), self.mass, self.diameter)
-            worth = self.found.rows / self.found.widening
+            rest = tuple(n for n in fit.names if n != name)
+            without = self.found.refit(rest, fit.mode)
+            table = np.array(
+                [
+                    (a.sum(), b.sum())
+                    for x, y in zip(without.parts, fit.parts, strict=True)
+                    for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)
+                ]
+            )
+            prices = [price_of(n, fit.mode, len(self.fitted), self.found.price) for n in (fit.names, rest)]
+            price = prices[0] - prices[1] - foreseen((name,), self.mass, self.diameter)
+            worth = self.found.worth
             wins = 0
             for _ in range(200):
                 s = table[rng.integers(len(table), size=len(table))].sum(axis=0)
@@ -128,30 +135,33 @@ class FallStudy(Study):
         instants = self.chosen.releases[:, 1]
         if self.chosen.mode == "together" or len(instants) < 3:
             return None
-        J = self.chosen.jacobian
         step = float(np.median(np.diff(self.fitted[0].t)))
-        own = np.sqrt(np.maximum(np.diag(np.linalg.pinv(J.T @ J)), 0.0) * self.found.widening) * self.found.floor
-        own = own[len(self.chosen.theta) + len(instants) :]
+        own = self._errors(self.chosen)[len(self.chosen.theta) + len(instants) :]
         mean = float(instants.mean())
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
         scatter = float(instants.var(ddof=1)) / len(instants) if self.chosen.mode == "free" else 0.0
         error = float(np.sqrt(scatter + own.mean() ** 2))
-        if abs(mean) < 0.1 * step or abs(mean) < 4.0 * error:
+        # where each drop was cut at a frame of its own, up to a frame of lateness is how it was cut
+        if abs(mean) < (step if self.chosen.mode == "free" else 0.02 * step) or abs(mean) < 3.0 * error:
             return None
         return mean, mean - 2.0 * error, mean + 2.0 * error
 
+    def _errors(self, fit: DropFit) -> np.ndarray:
+        """Standard deviations of effects and releases (p,)."""
+        scale = fit.rss / self.found.worth
+        return np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0) * scale)
+
     @cached_property
-    def leftover(self) -> tuple[float, float, float]:
+    def leftover(self) -> Leftover:
         """What repeats from drop to drop after the effects."""
         return self._repeats(self.chosen)
 
     @cached_property
     def verdict(self) -> VerdictName:
         """One of the four."""
-        energy, p, _ = self.leftover
-        none = self.found.given
-        explained = max(none.rss - self.chosen.rss, 0.0) / self.found.rows
-        if p < SURE and energy / (energy + explained) > REMAINDER:
+        energy = self.leftover.energy
+        explained = max(_squares(self.found.given) - _squares(self.chosen), 0.0) / self.found.rows
+        if self.leftover.p_value < SURE and energy / (energy + explained + 1e-30) > REMAINDER:
             return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
 
@@ -165,11 +175,10 @@ class FallStudy(Study):
             if self.late
             else self.found.given
         )
-        worth = self.found.rows / self.found.widening
         p = min(
             1.0,
             min(
-                15.0 * float(chi2.sf(worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
+                15.0 * float(chi2.sf(self.found.worth * np.log(none.rss / max(c.fit.rss, 1e-12)), len(c.fit.theta)))
                 for c in self.found.candidates
                 if c.fit.names
             ),
@@ -177,7 +186,7 @@ class FallStudy(Study):
         if self.verdict == "adequate":
             p = max(p, self.alpha)
         elif self.verdict == "unknown":
-            p = min(p, self.leftover[1])
+            p = min(p, self.leftover.p_value)
         places = []
         if self.verdict != "adequate":
             phases = {e.name: e.phases for e in self.measured.episodes}
@@ -201,9 +210,7 @@ class FallStudy(Study):
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
         """See `Study.name`."""
-        J, k = self.chosen.jacobian, len(self.chosen.theta)
-        cov = np.linalg.pinv(J.T @ J) * self.found.floor**2 * self.found.widening
-        half = 1.96 * np.sqrt(np.maximum(np.diag(cov)[:k], 0.0))
+        half = 1.96 * self._errors(self.chosen)[: len(self.chosen.theta)]
         kept = self._kept(self.chosen)
         out, at = [], 0
         for name in self.chosen.names:
@@ -224,15 +231,13 @@ class FallStudy(Study):
                         high=first.high * self.mass,
                     )
                 )
-            others = equals(self.found, name)
-            without = fit_drops(self.fitted, tuple(n for n in self.chosen.names if n != name), self.chosen.mode)
-            own = np.sqrt(max(without.rss - self.chosen.rss, 0.0) / self.found.rows)
+            others = equals(self.found, name, self.chosen)
+            without = self.found.refit(tuple(n for n in self.chosen.names if n != name), self.chosen.mode)
+            own = np.sqrt(max(_squares(without) - _squares(self.chosen), 0.0) / self.found.rows)
             first_value = values[0].value
-            smallest = np.sqrt(
-                self.found.price
-                * self.found.widening
-                / max(self.found.rows * np.log(without.rss / self.chosen.rss), 1e-9)
-            )
+            gained = self.found.worth * np.log(without.rss / self.chosen.rss)
+            price = EFFECT + self.found.price * len(effect.parameters)
+            smallest = np.sqrt(price / max(gained, 1e-9))
             out.append(
                 EffectFinding(
                     name=name,
@@ -253,6 +258,7 @@ class FallStudy(Study):
                     target="body",
                     size=float("nan"),
                     parameters=(Value(name="time", unit="s", value=mean, low=low, high=high),),
+                    equivalent=tuple(n for n, _ in equals(self.found, "delay", self.chosen)),
                 )
             )
         names = {f.name for f in out}
@@ -261,15 +267,9 @@ class FallStudy(Study):
                 "Over one range of speeds linear and quadratic drag look alike; which fits better here says "
                 "little about which acts."
             )
-        energy, _, when = self.leftover
-        guess = (
-            (
-                f"a force that repeats from drop to drop, largest about {when:.2f} s after release, "
-                f"{np.sqrt(max(energy, 0.0)):.3g} m root mean square"
-            )
-            if self.verdict == "unknown"
-            else ""
-        )
+        guess = ""
+        if self.verdict == "unknown":
+            guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
         return self.verdict, tuple(out), (), guess
 
     def _experiment(self, fit: DropFit, other: tuple[str, DropFit]) -> str:
@@ -355,14 +355,14 @@ class FallStudy(Study):
             for factor in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
                 given = np.concatenate([base.theta, [unit * factor]])
                 drops = []
-                for d in self.fitted:
+                for d in self.found.drops:
                     shifted = fit_drops([d], names, base.mode if base.mode != "late" else "free", start=given)
                     plain = fit_drops([d], names, shifted.mode, start=values)
-                    drops.append(Drop(name=d.name, t=d.t, h=d.h + _between(shifted, plain, d)))
+                    drops.append(replace(d, h=d.h + _between(shifted, plain, d)))
                 with_it = fit_drops(drops, names, base.mode)
                 without = fit_drops(drops, base.names, base.mode)
-                worth = self.found.rows / self.found.widening
-                if worth * np.log(without.rss / max(with_it.rss, 1e-12)) > self.found.price:
+                price = self.found.price + EFFECT + (0.0 if base.names else FIRST)
+                if self.found.worth * np.log(without.rss / max(with_it.rss, 1e-12)) > price:
                     out[name] = f"{unit * factor:.3g} {BODY_EFFECTS[name].parameters[0].unit}"
                     break
         return out
@@ -392,6 +392,11 @@ class FallStudy(Study):
             )
             for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]
         ]
+
+
+def _squares(fit: DropFit) -> float:
+    """Residual sum of squares [m^2], not whitened."""
+    return float(sum(np.sum(r**2) for r in fit.residuals))
 
 
 def _between(shifted: DropFit, plain: DropFit, drop: Drop) -> np.ndarray:
