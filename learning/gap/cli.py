@@ -70,6 +70,9 @@ def main(argv: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("caretree gap: interrupted; what is finished is kept", file=sys.stderr)
         return 130
+    except OSError as error:
+        print(f"caretree gap: {error.filename or 'a file'}: {error.strerror or error}", file=sys.stderr)
+        return 2
     except ValueError as error:
         from ...sim.effects.effect import EffectError
 

@@ -101,6 +101,8 @@ def load_set(folder: Path | str) -> MeasurementSet:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         raise GapError(f"{file}: row {mark.line + 1 if mark else 1} is not YAML") from None
+    except UnicodeDecodeError as error:
+        raise GapError(f"{file}: byte {error.start + 1} is not UTF-8 text") from None
     if not isinstance(content, dict) or not content:
         raise GapError(f"{file}: the file is empty, `system` and `episodes` are needed")
     system = content.get("system")

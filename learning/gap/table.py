@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,14 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     """
     if not path.is_file():
         raise GapError(f"{path}: no such file")
-    with path.open(newline="", encoding="utf-8", errors="replace") as file:
-        lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+    quick = _quick(path)
+    if quick is not None:
+        return quick
+    try:
+        with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
+    except csv.Error as error:
+        raise GapError(f"{path}: not a CSV ({error})") from None
     if not lines:
         raise GapError(f"{path}: the file is empty, a header line and at least {FEWEST} rows are needed")
     header = [name.strip() for name in lines[0]]
@@ -60,6 +67,25 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
             f"{path}: column 't', row {back[0] + 3}: time does not increase "
             f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})"
         )
+    return {name: data[:, j] for j, name in enumerate(header)}
+
+
+def _quick(path: Path) -> dict[str, np.ndarray] | None:
+    """A clean file, read without keeping its text; None where anything is wrong and a row has to be named."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        header = [name.strip() for name in file.readline().split(",")]
+        if header[0] != "t" or len(set(header)) < len(header):
+            return None
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                data = np.loadtxt(file, delimiter=",", ndmin=2, comments="#")
+        except (ValueError, UserWarning):
+            return None
+    if data.shape[1:] != (len(header),) or len(data) < FEWEST or not np.isfinite(data).all():
+        return None
+    if (np.diff(data[:, 0]) <= 0).any():
+        return None
     return {name: data[:, j] for j, name in enumerate(header)}
 
 

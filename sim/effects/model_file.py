@@ -63,7 +63,7 @@ def load_model(path: Path | str) -> EffectModel:
         raise EffectError(f"{path}: no such file")
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except yaml.YAMLError:
+    except (yaml.YAMLError, UnicodeDecodeError):
         raise EffectError(f"{path}: not YAML") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise EffectError(f"{path}: `format` must be {FORMAT}")

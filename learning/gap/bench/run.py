@@ -54,6 +54,8 @@ def run(
             raise GapError(f"--system has '{system}', it must be among arm, axis, fall, cloth")
     wanted = [s for s in range(first, last) if half == "both" or s % 2 == (0 if half == "tune" else 1)]
     cases = [(system, seed) for system in systems for seed in wanted]
+    if not cases:
+        raise GapError(f"--seeds {seeds} --half {half} holds no seed")
     out.mkdir(parents=True, exist_ok=True)
     rows = []
     if jobs > 1:

@@ -107,12 +107,17 @@ def read_scene(measured: MeasurementSet) -> tuple[ClothScene, list[ClothEpisode]
         capsules=_capsules(file, s.get("capsules") or []),
         markers=tuple(ids),
     )
-    return scene, [
+    episodes = [
         _episode(e, scene, _pins(file, e.settings.get("pins", s.get("pins")), scene)) for e in measured.episodes
     ]
+    if any(e.load is None for e in episodes):  # a load can only be compared where every recording has one
+        episodes = [replace(e, load=None) for e in episodes]
+    return scene, episodes
 
 
-def _physics(file: Path, given: dict[str, Any], count: int) -> Physics:
+def _physics(file: Path, given: Any, count: int) -> Physics:
+    if not isinstance(given, dict):
+        raise GapError(f"{file}: `physics` is {given!r}, names with numbers are needed (mass, elastic_stiffness, ...)")
     values = {}
     for key, default in DEFAULTS.items():
         x = given.get(key, default)
@@ -126,30 +131,44 @@ def _physics(file: Path, given: dict[str, Any], count: int) -> Physics:
             raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
         values[key] = float(x)
     g = given.get("gravity", -9.81)
-    g = (0.0, 0.0, -abs(float(g))) if isinstance(g, int | float) else tuple(float(x) for x in g)
-    if len(g) != 3:
+    g = (0.0, 0.0, -abs(g)) if isinstance(g, int | float) else g
+    if not isinstance(g, list | tuple) or len(g) != 3 or not all(_finite(x) for x in g):
         raise GapError(f"{file}: physics.gravity is {g!r}, a number or three numbers [m/s^2] are needed")
-    step = float(given.get("time_step", 0.002))
+    step = given.get("time_step", 0.002)
+    if not _finite(step) or not 1e-5 <= step <= 0.02:
+        raise GapError(f"{file}: physics.time_step is {step!r}, a number from 0.00001 to 0.02 [s] is needed")
     limit = np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9))
     while step > limit:  # explicit springs explode above this
         step /= 2.0
     unit = given.get("per_second", 1.0)
     if isinstance(unit, bool) or not isinstance(unit, int | float) or not 1.0 <= unit <= 1e6:
         raise GapError(f"{file}: physics.per_second is {unit!r}, a number from 1 to 1000000 is needed")
-    return Physics(**values, gravity=g, time_step=step, per_second=float(unit))
+    return Physics(
+        **values, gravity=(float(g[0]), float(g[1]), float(g[2])), time_step=float(step), per_second=float(unit)
+    )
 
 
-def _capsules(file: Path, listed: list) -> np.ndarray:
+def _finite(x: Any) -> bool:
+    return isinstance(x, int | float) and not isinstance(x, bool) and bool(np.isfinite(x))
+
+
+def _capsules(file: Path, listed: Any) -> np.ndarray:
     try:
-        return np.array([[*map(float, c["a"]), *map(float, c["b"]), float(c["radius"])] for c in listed]).reshape(-1, 7)
+        rows = [[*map(float, c["a"]), *map(float, c["b"]), float(c["radius"])] for c in listed]
+        table = np.array(rows, dtype=float).reshape(-1, 7)
     except (KeyError, TypeError, ValueError):
-        raise GapError(f"{file}: every capsule needs a, b (three numbers each) and radius [m]") from None
+        table = np.full((1, 7), np.nan)
+    if not np.isfinite(table).all() or (table[:, 6] <= 0).any():
+        raise GapError(f"{file}: every capsule needs a, b (three numbers each) and a positive radius [m]")
+    return table
 
 
 def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
     if listed is None:
         return ()
     listed = [listed] if isinstance(listed, dict) else listed
+    if not isinstance(listed, list):
+        raise GapError(f"{file}: `pins` is {listed!r}, a list of entries with `vertices` is needed")
     if listed and all(isinstance(i, int) for i in listed):
         listed = [{"vertices": listed}]
     out = []
@@ -161,6 +180,8 @@ def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
                 f"{file}: every pin needs `vertices`, ids from 0 to {len(scene.vertices) - 1}, this one has {ids!r}"
             )
         path = None
+        if p.get("path") is not None and not isinstance(p["path"], str):
+            raise GapError(f"{file}: path of a pin is {p['path']!r}, the name of a CSV with t, x, y, z is needed")
         if p.get("path"):
             table = read_table(file.parent / p["path"])
             for axis in "xyz":
@@ -171,6 +192,8 @@ def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
             path = np.stack([table[c] for c in ("t", "x", "y", "z")], axis=1)
             path[:, 1:] -= path[0, 1:]  # a displacement, whether the file gives places or displacements
         release = p.get("release_t")
+        if release is not None and not _finite(release):
+            raise GapError(f"{file}: release_t of a pin is {release!r}, a time in seconds is needed")
         out.append(Pin(vertices=tuple(ids), release_t=float("inf") if release is None else float(release), path=path))
     return tuple(out)
 

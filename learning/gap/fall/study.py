@@ -24,6 +24,8 @@ REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little 
 SURE = 2e-3  # `unknown` below this p-value of what repeats
 CLEAN = 0.05  # a set leaves nothing that repeats at or above it
 NEAR = 12.0  # criterion within which another set is asked before `unknown` is said
+TRANSFER = 3.0  # held-out energy over the worst fitted drop's from which on an explanation is asked if it holds there
+TRANSFERRED = 0.06  # `unknown` above this part of the explainable held-out energy
 CONFIDENCE = 0.8
 MOST_ROWS = 500  # of one drop
 
@@ -163,7 +165,21 @@ class FallStudy(Study):
         explained = max(_squares(self.found.given) - _squares(self.chosen), 0.0) / self.found.rows
         if self.leftover.p_value < SURE and energy / (energy + explained + 1e-30) > REMAINDER:
             return "unknown"
+        if self._strange > TRANSFERRED:
+            return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
+
+    @cached_property
+    def _strange(self) -> float:
+        """Part of the explainable held-out energy left there, where far more is left than in any fitted drop."""
+        if not self.chosen.names:
+            return 0.0
+        before, after = (np.concatenate(f.residuals) for f in self._compared())
+        given, left = float(np.mean(before**2)), float(np.mean(after**2))
+        usual = max(float(np.mean(r**2)) for r in self.chosen.residuals)
+        if left < TRANSFER * usual:
+            return 0.0
+        return (left - usual) / (left - usual + max(given - left, 0.0))
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
@@ -269,6 +285,8 @@ class FallStudy(Study):
             )
         guess = ""
         if self.verdict == "unknown":
+            guess = "the effects that explain the fitted drops do not hold on the held-out ones"
+        if self.verdict == "unknown" and self.leftover.p_value < SURE:
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
         return self.verdict, tuple(out), (), guess
 

@@ -11,7 +11,7 @@ from .events import Burst, burst_share, bursts
 from .log import JointLog
 from .remainder import Remainder, leftover
 from .symbolic import guess
-from .thresholds import BURST_SHARE, REMAINDER, REMAINDER_SIZE
+from .thresholds import BURST_SHARE, REMAINDER, REMAINDER_SIZE, TRANSFER
 from .workflow import Named, explained
 
 
@@ -88,11 +88,14 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
     explained_energy = np.maximum(total - rest, 0.0)
     share = float(weight @ energy / (weight @ (energy + explained_energy) + 1e-30))
     p = float(min([r.p_value * channels for r, e in zip(remainders, energy, strict=True) if e > 0], default=1.0))
-    unknown = energy.any() and share > REMAINDER
+    strange = bool(blocks) and _strange(named, heldout, left) > REMAINDER
+    unknown = (bool(energy.any()) and share > REMAINDER) or strange
     effects = any(not b.recalibration for b in blocks) or bool(found)
     verdict: VerdictName = "unknown" if unknown else "effects" if effects else "recalibration" if blocks else "adequate"
     text = ""
-    if unknown:
+    if strange:
+        text = "the effects that explain the fitted recordings do not hold on the held-out ones"
+    elif unknown:
         worst = max(
             (r for r, e in zip(remainders, energy, strict=True) if e > 0), key=lambda r: weight[r.channel] * r.energy
         )
@@ -107,6 +110,24 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
         remainders=remainders,
         guess=text,
     )
+
+
+def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) -> float:
+    """Part of the explainable held-out energy that is left there beyond what the fit left on the worst of its own logs.
+
+    Args:
+        named: the effects.
+        heldout: logs nothing was fitted to.
+        fitted: (T, C) residual left on each log it was fitted to.
+    """
+    before = [log.residual[log.inner] for log in heldout]
+    after = [y - explained(list(named.blocks), named.theta, log) for y, log in zip(before, heldout, strict=True)]
+    given = np.mean(np.concatenate(before) ** 2, axis=0)
+    left = np.mean(np.concatenate(after) ** 2, axis=0)
+    rest = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)  # noise differs from log to log
+    excess = np.where(left > TRANSFER * rest, left - rest, 0.0)
+    weight = 1.0 / (rest + 1e-30)
+    return float(weight @ excess / (weight @ (excess + np.maximum(given - left, 0.0)) + 1e-30))
 
 
 def _without(logs: list[JointLog], left: list[np.ndarray], found: list[Burst]) -> list[np.ndarray]:

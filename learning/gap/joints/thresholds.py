@@ -13,3 +13,4 @@ REMAINDER = 0.06  # `unknown` above this part of the explainable energy left une
 REMAINDER_SIZE = 0.08  # energy of a predictable leftover over the floor's before it counts
 BURST_SHARE = 0.35  # part of a channel's leftover that bursts must hold before they are called contact
 CONFIDENCE = 0.8  # part of the bootstrap resamples that must keep an effect
+TRANSFER = 3.0  # held-out energy over the worst fitted log's from which on an explanation is asked if it holds there

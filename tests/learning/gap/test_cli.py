@@ -47,3 +47,11 @@ def test_bad_input_is_one_sentence_and_exit_2(argv, capsys):
     text = capsys.readouterr().err
     assert text.startswith("caretree gap: ")
     assert text.count("\n") == 1
+
+
+def test_a_result_folder_that_is_a_file_is_one_sentence(axis_set, tmp_path, capsys):
+    (tmp_path / "out").write_text("")
+    assert main(["run", str(axis_set()), "--out", str(tmp_path / "out" / "below")]) == 2
+    text = capsys.readouterr().err.splitlines()[-1]
+    assert text.startswith("caretree gap: ")
+    assert "out" in text

@@ -99,6 +99,15 @@ def test_an_effect_of_no_size_changes_nothing_but_brings_its_carriers(cloth_set)
         ({"pins": [{"vertices": [70]}]}, "ids from 0 to 48"),
         ({"physics": {"mass": -1}}, "physics.mass is -1"),
         ({"capsules": [{"a": [0, 0, 0]}]}, "every capsule needs a, b"),
+        ({"capsules": [{"a": [0, 0, 0], "b": [0, 0, 1], "radius": -1}]}, "positive radius"),
+        ({"capsules": 3}, "every capsule needs a, b"),
+        ({"physics": "soft"}, "`physics` is 'soft'"),
+        ({"physics": {"gravity": "down"}}, "physics.gravity is 'down'"),
+        ({"physics": {"gravity": [0, 0]}}, "physics.gravity is"),
+        ({"physics": {"time_step": 0}}, "physics.time_step is 0"),
+        ({"pins": "left"}, "`pins` is 'left'"),
+        ({"pins": [{"vertices": [0], "release_t": "soon"}]}, "release_t of a pin is 'soon'"),
+        ({"pins": [{"vertices": [0], "path": 7}]}, "path of a pin is 7"),
     ],
 )
 def test_a_set_that_does_not_fit_is_refused(cloth_set, change, words):
@@ -106,6 +115,13 @@ def test_a_set_that_does_not_fit_is_refused(cloth_set, change, words):
     file.write_text(yaml.safe_dump({**yaml.safe_load(file.read_text()), **change}))
     with pytest.raises(GapError, match=words):
         read_scene(load_set(cloth_set))
+
+
+def test_a_load_is_used_only_where_every_recording_has_one(cloth_set):
+    assert read_scene(load_set(cloth_set))[1][0].load is not None
+    lines = [line.rsplit(",", 3)[0] for line in (cloth_set / "e1.csv").read_text().splitlines()]
+    (cloth_set / "e1.csv").write_text("\n".join(lines))
+    assert [e.load for e in read_scene(load_set(cloth_set))[1]] == [None, None]
 
 
 def test_a_bad_mesh_is_refused_before_pybullet_hangs_on_it(tmp_path):

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.study import open_study
@@ -16,3 +17,14 @@ def test_drag_is_named_and_sized(drop_set):
 def test_vacuum_needs_nothing(drop_set):
     verdict, effects, _, _ = open_study(load_set(drop_set(0.0))).name()
     assert (verdict, effects) == ("adequate", ())
+
+
+def test_drag_that_does_not_hold_on_the_held_out_drop_is_not_believed(drop_set):
+    folder = drop_set(0.02)
+    file = folder / "d3.csv"  # held out; there the body falls as in a vacuum
+    data = np.loadtxt(file, delimiter=",", skiprows=1)
+    data[:, 1] = 20.0 - 0.5 * 9.81 * data[:, 0] ** 2
+    np.savetxt(file, data[data[:, 1] > 0.3], delimiter=",", header="t,h", comments="")
+    verdict, _, _, guess = open_study(load_set(folder)).name()
+    assert verdict == "unknown"
+    assert "held-out" in guess

@@ -97,3 +97,14 @@ def test_a_contact_at_a_time_is_named_and_placed(axis_set):
     for w in places:
         a, b = truth[w.episode]
         assert (min(w.t1, b) - max(w.t0, a)) / (max(w.t1, b) - min(w.t0, a)) > 0.7
+
+
+def test_effects_that_do_not_hold_on_the_held_out_recording_are_not_believed(axis_set):
+    folder = axis_set(lambda q, v, a: 6.0 * v, episodes=4)
+    file = folder / "e3.csv"  # held out; there the friction is another one
+    data = np.loadtxt(file, delimiter=",", skiprows=1)
+    data[:, 3] += 20.0 * data[:, 2]
+    np.savetxt(file, data, delimiter=",", header="t,q,dq,force", comments="")
+    _, verdict, _, _, guess = solved(folder)
+    assert verdict == "unknown"
+    assert "do not hold on the held-out" in guess

@@ -33,7 +33,10 @@ def test_phases_reach_every_episode(axis_set):
         (lambda f: edit(f, mass=-2), ("mass is -2", "positive")),
         (lambda f: (f / "measurement.yaml").write_text(""), ("measurement.yaml", "empty")),
         (lambda f: (f / "measurement.yaml").write_text("a: [1"), ("measurement.yaml", "row", "not YAML")),
+        (lambda f: (f / "measurement.yaml").write_bytes(b"mass: \xff\xfe"), ("measurement.yaml", "not UTF-8")),
         (lambda f: (f / "e1.csv").write_text(""), ("e1.csv", "empty")),
+        (lambda f: (f / "e1.csv").write_text("t,q,dq,force\n0,1,2,3\n"), ("e1.csv", "1 rows of data", "at least 12")),
+        (lambda f: (f / "e1.csv").write_bytes(b"t,q\n" + bytes(range(256)) * 40), ("e1.csv",)),
         (lambda f: replace_cell(f, 5, 3, "nan"), ("e1.csv", "column 'force'", "row 6", "nan")),
         (lambda f: replace_cell(f, 7, 1, "x"), ("e1.csv", "column 'q'", "row 8", "'x'")),
         (lambda f: replace_cell(f, 9, 0, "-1"), ("e1.csv", "column 't'", "row 10", "does not increase")),
@@ -51,6 +54,15 @@ def test_bad_input_is_one_sentence_with_file_column_and_row(axis_set, spoil, wor
     text = str(caught.value)
     assert "\n" not in text
     assert all(w in text for w in words), text
+
+
+def test_a_byte_order_mark_and_comments_are_no_obstacle(axis_set):
+    folder = axis_set()
+    file = folder / "e1.csv"
+    plain = load_set(folder).episodes[1].columns["force"]
+    lines = file.read_text().splitlines()
+    file.write_text("\n".join([lines[0], "# a remark", *lines[1:]]), encoding="utf-8-sig")
+    assert np.array_equal(load_set(folder).episodes[1].columns["force"], plain)
 
 
 def replace_cell(folder, row, column, text):
