@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+from ....sim.effects.cloth_bank import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
 from ..cloth.obj import write_obj
 from ..cloth.scene import ClothEpisode, read_scene
@@ -17,6 +18,7 @@ from ..cloth.simulate import simulate
 from ..measurement import Episode, MeasurementSet
 from .case import Truth, coloured, draw_kind
 
+CARRIERS = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 INSIDE = (
     "air_drag",
     "wind",
@@ -185,7 +187,8 @@ def _sized(rng, name, size, vertices, duration, noise, scene, parsed):
         "delay": lambda s: {"time": min(0.01 * s, 0.2)},
         "offset": lambda s: {"x": 0.002 * s * float(direction[0]), "y": 0.002 * s * float(direction[1]), "z": 0.0},
     }[name]
-    base = [simulate(scene, e, (), {}) for e in parsed[:2]]
+    idle = (CARRIERS,) if CLOTH_EFFECTS[name].carried else ()  # what carriers do alone is not the effect's size
+    base = [simulate(scene, e, idle, {}) for e in parsed[:2]]
     s, got = 1.0, 0.0
     entry = EffectEntry(name=name, target=_target(name), parameters=make(s))
     for _ in range(1 if name == "grip_slip" else 5):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,9 +15,10 @@ from ..measurement import Episode, require_columns
 from ..pictures import Curve
 from ..regions import phase_of
 from ..study import Study
+from .experiment import detectable, separating
 from .fit import Drop, DropFit, fit_drops
 from .leftover import Leftover, repeating
-from .search import EFFECT, FIRST, DropSearch, equals, foreseen, price_of, search
+from .search import EFFECT, DropSearch, equals, foreseen, price_of, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 SURE = 2e-3  # `unknown` below this p-value of what repeats
@@ -263,7 +263,7 @@ class FallStudy(Study):
                     equivalent=tuple(n for n, _ in others),
                     size=float(own / self.found.floor),
                     smallest=float(smallest) if first_value else float("nan"),
-                    experiment=self._experiment(self.chosen, others[0]) if others else "",
+                    experiment=separating(self.fitted, self.chosen, others[0], self.found.floor) if others else "",
                 )
             )
         if self.late:
@@ -289,30 +289,6 @@ class FallStudy(Study):
         if self.verdict == "unknown" and self.leftover.p_value < SURE:
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
         return self.verdict, tuple(out), (), guess
-
-    def _experiment(self, fit: DropFit, other: tuple[str, DropFit]) -> str:
-        """Drop height at which two explanations part most, and by how much."""
-        from .drop import height
-        from .fit import table_of
-
-        top = max(float(d.h.max()) for d in self.fitted)
-        best = ("", 0.0)
-        for factor in (0.25, 0.5, 2.0, 4.0):
-            duration = 2.5 * np.sqrt(2 * top * factor / 9.81) + 1.0
-            t = np.linspace(0.0, duration, 120)
-            pair = []
-            for f in (fit, other[1]):
-                table, scale = table_of(f.values, duration + 1.0)
-                h, _ = height(t, table, 0.0, 0.0)
-                pair.append(scale * h)
-            inside = np.minimum(*pair) > -top * factor
-            if inside.sum() > 10:
-                gap = (pair[0] - pair[1])[inside]
-                apart = float(np.sqrt(np.mean((gap - gap.mean()) ** 2)) / self.found.floor)
-                if apart > best[1]:
-                    best = (f"drop from {top * factor:.3g} m", apart)
-        names = " + ".join(fit.names)
-        return f"{best[0]}: {names} and {other[0]} would then differ by {best[1]:.2g} times the noise floor"
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""
@@ -359,31 +335,7 @@ class FallStudy(Study):
                     ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12),
                 )
             )
-        return gap, None, tuple(controls), self._detectable()
-
-    def _detectable(self) -> dict[str, str]:
-        """Smallest drag these drops could have shown: put into the user's own residuals, then searched for."""
-        out = {}
-        base = self.chosen
-        for name, unit in (("linear_drag", 0.05), ("quadratic_drag", 0.005)):
-            if name in base.names or "wind" in base.names:
-                continue
-            names = (*base.names, name)
-            values = np.concatenate([base.theta, [0.0]])
-            for factor in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
-                given = np.concatenate([base.theta, [unit * factor]])
-                drops = []
-                for d in self.found.drops:
-                    shifted = fit_drops([d], names, base.mode if base.mode != "late" else "free", start=given)
-                    plain = fit_drops([d], names, shifted.mode, start=values)
-                    drops.append(replace(d, h=d.h + _between(shifted, plain, d)))
-                with_it = fit_drops(drops, names, base.mode)
-                without = fit_drops(drops, base.names, base.mode)
-                price = self.found.price + EFFECT + (0.0 if base.names else FIRST)
-                if self.found.worth * np.log(without.rss / max(with_it.rss, 1e-12)) > price:
-                    out[name] = f"{unit * factor:.3g} {BODY_EFFECTS[name].parameters[0].unit}"
-                    break
-        return out
+        return gap, None, tuple(controls), detectable(self.found, self.chosen)
 
     def _compared(self) -> tuple[DropFit, DropFit]:
         """Held-out drops under the model as given and with the effects; heights of release are each drop's own."""
@@ -415,15 +367,3 @@ class FallStudy(Study):
 def _squares(fit: DropFit) -> float:
     """Residual sum of squares [m^2], not whitened."""
     return float(sum(np.sum(r**2) for r in fit.residuals))
-
-
-def _between(shifted: DropFit, plain: DropFit, drop: Drop) -> np.ndarray:
-    """Height change an injected effect makes in one drop, release unchanged."""
-    from .drop import height
-    from .fit import table_of
-
-    duration = float(drop.t[-1]) + 1.0
-    release = plain.releases[0]
-    with_it, scale = table_of(shifted.values, duration)
-    without, _ = table_of(plain.values, duration)
-    return scale * (height(drop.t, with_it, *release)[0] - height(drop.t, without, *release)[0])

@@ -1,0 +1,79 @@
+"""What to drop next: the height that tells two explanations apart, and the smallest drag that would have been seen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ....sim.effects.body_bank import BODY_EFFECTS
+from .drop import height
+from .fit import Drop, DropFit, fit_drops, table_of
+from .search import EFFECT, FIRST, DropSearch
+
+
+def separating(drops: list[Drop], fit: DropFit, other: tuple[str, DropFit], floor: float) -> str:
+    """Drop height at which two explanations part most, and by how much.
+
+    Args:
+        drops: the recorded drops.
+        fit: the one explanation.
+        other: what stands in for part of it, and the other explanation.
+        floor: root mean square of the noise [m].
+    """
+    top = max(float(d.h.max()) for d in drops)
+    best = ("", 0.0)
+    for factor in (0.25, 0.5, 2.0, 4.0):
+        duration = 2.5 * np.sqrt(2 * top * factor / 9.81) + 1.0
+        t = np.linspace(0.0, duration, 120)
+        pair = []
+        for f in (fit, other[1]):
+            table, scale = table_of(f.values, duration + 1.0)
+            h, _ = height(t, table, 0.0, 0.0)
+            pair.append(scale * h)
+        inside = np.minimum(*pair) > -top * factor
+        if inside.sum() > 10:
+            gap = (pair[0] - pair[1])[inside]
+            apart = float(np.sqrt(np.mean((gap - gap.mean()) ** 2)) / floor)
+            if apart > best[1]:
+                best = (f"drop from {top * factor:.3g} m", apart)
+    names = " + ".join(fit.names)
+    return f"{best[0]}: {names} and {other[0]} would then differ by {best[1]:.2g} times the noise floor"
+
+
+def detectable(found: DropSearch, base: DropFit) -> dict[str, str]:
+    """Smallest drag these drops could have shown: put into the user's own residuals, then searched for.
+
+    Args:
+        found: the search.
+        base: the explanation it ended with.
+    """
+    out = {}
+    for name, unit in (("linear_drag", 0.05), ("quadratic_drag", 0.005)):
+        if name in base.names or "wind" in base.names:
+            continue
+        names = (*base.names, name)
+        values = np.concatenate([base.theta, [0.0]])
+        for factor in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
+            given = np.concatenate([base.theta, [unit * factor]])
+            drops = []
+            for d in found.drops:
+                shifted = fit_drops([d], names, base.mode if base.mode != "late" else "free", start=given)
+                plain = fit_drops([d], names, shifted.mode, start=values)
+                drops.append(replace(d, h=d.h + _between(shifted, plain, d)))
+            with_it = fit_drops(drops, names, base.mode)
+            without = fit_drops(drops, base.names, base.mode)
+            price = found.price + EFFECT + (0.0 if base.names else FIRST)
+            if found.worth * np.log(without.rss / max(with_it.rss, 1e-12)) > price:
+                out[name] = f"{unit * factor:.3g} {BODY_EFFECTS[name].parameters[0].unit}"
+                break
+    return out
+
+
+def _between(shifted: DropFit, plain: DropFit, drop: Drop) -> np.ndarray:
+    """Height change an injected effect makes in one drop, release unchanged."""
+    duration = float(drop.t[-1]) + 1.0
+    release = plain.releases[0]
+    with_it, scale = table_of(shifted.values, duration)
+    without, _ = table_of(plain.values, duration)
+    return scale * (height(drop.t, with_it, *release)[0] - height(drop.t, without, *release)[0])
