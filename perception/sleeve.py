@@ -13,7 +13,7 @@ from .garment import gown_labels
 
 _HALF_WIDTH = 0.08  # of an adult's armhole laid flat [m]
 _HALF_BINDING = 0.025  # half the width of the neck binding [m]
-_FARTHEST = 0.42  # an armhole from the shoulder it belongs to, laid flat; the other one is 0.5 away [m]
+_FARTHEST = 0.55  # an armhole from the fingertips it lies ready for; the other one is 0.8 away [m]
 _REACH = 0.35  # pieces of one ring are not farther than this from its largest piece [m]
 
 
@@ -27,7 +27,7 @@ def sleeve_opening(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveO
     Args:
         frame: a view of the gown lying on the person.
         side: the wearer's sleeve that is meant, for the name of the target.
-        near_in_map: (3,) roughly where it should be, such as the tracked shoulder [m].
+        near_in_map: (3,) roughly where it should be, such as below the tracked fingertips [m].
 
     Raises:
         PerceptionFailure: no armhole binding, or none near the point.

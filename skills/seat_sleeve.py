@@ -1,4 +1,4 @@
-"""Stage C: once the strap is over the shoulder, draw it headward and hold it there until the arm rests."""
+"""Stage C: once the strap is over the shoulder, draw it headward, hold it until the arm rests, and slacken it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..sim.world import SIDES, HandTwist
 from .context import Context
@@ -23,11 +24,12 @@ HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at 
 FARTHEST, TAUT = 0.12, 3.5  # the strap is drawn at most this far [m] and this hard [N]
 SPEED = 0.11  # [m/s]
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
+SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]
 SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
 
 
 class SeatSleeve(Skill):
-    """Draws the strap on towards the head of the bed, then keeps it there while the arm sinks.
+    """Draws the strap on towards the head of the bed, keeps it there while the arm sinks, and slackens it.
 
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length.  It ends with the hand still closed.
@@ -40,10 +42,12 @@ class SeatSleeve(Skill):
     reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
 
     def steps(self) -> Iterator[None]:
-        """Draw, hold."""
+        """Draw, hold, slacken."""
         yield from self._draw()
         self.note(f"holds the {self.grip.arm} sleeve until the arm rests")
         yield from self._hold()
+        self.note(f"slackens the {self.grip.arm} sleeve")
+        yield from self._slacken()
 
     def _draw(self) -> Iterator[None]:
         """Headward until far enough, taut, or standing."""
@@ -77,6 +81,17 @@ class SeatSleeve(Skill):
             sunk = float(np.linalg.norm(window[-1][1] - window[0][1], axis=1).max())
             if self.now() - window[0][0] > 0.9 * WINDOW and sunk < RESTS:
                 return
+            yield
+
+    def _slacken(self) -> Iterator[None]:
+        """Follow the cloth's pull until it hardly pulls: let go taut, it snaps back too far."""
+        end = self.now() + SLACKENING
+        while self.now() < end:
+            load = cloth_load(self, self.grip.hand)
+            if np.linalg.norm(load) < SLACK:
+                return
+            twist = np.append(GIVING * unit(load), np.zeros(3))
+            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
             yield
 
     @classmethod
