@@ -7,7 +7,6 @@ by the lengths of the limb, by its last motion, which dies out, and by the gripp
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -38,7 +37,6 @@ _SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard
 _EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
 _WORST = 6.0  # mean squared residual of a fit that is believed
 _SIZES = (0.85, 1.15)  # of bodies, relative to 174 cm
-_ON_SKIN, _SHOWN = 2.0, 0.75  # of the nearest skin [px], and the share of the arm's axis that is on it
 _LOST = 0.10  # standard deviation at which a joint counts as lost [m]
 
 
@@ -119,20 +117,6 @@ class ArmTracker:
         self._keep_lengths()
         self.seen = frame.stamp
         return fit.used
-
-    def shows(self, frame: Frame) -> bool:
-        """Whether most of the arm, where it is taken to be, shows as skin in a frame."""
-        from .cloud import project
-
-        view = self._view(frame)
-        shares = np.linspace(0.0, 1.0, 10)[:, None]
-        joints = self._joints()
-        axis = np.concatenate([a + shares * (b - a) for a, b in pairwise(joints)])[3:]  # the shoulder hides easily
-        u, v, depth = project(frame, axis).T
-        height, width = frame.depth.shape
-        inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
-        rows, columns = (np.where(inside, np.round(x), 0).astype(int) for x in (v, u))
-        return bool((inside & (view.to_skin[rows, columns] < _ON_SKIN)).mean() > _SHOWN)
 
     def update_grip(self, time: float, point_in_map: np.ndarray, fraction: float, deviation: float = 0.02) -> None:
         """The robot's fingers hold the arm: its axis passes through a known point.

@@ -37,7 +37,6 @@ from ..sim.world import SIDES, Frame, RoomMap, Side
 from .arm_tracker import ArmTracker
 from .collar import collar_corner, collar_line, collar_near_shoulder
 from .cover import chest_cover
-from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreGrasp
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
@@ -84,19 +83,9 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def cover(frame: Frame, shoulders_in_map: np.ndarray) -> Cover:
         return chest_cover(frame, room.bed, shoulders_in_map)
 
-    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0,
-            afresh: bool = False) -> ArmPosture:
-        """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip.
-
-        `afresh` looks for the arm as if it had never been seen, and forgets what was known only where all of it shows.
-        """
+    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0) -> ArmPosture:
+        """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip."""
         tracker = trackers[side]
-        if afresh:
-            candidate = ArmTracker(side, room.bed, tracker.scale)
-            candidate.update(frame)
-            if not candidate.shows(frame):
-                raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
-            tracker = trackers[side] = candidate
         if grip_in_map is not None and tracker.started:  # first: it says where to look
             tracker.update_grip(frame.stamp, grip_in_map, fraction)
         tracker.update(frame)

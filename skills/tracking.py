@@ -25,7 +25,6 @@ from .skill import Skill
 PERIOD = 0.25  # between two looks [s]
 PATIENCE = 300.0  # an arm under the gown, which its owner cannot move, is taken to stay for this long [s]
 _VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
-_OUT_OF_SIGHT = 2.0  # an arm that is held and not seen for so long may be in view where it is not looked for [s]
 _BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
 NEAR_SPEED, _NEAR = 0.13, 0.34  # of a hand this near to the person; the guard's limits are 0.135 and 0.30 [m/s], [m]
 _ARM_RADIUS, _TRUNK_RADIUS, _HEAD_RADIUS = 0.05, 0.16, 0.11  # [m]
@@ -85,10 +84,9 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
         if hold is not None and side in watch.arms:
             watch.arms[side] = turned_with(watch.arms[side], hold.place, _held_at(skill, hold))
         try:
-            hidden = side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE
-            if hidden and (hold is None or now - watch.seen.get(side, -np.inf) < _OUT_OF_SIGHT):
+            if side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
-            _take(skill, frame, side, hold, afresh=hidden)  # it may have come out of the gown where nobody looks
+            _take(skill, frame, side, hold)
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
@@ -147,11 +145,11 @@ def see_person(skill: Skill) -> list[Side]:
     return found
 
 
-def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, afresh: bool = False) -> None:
+def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
     """Update one arm from a frame and tell the guard."""
-    details: dict[str, object] = {"afresh": True} if afresh else {}
+    details = {}
     if hold is not None:
-        details |= {"grip_in_map": _held_at(skill, hold), "fraction": hold.place}
+        details = {"grip_in_map": _held_at(skill, hold), "fraction": hold.place}
     posture = skill.context.perceive("arm", frame, side=side, **details)
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()

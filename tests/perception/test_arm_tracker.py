@@ -123,11 +123,3 @@ def test_never_seen(scenes, bed, black):
         tracker.estimate(1.0)
     with pytest.raises(PerceptionFailure):
         tracker.update_grip(1.0, np.zeros(3), 1.0)
-
-
-def test_an_arm_shows_where_it_is_and_not_where_it_was(scenes, bed):
-    resting, lifted = scenes.person(4), scenes.person(4, lift=0.35)
-    tracker = ArmTracker("right", bed)
-    tracker.update(resting.frame(0, stamp=0.0))
-    assert tracker.shows(resting.frame(1, stamp=0.1))
-    assert not tracker.shows(lifted.frame(2, stamp=0.2))

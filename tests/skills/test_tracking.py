@@ -6,7 +6,7 @@ from caretree.sim.world import Frame
 from caretree.skills.context import Context, Perception
 from caretree.skills.scripted_person import lying_posture
 from caretree.skills.skill import Skill
-from caretree.skills.tracking import NEAR_SPEED, Hold, careful, turned_with, visible_share, watch_arm, watch_of
+from caretree.skills.tracking import NEAR_SPEED, careful, turned_with, visible_share, watch_arm, watch_of
 from caretree.trees.guard import GuardedWorld
 
 DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
@@ -95,15 +95,3 @@ def test_a_held_arm_is_looked_for_where_the_hand_holds_it():
     lengths = [np.linalg.norm(np.diff(p.points_in_map, axis=0), axis=1) for p in (posture, turned)]
     np.testing.assert_allclose(*lengths)
     np.testing.assert_allclose(turned_with(posture, 1.0, elbow).points_in_map, posture.points_in_map, atol=1e-9)
-
-
-def test_a_held_arm_that_is_out_of_sight_is_looked_for_afresh():
-    covered, asked = [], []
-    skill, world = make(lambda frame, side, **how: asked.append(how.get("afresh", False))
-                        or lying_posture(side, frame.stamp), lambda camera, time: looking_down(time, covered))
-    watch_arm(skill, "right", period=0.0)
-    covered.extend(range(200))
-    for now in (1.0, 5.0):
-        world.clock.wait_until(now)
-        watch_arm(skill, "right", hold=Hold("left", 1.0), period=0.0)
-    assert asked == [False, True], "not at once, for it may only just have gone under the gown"
