@@ -29,7 +29,7 @@ ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
-_ON, _TAUT = -0.1, 4.4  # a grip beyond this place that stands or pulls so hard [N] has the sleeve on
+_ON = -0.1  # a grip beyond this place that stands or pulls hard has the sleeve on
 _LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
@@ -40,8 +40,8 @@ class PullAlongArm(Skill):
     Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
     0 shoulder, below 0 past it towards the neck); `seat`, place where the armhole itself should end up, which as far as
     it is seen ends the pull before or up to a fifth of the upper arm after `upto`; `hold`, the hand that holds the arm,
-    or None; `stand`, base pose (3,) to drift to on the way [m, m, rad], or None to stand still; `law`, constants of
-    the pull.
+    or None; `stand`, base pose (3,) to drift to on the way [m, m, rad], or None to stand still; `taut`, the load that
+    ends a pull beyond the shoulder [N]; `law`, constants of the pull.
     """
 
     grip = Input(StrapGrip)
@@ -49,6 +49,7 @@ class PullAlongArm(Skill):
     seat = Input(float, default=-np.inf)
     hold = Input(Hold, default=None)
     stand = Input(np.ndarray, default=None)
+    taut = Input(float, default=3.7)
     law = Input(PullLaw, default=PullLaw())
     reasons = (Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.ARM_SLIPPED,
                Reason.SLEEVE_MISSED, Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT)
@@ -70,7 +71,7 @@ class PullAlongArm(Skill):
                 travelled += np.sign(before - place) * path.distance(before, place)
             if place < _LAST and np.isfinite(self.seat):
                 ring.follow(path, hand[:3, 3])
-            if self._there(ring.place, place) or (place < _ON and np.linalg.norm(load) > _TAUT):
+            if self._there(ring.place, place) or (place < _ON and np.linalg.norm(load) > self.taut):
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:

@@ -32,8 +32,10 @@ from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 # The first sleeve slips back a little while the second is pulled.
 HEAD_END: dict[Side, float] = {"right": -0.45, "left": -0.45}
 SEAT: dict[Side, float] = {"right": -0.30, "left": -0.30}
-# How hard a sleeve is drawn on its way to the hand; the second must not draw the first off its arm [N].
+# How hard a sleeve is drawn on its way to the hand, and beyond the shoulder, where 4.4 N stretch the strap of a light
+# gown to double its length; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
+TAUT_ON: dict[Side, float] = {"right": 3.7, "left": 3.0}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
 PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
@@ -73,7 +75,8 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
         RecoverBy(f"up to the {arm} shoulder", PullAlongArm(
             f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
-            stand=stance(arm, "shoulder")), {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2),
+            stand=stance(arm, "shoulder"), taut=TAUT_ON[arm]),
+            {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2),
         SeatSleeve(f"seat the {arm} sleeve", context, grip=grip))
     recoveries = {reason: (lambda name=name: let_go(name)) for reason, name in (
         (Reason.SLEEVE_CAUGHT, "caught sleeve"), (Reason.CLOTH_SLIPPED, "slipped cloth"),
