@@ -32,9 +32,10 @@ class Tried:
 
 
 class FindCorner(Skill):
-    """Stands before the hook and looks; where no corner shows down to its end, it looks again from either side.
+    """Stands before the hook and looks; where no corner shows down to its end, it looks again from other places.
 
-    A gown whose front bulges towards the camera shows its neckline edge-on in front, and flat from the side.
+    First from either side: a gown whose front bulges towards the camera shows it edge-on in front.  Then from
+    behind the rail: a gown that is wrapped round itself shows its outside on both sides, and its neckline on one.
 
     Asked again, it looks for the other corner first.
 
@@ -48,19 +49,28 @@ class FindCorner(Skill):
     other = Output(Side)
     hand = Output(Side)
     other_hand = Output(Side)
-    reasons = (Reason.NOTHING_SEEN, Reason.COMMAND_LOST, Reason.TIMEOUT)
+    reasons = (Reason.NOTHING_SEEN, Reason.COMMAND_LOST, Reason.TIMEOUT, Reason.PATH_BLOCKED)
 
     def steps(self) -> Iterator[None]:
         """Stand, look, go round."""
         self.note("looks for a corner of the neckline")
         yaw = float(self.world.observe().pose_base_in_map[2])
         waypoints = self.world.room.waypoints
-        front = min((waypoints[name][2] for name in ("rail", "rail_back") if name in waypoints),
-                    key=lambda each: -np.cos(each - yaw), default=yaw)
+        sides = sorted((name for name in ("rail", "rail_back") if name in waypoints),
+                       key=lambda name: -np.cos(waypoints[name][2] - yaw))
         tried = self.context.memory.of(Tried, Tried).sleeves
         wanted = OTHER[tried[-1]] if tried else None
         hook = self.context.perceive("hook", self.world.look("head"))
-        hook, found = yield from self._look_round(hook, float(front), wanted)
+        try:
+            front = float(waypoints[sides[0]][2]) if sides else yaw
+            hook, found = yield from self._look_round(hook, front, wanted)
+        except PerceptionFailure:
+            if len(sides) < 2:
+                raise
+            self.note("looks for a corner of the neckline from the other side of the rail")
+            yield from drive_to(self, sides[1])
+            hook = self.context.perceive("hook", self.world.look("head"))
+            hook, found = yield from self._look_round(hook, float(waypoints[sides[1]][2]), wanted)
         sleeve: Side = "left" if found.target == CORNER_OF["left"] else "right"
         tried.append(sleeve)
         self.note(f"sees the {sleeve} corner of the neckline, confidence {found.confidence:.2f}")
