@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from ....sim.effects.carriers import spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .candidates import Candidate, candidates
-from .fitting import ClothFit, ClothFitter, ClothModel, Free
+from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .scene import ClothEpisode, ClothScene
 from .simulate import Simulator
@@ -99,7 +99,8 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
             least = min((f.rss for _, f in tried), default=0.0) * seen.rss / max(part.rss, 1e-30)
             if done and left[c.name] > max(HOPELESS * least, 0.25 * seen.rss):
                 continue
-            joined = some.fit(fit.model.joined(c.push), _steps([*chosen, c]), rounds=1 if done else 2)
+            begun = _begun(some, fit.model, c, part.rss)
+            joined = some.fit(begun, _steps([*chosen, c]), rounds=1 if done else 2)
             rest = coherence(joined.residuals, pairs, m)
             done = done or rest.p_value >= 0.01 or rest.shared <= 0.03 * rest.floor**2
             say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(part.rss, 1e-30)):.3f} of the residual left")
@@ -209,9 +210,21 @@ def _screen(
     return list(firsts.values()), lefts
 
 
+def _begun(fitter: ClothFitter, model: ClothModel, c: Candidate, limit: float) -> ClothModel:
+    """The model with a candidate at the size screened, or at less where so much of it is worse than none."""
+    tried = model.joined(c.push)
+    for factor in (0.3, 0.1):
+        if c.name == "grip_slip" or fitter.rss(fitter.residuals(tried)) < limit:
+            break
+        tried = model.joined(scaled(c.push, factor, c.start))
+    return tried
+
+
 def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
     """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
     last = chosen[-1]
+    seen = fitter.residuals(fit.model)  # it was verified on fewer recordings
+    fit = replace(fit, residuals=seen, rss=fitter.rss(seen))
     if last.name in ("added_mass", "snag"):
         entry = next(e for e in fit.model.effects if e.name == last.name)
         here = np.array([entry.parameters[a] for a in "xyz"])
