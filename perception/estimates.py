@@ -114,6 +114,19 @@ class SleeveOpening(GraspPoint):
     centre_in_map: np.ndarray
 
 
+@dataclass(frozen=True, kw_only=True)
+class SleeveHeading(Estimate):
+    """Which way a held sleeve points.
+
+    Attributes:
+        side: the wearer's sleeve.
+        cuff_from_armhole_in_map: (3,) from the middle of what shows of the armhole's binding to that of the cuff's [m].
+    """
+
+    side: Side
+    cuff_from_armhole_in_map: np.ndarray
+
+
 Primitive = Literal["move_left", "direct", "move_right"]
 
 

@@ -20,6 +20,8 @@
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
 | hand_cover | points_in_map | Cover |
+| held_armhole | side, near_in_map | SleeveOpening |
+| sleeve_heading | side, near_in_map | SleeveHeading: from the armhole to the cuff |
 | arm | side, grip_in_map, fraction | ArmPosture |
 
 `frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
@@ -48,6 +50,7 @@ from .hung_side import hung_side
 from .pregrasp import pregrasp_proposal
 from .skin import head_seen
 from .sleeve import sleeve_opening
+from .sleeve_heading import sleeve_heading
 from .strap import sleeve_strap
 
 Estimator = Callable[..., Estimate]
@@ -94,6 +97,6 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
             "sleeve_opening": sleeve_opening, "hook": hook, "shown_corner": shown_corner,
-            "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole, "hand_cover": hand_cover,
-            "sleeve_strap": sleeve_strap,
+            "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole,
+            "sleeve_heading": sleeve_heading, "hand_cover": hand_cover, "sleeve_strap": sleeve_strap,
             "collar_near_shoulder": collar_near_shoulder, "head": head, "chest_cover": cover, "arm": arm}

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..perception.cloud import unit
+from ..perception.errors import PerceptionFailure
+from ..perception.estimates import SleeveHeading
 from .arm_path import UP, ArmPath
 from .bedside import outwards
 from .context import Context
@@ -32,14 +35,16 @@ class PresentSleeve(Skill):
     Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.
 
     Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
-    is carried no farther, lest the gown be drawn off the other arm [N].
+    is carried no farther, lest the gown be drawn off the other arm [N]; `opens`, how far beyond the armhole the cuff
+    has to show in the end, along the hand [m].
     """
 
     grip = Input(StrapGrip)
     hold = Input(Hold, default=None)
     taut = Input(float, default=np.inf)
+    opens = Input(float, default=-np.inf)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
-               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
+               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.SLEEVE_FOLDED)
 
     def steps(self) -> Iterator[None]:
         """Up, then beyond the fingertips."""
@@ -61,6 +66,21 @@ class PresentSleeve(Skill):
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
         yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
+        yield from self._check(path)
+
+    def _check(self, path: ArmPath) -> Iterator[None]:
+        """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it."""
+        yield from holding(self, self.hold, self.wait(0.3))
+        try:
+            seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
+                                         near_in_map=hand_now(self, self.grip.hand)[:3, 3])
+        except PerceptionFailure:
+            return  # what cannot be seen is left to the pull, which looks whether the hand comes through
+        assert isinstance(seen, SleeveHeading)
+        beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
+        if beyond < self.opens:
+            raise SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
+                                                     f"{self.opens * 100:.0f} cm are asked for")
 
     def _carry_out(self, path: ArmPath) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
