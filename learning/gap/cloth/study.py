@@ -23,6 +23,7 @@ from .search import ClothSearch, search
 from .simulate import Simulator
 
 REMAINDER = 0.12  # `unknown` above this part of the explainable energy left shared between neighbours
+NOTHING = 1e-5  # a recalibrated number this small has run into its bound
 SLOW = 0.8  # [s] for one run
 UNITS = {"mass": "kg", "elastic_stiffness": "N/m", "damping_stiffness": "N s/m", "bending_stiffness": "N/m"}
 
@@ -68,6 +69,8 @@ class ClothStudy(Study):
     def verdict(self) -> VerdictName:
         """One of the four."""
         f = self.found
+        if f.chosen and (self._load_left > REMAINDER or min(f.fit.model.physics.values(), default=1.0) <= NOTHING):
+            return "unknown"  # the markers are followed by what the load, or sense, contradicts
         explained = max(_mean2(f.plain.residuals, self) - _mean2(f.fit.residuals, self), 0.0)
         shared = f.after.shared
         if f.after.p_value < 0.01 and shared > 0.08 * f.after.floor**2 and shared / (shared + explained) > REMAINDER:
@@ -75,6 +78,15 @@ class ClothStudy(Study):
         if any(not c.recalibration for c in f.chosen):
             return "effects"
         return "recalibration" if f.chosen else "adequate"
+
+    @property
+    def _load_left(self) -> float:
+        """Part of the load's disagreement that is left, where that is beyond noise; 0 where no load was measured."""
+        f, m = self.found, 3 * len(self.scene.markers)
+        if load_misfit(f.fit.residuals, [e.load for e in self.fitted], m // 3) >= 0.01:
+            return 0.0
+        before, after = (sum(float(np.sum(r[:, m:] ** 2)) for r in x.residuals) for x in (f.plain, f.fit))
+        return after / max(before, 1e-30)
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""

@@ -5,12 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 import yaml
-from caretree.learning.gap.cloth.noise import coherence, neighbours
+from caretree.learning.gap.cloth.candidates import Candidate
+from caretree.learning.gap.cloth.fitting import ClothFit, ClothModel
+from caretree.learning.gap.cloth.noise import Coherence, coherence, neighbours
 from caretree.learning.gap.cloth.obj import read_obj, write_obj
 from caretree.learning.gap.cloth.scene import read_scene
+from caretree.learning.gap.cloth.search import ClothSearch
 from caretree.learning.gap.cloth.simulate import Simulator
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.study import open_study
 from caretree.sim.effects.model_file import EffectEntry
 
 
@@ -122,6 +126,38 @@ def test_a_load_is_used_only_where_every_recording_has_one(cloth_set):
     lines = [line.rsplit(",", 3)[0] for line in (cloth_set / "e1.csv").read_text().splitlines()]
     (cloth_set / "e1.csv").write_text("\n".join(lines))
     assert [e.load for e in read_scene(load_set(cloth_set))[1]] == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "newtons", "verdict"), [(20.0, 0.0, "recalibration"), (1e-6, 0.0, "unknown"), (20.0, 3.0, "unknown")]
+)
+def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth_set, stiffness, newtons, verdict):
+    study = open_study(load_set(cloth_set))
+    rng = np.random.default_rng(0)
+    rows = len(study.episodes[0].t)
+    for e in study.episodes:
+        e.load[:, 2] = -np.linspace(0.0, 5.0, rows)
+    noise = np.concatenate([1e-4 * rng.normal(size=(rows, 15)), 0.01 * rng.normal(size=(rows, 3))], axis=1)
+    off = np.zeros((rows, 18))
+    off[:, 17] = np.linspace(0.0, 1.0, rows)
+    start = ClothModel(physics={"elastic_stiffness": 40.0}, free=(("physics", "elastic_stiffness"),))
+
+    def fit(model, load):
+        return ClothFit(model=model, rss=1.0, residuals=[noise + load * off], covariance=np.eye(1))
+
+    calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
+    study.__dict__["found"] = ClothSearch(
+        chosen=(
+            Candidate(name="elastic_stiffness", target="cloth", start=start, push=start, steps={}, recalibration=True),
+        ),
+        fit=fit(ClothModel(physics={"elastic_stiffness": stiffness}), newtons),
+        plain=fit(ClothModel(), 4.0),
+        before=calm,
+        after=calm,
+        rivals={},
+        worth=100.0,
+    )
+    assert study.verdict == verdict
 
 
 def test_a_bad_mesh_is_refused_before_pybullet_hangs_on_it(tmp_path):
