@@ -19,6 +19,7 @@ AROUND = 0.25  # how far from the expected place to look [m]
 _BORDER = (0.012, 0.048)  # points of the strap are that far from either border; it is 0.055 wide [m]
 _WIDEST = 0.085  # from border to border, where the cloth is curved [m]
 HALF_LENGTH = 0.082  # from the end of the neck binding to the middle of the strap [m]
+_ELSEWHERE = 0.10  # a strip whose place is that wrong, as seen from the neck binding, is a side panel's [m]
 _HEADWARD = 0.2  # the edge is headward of the rim: greatest share of the way across that leads to the feet
 _GRIPPER = 0.03  # what is nearer to the camera by this stands in front of the gown [m]
 _FEWEST = 12
@@ -82,6 +83,8 @@ def strap_between(frame: Frame, near_in_map: np.ndarray) -> Strap:
     middle = np.median(points, axis=0)
     if len(navy) >= 20:
         off = np.abs(KDTree(navy).query(points)[0] - HALF_LENGTH)
+        if off.min() > _ELSEWHERE:
+            raise PerceptionFailure(Problem.OUT_OF_REACH, "strap beside the end of the neck binding")
         middle = np.median(points[off <= np.percentile(off, 25)], axis=0)
     normal = surface_normal(gown[np.linalg.norm(gown - middle, axis=1) < 0.03], frame.pose_camera_in_map[:3, 3])
     across = unit(np.median(span, axis=0))

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.world import SIDES, GripperOpening, Side
+from ..sim.world import SIDES, Side
 from .context import Context
 from .driving import drive_to
-from .hands import OPEN, hand_now, move_hands, open_gripper
+from .hands import hand_now, move_hands, open_gripper
 from .motion.errors import MotionError
 from .ports import Input
 from .reasons import Reason
@@ -50,9 +50,7 @@ class LayGown(Skill):
             yield from drive_to(self, np.array((LANE, y + AHEAD, FACING)), speed=DRIVE, straight=True)
             before = y
         yield from self._hands_to(*PATH[-1])
-        for side in SIDES:  # both at once: a corner that is let go of alone swings aside as it falls
-            self.world.send(GripperOpening(side=side, opening=OPEN), retreat=True)
-        for side in SIDES:
+        for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
             yield from open_gripper(self, side)
         self.note("withdraws")
         up: dict[Side, np.ndarray] = {side: hand_now(self, side) for side in SIDES}
