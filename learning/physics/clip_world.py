@@ -18,8 +18,9 @@ import numpy as np
 from ...sim.errors import CaretreeError
 from ...sim.gown import GownMesh, GownSpec, build_gown
 from .clip import FRAMES, RATE, Clip
-from .film_camera import FilmCamera, standard_camera
+from .film_camera import FilmCamera, misplacement, standard_camera
 from .hang import hang, held_start
+from .noise import disturb
 from .springs import Springs, Weave, advance, damped, weave
 
 CLAMP_MASS = 0.03  # of the clamp that falls with the released vertex [kg]
@@ -104,19 +105,38 @@ def film(spec: GownSpec, camera: FilmCamera | None = None, seed: int = 0, *, eng
     Raises:
         CaretreeError: the gown is too stiff to simulate, leaves the picture, or the engine is unknown.
     """
+    named = camera or standard_camera()
+    path = path_of(spec, engine)
+    if not disturbed:
+        return clip_of(seen(spec, path, named), named)
+    rng = np.random.default_rng([seed, 5])
+    return clip_of(disturb(seen(spec, path, named.moved(misplacement(rng))), rng), named)
+
+
+def path_of(spec: GownSpec, engine: str = "fast") -> np.ndarray:
+    """(frames, V, 3) vertices of a gown that falls, at the instants of the frames [m].
+
+    Raises:
+        CaretreeError: the gown is too stiff to simulate, or the engine is unknown.
+    """
     engines: dict[str, Callable[[GownSpec, np.ndarray], np.ndarray]] = {"fast": fall, "bullet": _bullet}
     if engine not in engines:
         raise CaretreeError(f"unknown engine '{engine}'; there are {', '.join(engines)}")
-    mesh, _ = cut_of(spec)
-    path = engines[engine](spec, rest(spec))
-    named = camera or standard_camera()
-    rng = np.random.default_rng([seed, 5])
-    real = named.moved(rng) if disturbed else named
-    depth = np.array([real.look(mesh, x) for x in path])
-    if disturbed:
-        from .noise import disturb
+    return engines[engine](spec, rest(spec))
 
-        depth = disturb(depth, rng)
+
+def seen(spec: GownSpec, path: np.ndarray, camera: FilmCamera) -> np.ndarray:
+    """(frames, 64, 64) depth of a gown's path (frames, V, 3) [m], NaN where there is no gown."""
+    mesh, _ = cut_of(spec)
+    return np.array([camera.look(mesh, x) for x in path])
+
+
+def clip_of(depth: np.ndarray, named: FilmCamera) -> Clip:
+    """The clip of a depth (frames, 64, 64) whose camera is said to be `named`.
+
+    Raises:
+        CaretreeError: a frame shows nothing of the gown.
+    """
     return Clip(depth=depth, rate=RATE, intrinsics=named.intrinsics, pose_camera_in_map=named.pose_camera_in_map)
 
 

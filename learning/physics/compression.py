@@ -2,57 +2,62 @@
 
 from __future__ import annotations
 
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
-from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
 
 CHUNK = 512  # clips at a time
 CLIPS = 1500  # that choose the directions; more change them little and cost more than all the rest of the fit
+LEAST = 1e-3  # spread of a direction over the largest, below which it is rounding
 
 
-class Compression(nn.Module):
+@dataclass(frozen=True, kw_only=True)
+class Compression:
     """Linear: scores of a clip along the directions in which the training clips differ most.
 
     Each score is divided by the root of its spread, half-way between leaving the scores as they are, where the few
     directions of the large motion drown the rest, and giving all the same weight, where pixel noise does.
 
-    Args:
-        mean: (D,) of the flattened frames.
-        components: (D, K) orthonormal.
+    Attributes:
+        mean: (D,) float32 of the flattened frames.
+        components: (D, K) float32, orthonormal.
         scale: (K,) what each score is multiplied by.
     """
 
-    mean: torch.Tensor
-    components: torch.Tensor
-    scale: torch.Tensor
+    mean: np.ndarray
+    components: np.ndarray
+    scale: np.ndarray
 
-    def __init__(self, mean: torch.Tensor, components: torch.Tensor, scale: torch.Tensor) -> None:
-        super().__init__()
-        self.register_buffer("mean", mean)
-        self.register_buffer("components", components)
-        self.register_buffer("scale", scale)
-
-    def forward(self, frames: torch.Tensor) -> torch.Tensor:
-        """Scores: (N, T, 2, S, S) -> (N, K), whose mean square length is one over the training clips."""
-        parts = [
-            (frames[i : i + CHUNK].float().flatten(1) - self.mean) @ self.components
-            for i in range(0, len(frames), CHUNK)
-        ]
-        return torch.cat(parts) * self.scale
+    def __call__(self, frames: np.ndarray) -> np.ndarray:
+        """Scores: (N, T, 2, S, S) -> (N, K) float64, whose mean square length is one over the training clips."""
+        parts = [(_flat(frames[i : i + CHUNK]) - self.mean) @ self.components for i in range(0, len(frames), CHUNK)]
+        return np.concatenate(parts).astype(float) * self.scale
 
 
-def fit_compression(frames: torch.Tensor, count: int, seed: int = 0) -> Compression:
+def _flat(frames: np.ndarray) -> np.ndarray:
+    return frames.reshape(len(frames), -1).astype(np.float32)
+
+
+def fit_compression(frames: np.ndarray, count: int, seed: int = 0) -> Compression:
     """Compression from training clips.
 
     Args:
         frames: (N, T, 2, S, S).
-        count: scores K; fewer where there are not so many clips.
-        seed: of the random projection that finds the directions.
+        count: scores K; fewer where clips do not differ in so many directions.
+        seed: of the choice of clips that set the directions.
     """
-    torch.manual_seed(seed)
-    flat = frames[torch.randperm(len(frames))[:CLIPS]].float().flatten(1)
-    mean = flat.mean(dim=0)
+    some = np.sort(np.random.default_rng(seed).permutation(len(frames))[:CLIPS])
+    flat = _flat(frames[some])
+    mean = flat.mean(axis=0)
     flat -= mean
     count = min(count, len(flat) - 1)
-    _, values, directions = torch.svd_lowrank(flat, q=min(count + 10, *flat.shape), niter=3)
-    spread = values[:count] / len(flat) ** 0.5 + 1e-9
-    return Compression(mean, directions[:, :count].contiguous(), 1.0 / (spread * spread.sum()).sqrt())
+    # the clips are fewer than their numbers: directions from the products of clips with clips
+    last = len(flat) - 1
+    squares, mixes = scipy.linalg.eigh((flat @ flat.T).astype(float), subset_by_index=(last - count + 1, last))
+    squares, mixes = squares[::-1], mixes[:, ::-1]
+    real = squares > LEAST**2 * squares[0]
+    length, mixes = np.sqrt(squares[real]), mixes[:, real]
+    components = (flat.T @ (mixes / length).astype(np.float32)).astype(np.float16).astype(np.float32)
+    spread = length / len(flat) ** 0.5 + 1e-9
+    return Compression(mean=mean, components=components, scale=1.0 / np.sqrt(spread * spread.sum()))

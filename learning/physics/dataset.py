@@ -16,14 +16,15 @@ import yaml
 from ...sim.errors import CaretreeError
 from ...sim.gown import GOWNS, GownSpec
 from .clip import FRAMES, SIZE, unpacked
+from .cuts import FALLS_PER_CUT, HELDOUT_GOWN, random_cut
+from .film_camera import misplacement
 from .parameters import HIGH, LOW, NAMES
 
 FORMAT = "caretree-garment-clips-1"
 INDEX = "dataset.yaml"
+SHARD = 100  # clips in a shard
 SPREAD = 0.005  # standard deviation of a class of the paper's dataset, on the [0, 1] scale
 SPLITS = ("train", "train", "train", "val", "test")  # of every five clips: 60, 20 and 20 per cent of each class
-# A cut that no training gown has: longer, narrower front, wider back panels, longer sleeves.
-HELDOUT_GOWN = GownSpec(name="heldout", spacing=0.055, front=13, back=4, hole=(3, 5), length=19, sleeve=4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,8 +32,7 @@ class DatasetSpec:
     """What a dataset holds; with the same spec, the same bytes.
 
     Attributes:
-        kind: `paper` (classes), `uniform` (the whole range), `heldout_gown` (uniform, another cut, test only),
-            `disturbed` (uniform, noise, holes and a moved camera, test only).
+        kind: one of `KINDS`.
         classes: how many classes, for `paper`; else 1.
         per_class: clips in each class.
         seed: of the parameters and the noise.
@@ -63,9 +63,17 @@ class DatasetSpec:
         return self.classes * self.per_class
 
     @property
-    def gown(self) -> GownSpec:
-        """The cut."""
-        return HELDOUT_GOWN if self.kind == "heldout_gown" else GOWNS["medium"]
+    def views(self) -> int:
+        """Clips of the same fall, one after the other."""
+        return KINDS[self.kind].views
+
+    def gown_of(self, index: int) -> GownSpec:
+        """The cut that clip `index` shows."""
+        if self.kind == "heldout_gown":
+            return HELDOUT_GOWN
+        if self.kind == "cuts":
+            return random_cut(self.seed, index // self.views // FALLS_PER_CUT)
+        return GOWNS["medium"]
 
     def class_of(self, index: int) -> int:
         """Class of clip `index`; -1 where there are no classes.
@@ -76,20 +84,60 @@ class DatasetSpec:
         return index % self.classes if self.kind == "paper" else -1
 
     def split_of(self, index: int) -> str:
-        """`train`, `val` or `test`."""
-        return SPLITS[index // self.classes % len(SPLITS)] if self.kind in ("paper", "uniform") else "test"
+        """`train`, `val` or `test`; all clips of a fall are in the same part."""
+        fixed = KINDS[self.kind].split
+        return fixed or SPLITS[index // self.views // self.classes % len(SPLITS)]
+
+    def disturbed(self, index: int) -> bool:
+        """Whether clip `index` has noise, holes and a misplaced camera; the first view of a fall never has."""
+        return self.kind == "disturbed" or index % self.views > 0
+
+    def seed_of(self, index: int) -> int:
+        """Seed of the noise of clip `index`."""
+        return self.seed * 1_000_003 + index
+
+    def misplaced(self, index: int) -> np.ndarray:
+        """(6,) how far the camera of clip `index` is from where the clip says it is."""
+        if not self.disturbed(index):
+            return np.zeros(6)
+        return misplacement(np.random.default_rng([self.seed_of(index), 5]))
 
     def unit_of(self, index: int) -> np.ndarray:
         """(6,) the parameters of clip `index` on the [0, 1] scale."""
-        kind = KINDS.index(self.kind)
+        number = KINDS[self.kind].number
         if self.kind != "paper":
-            return np.random.default_rng([self.seed, kind, index]).random(len(NAMES))
-        centre = np.random.default_rng([self.seed, kind, self.class_of(index)]).random(len(NAMES))
-        own = np.random.default_rng([self.seed, kind, self.class_of(index), index // self.classes])
+            return np.random.default_rng([self.seed, number, index // self.views]).random(len(NAMES))
+        centre = np.random.default_rng([self.seed, number, self.class_of(index)]).random(len(NAMES))
+        own = np.random.default_rng([self.seed, number, self.class_of(index), index // self.classes])
         return np.clip(centre + own.normal(0.0, SPREAD, len(NAMES)), 0.0, 1.0)
 
 
-KINDS = ("paper", "uniform", "heldout_gown", "disturbed")
+@dataclass(frozen=True)
+class Kind:
+    """What distinguishes a kind of dataset.
+
+    Attributes:
+        number: of the random numbers of its parameters.
+        what: in words.
+        views: clips of each fall: the first as it is, the others disturbed.
+        split: part that all clips are in; None: 60, 20 and 20 per cent.
+    """
+
+    number: int
+    what: str
+    views: int = 1
+    split: str | None = None
+
+
+KINDS = {
+    "paper": Kind(0, "classes"),
+    "uniform": Kind(1, "the whole range"),
+    "heldout_gown": Kind(2, "uniform, one cut that nothing is trained on", split="test"),
+    "disturbed": Kind(3, "uniform, noise, holes and a misplaced camera", split="test"),
+    "mixed": Kind(1, "the falls of `uniform`, each filmed as it is and three times disturbed", views=4),
+    "cuts": Kind(5, "uniform, ten falls of each of many cuts, each filmed as it is and disturbed", views=2,
+                 split="val"),
+}
 
 
 class DepthArray:
@@ -131,6 +179,11 @@ class Dataset:
     def __len__(self) -> int:
         return len(self.unit)
 
+    @property
+    def numbers(self) -> list[int]:
+        """Number of each clip in the whole dataset, of which some shards may not be made yet."""
+        return numbers_of(self.index)
+
     @staticmethod
     def load(folder: str | Path, *, partial: bool = False) -> Dataset:
         """Read a dataset.
@@ -166,6 +219,11 @@ class Dataset:
                        hash=hashlib.sha256("".join(shard["sha256"] for shard in shards).encode()).hexdigest()[:16])
 
 
+def numbers_of(index: dict[str, Any]) -> list[int]:
+    """Numbers of the clips whose shards an index lists."""
+    return [int(shard["file"][6:10]) * SHARD + k for shard in index["shards"] for k in range(shard["clips"])]
+
+
 def ranges() -> dict[str, list[float]]:
     """Parameter -> [value at 0, value at 1], as written into the index."""
     return {name: [float(low), float(high)] for name, low, high in zip(NAMES, LOW, HIGH, strict=True)}
@@ -196,7 +254,7 @@ def read_index(folder: Path) -> dict[str, Any]:
 def write_index(folder: Path, spec: DatasetSpec, shards: list[dict[str, Any]], facts: dict[str, Any]) -> None:
     """Write `dataset.yaml`, completely or not at all."""
     index = {"format": FORMAT, "spec": asdict(spec), "clips": sum(s["clips"] for s in shards), "ranges": ranges(),
-             "gown": spec.gown.name, **facts, "shards": shards}
+             **facts, "shards": shards}
     part = folder / (INDEX + ".part")
     part.write_text(yaml.safe_dump(index, sort_keys=False), encoding="utf-8")
     os.replace(part, folder / INDEX)

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 from ...sim.gown import GownSpec
-from .dataset import Dataset, DatasetSpec, read_index
-from .frames import frames_of
+from .dataset import Dataset, DatasetSpec, numbers_of, read_index
+from .frames import look_at
 from .method import Examples
 
 
@@ -23,15 +22,26 @@ class Loaded:
 
     Attributes:
         kind: as the data set calls itself.
-        gown: whose cut its clips show.
+        gowns: (N,) the cut that each clip shows.
         examples: all clips.
         split: (N,) `train`, `val` or `test`.
     """
 
     kind: str
-    gown: GownSpec
+    gowns: list[GownSpec]
     examples: Examples
     split: np.ndarray
+
+    def where(self, name: str) -> np.ndarray:
+        """Indices of the clips of one part.
+
+        Raises:
+            CaretreeError: there are none.
+        """
+        index = np.flatnonzero(self.split == name)
+        if not len(index):
+            raise CaretreeError(f"a data set of kind '{self.kind}' has no part '{name}'")
+        return index
 
     def part(self, name: str) -> Examples:
         """The clips of one part.
@@ -39,10 +49,7 @@ class Loaded:
         Raises:
             CaretreeError: there are none.
         """
-        chosen = self.split == name
-        if not chosen.any():
-            raise CaretreeError(f"a data set of kind '{self.kind}' has no part '{name}'")
-        return self.examples.part(chosen)
+        return self.examples.part(self.where(name))
 
 
 def load_examples(folder: Path, cache: Path, *, partial: bool = False) -> Loaded:
@@ -61,13 +68,15 @@ def load_examples(folder: Path, cache: Path, *, partial: bool = False) -> Loaded
         data = Dataset.load(folder, partial=partial)
         cache.mkdir(parents=True, exist_ok=True)
         part = kept.with_suffix(".part.npz")
-        np.savez(part, frames=frames_of(data.depth), unit=data.unit, class_id=data.class_id, split=data.split,
-                 hash=data.hash)
+        seen = look_at(data.depth)
+        np.savez(part, frames=seen.frames, rough=seen.rough, unit=data.unit, class_id=data.class_id, split=data.split,
+                 hash=data.hash, misplaced=np.array([spec.misplaced(i) for i in data.numbers]))
         os.replace(part, kept)
     with np.load(kept) as file:
-        examples = Examples(frames=torch.from_numpy(file["frames"]), unit=file["unit"].astype(float),
-                            class_id=file["class_id"], hash=str(file["hash"]))
-        if len(examples) < spec.clips and not partial:
-            raise CaretreeError(f"{folder}: {len(examples)} of {spec.clips} clips are made; make the others, or say "
-                                "--partial")
-        return Loaded(kind=spec.kind, gown=spec.gown, examples=examples, split=file["split"])
+        examples = Examples(frames=file["frames"], unit=file["unit"].astype(float), class_id=file["class_id"],
+                            hash=str(file["hash"]), rough=file["rough"], misplaced=file["misplaced"])
+        split = file["split"]
+    if len(examples) < spec.clips and not partial:
+        raise CaretreeError(f"{folder}: {len(examples)} of {spec.clips} clips are made; make the others, or say "
+                            "--partial")
+    return Loaded(kind=spec.kind, gowns=[spec.gown_of(i) for i in numbers_of(index)], examples=examples, split=split)

@@ -18,6 +18,16 @@ TARGET = (-0.1, 0.0, -0.85)  # middle of where base gowns swing to [m]
 HALF = 0.95  # half of the picture's width at the target [m]
 
 
+TURN = np.deg2rad(1.5)  # usual error of where a camera is said to look, about each axis [rad]
+SHIFT = 0.03  # usual error of where it is said to stand, along each axis [m]
+MISPLACED = np.array((TURN,) * 3 + (SHIFT,) * 3)
+
+
+def misplacement(rng: np.random.Generator) -> np.ndarray:
+    """(6,) normal errors of a camera's place, as `FilmCamera.moved` takes them."""
+    return rng.normal(0.0, 1.0, 6) * MISPLACED
+
+
 @dataclass(frozen=True, kw_only=True)
 class FilmCamera:
     """Where the camera stands, in the map of the clip (origin midway between the held vertices, z up).
@@ -30,15 +40,15 @@ class FilmCamera:
     pose_camera_in_map: np.ndarray
     intrinsics: tuple[float, float, float, float]
 
-    def moved(self, rng: np.random.Generator, shift: float = 0.03, turn: float = np.deg2rad(1.5)) -> FilmCamera:
-        """The camera misplaced by normal errors: `shift` [m] along each axis, `turn` [rad] about each."""
-        axis = rng.normal(0.0, turn, 3)
+    def moved(self, misplaced: np.ndarray) -> FilmCamera:
+        """The camera misplaced by (6,): a rotation vector in its own frame [rad], then a shift in the map [m]."""
+        axis = np.asarray(misplaced[:3], float)
         angle = float(np.linalg.norm(axis))
         x, y, z = axis / max(angle, 1e-12)
         cross = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
         pose = self.pose_camera_in_map.copy()
         pose[:3, :3] = pose[:3, :3] @ (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
-        pose[:3, 3] += rng.normal(0.0, shift, 3)
+        pose[:3, 3] += misplaced[3:]
         return FilmCamera(pose_camera_in_map=pose, intrinsics=self.intrinsics)
 
     def look(self, mesh: GownMesh, vertices: np.ndarray) -> np.ndarray:

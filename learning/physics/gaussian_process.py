@@ -8,67 +8,71 @@ closed form.  A parameter that the clip does not show gets a large n and is answ
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
-from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
+import scipy.linalg
 
 SUBSET = 800  # clips that choose length and noise: the cost grows with the cube
 LENGTHS = np.geomspace(0.3, 8.0, 8)
 NOISES = np.geomspace(1e-6, 1.0, 10)
 
 
-class GaussianProcess(nn.Module):
+@dataclass(frozen=True, kw_only=True)
+class GaussianProcess:
     """Posterior mean.
 
-    Args:
+    Attributes:
         inputs: (N, K) scores of the training clips.
         weights: (N, P) (k + n I)^-1 y, times the spread of each parameter.
         lengths: (P,) l.
         centre: (P,) means of the parameters.
     """
 
-    inputs: torch.Tensor
-    weights: torch.Tensor
-    lengths: torch.Tensor
-    centre: torch.Tensor
+    inputs: np.ndarray
+    weights: np.ndarray
+    lengths: np.ndarray
+    centre: np.ndarray
 
-    def __init__(self, inputs: torch.Tensor, weights: torch.Tensor, lengths: torch.Tensor,
-                 centre: torch.Tensor) -> None:  # fmt: skip
-        super().__init__()
-        self.register_buffer("inputs", inputs)
-        self.register_buffer("weights", weights)
-        self.register_buffer("lengths", lengths)
-        self.register_buffer("centre", centre)
+    def distance(self, scores: np.ndarray) -> np.ndarray:
+        """(N,) of scores (N, K) to the nearest training clip."""
+        return np.sqrt(squared_distances(scores, self.inputs).min(axis=1))
 
-    @torch.no_grad()
-    def forward(self, scores: torch.Tensor) -> torch.Tensor:
+    def __call__(self, scores: np.ndarray) -> np.ndarray:
         """(N, K) -> (N, P)."""
-        squares = torch.cdist(scores, self.inputs) ** 2
-        columns = [
-            torch.exp(-0.5 * squares / self.lengths[p] ** 2).double() @ self.weights[:, p].double()
-            for p in range(self.weights.shape[1])
-        ]
-        return self.centre + torch.stack(columns, dim=1).to(self.centre.dtype)
+        squares = squared_distances(scores, self.inputs)
+        out = np.tile(self.centre, (len(scores), 1))
+        for length in np.unique(self.lengths):  # parameters of one length share the kernel
+            same = self.lengths == length
+            out[:, same] += np.exp(-0.5 / length**2 * squares) @ self.weights[:, same]
+        return out
 
 
-def fit_gaussian_process(inputs: torch.Tensor, unit: torch.Tensor, seed: int) -> GaussianProcess:
-    """Process from training scores (N, K) and parameters (N, P)."""
-    rng = np.random.default_rng(seed)
-    some = torch.from_numpy(rng.permutation(len(inputs))[:SUBSET])
-    centre, spread = unit.mean(dim=0), unit.std(dim=0) + 1e-9
-    wanted = ((unit - centre) / spread).double()
-    chosen = choose(torch.cdist(inputs[some].double(), inputs[some].double()) ** 2, wanted[some])
-    squares = torch.cdist(inputs.double(), inputs.double()) ** 2
-    weights = []
-    for p, (length, noise) in enumerate(chosen):
-        kernel = torch.exp(-0.5 * squares / length**2)
-        kernel.diagonal().add_(noise)
-        weights.append(torch.cholesky_solve(wanted[:, p : p + 1], torch.linalg.cholesky(kernel))[:, 0] * spread[p])
-    lengths = torch.tensor([length for length, _ in chosen])
-    return GaussianProcess(inputs, torch.stack(weights, dim=1), lengths, centre)
+def squared_distances(some: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(N, K), (M, K) -> (N, M)."""
+    products = some @ others.T
+    return np.maximum((some**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2.0 * products, 0.0)
 
 
-def choose(squares: torch.Tensor, wanted: torch.Tensor) -> list[tuple[float, float]]:
+def fit_gaussian_process(inputs: np.ndarray, wanted: np.ndarray, seed: int) -> GaussianProcess:
+    """Process from training scores (N, K) and what to say of them (N, P)."""
+    inputs = inputs.astype(np.float32).astype(float)  # as they are kept
+    some = np.random.default_rng(seed).permutation(len(inputs))[:SUBSET]
+    centre, spread = wanted.mean(axis=0), wanted.std(axis=0, ddof=1) + 1e-9
+    wanted = (wanted - centre) / spread
+    chosen = choose(squared_distances(inputs[some], inputs[some]), wanted[some])
+    squares = squared_distances(inputs, inputs)
+    weights = np.empty_like(wanted)
+    for length, noise in set(chosen):
+        same = [p for p, one in enumerate(chosen) if one == (length, noise)]
+        kernel = np.exp(-0.5 / length**2 * squares)
+        kernel[np.diag_indices_from(kernel)] += noise
+        weights[:, same] = scipy.linalg.solve(kernel, wanted[:, same], assume_a="pos", overwrite_a=True)
+    return GaussianProcess(inputs=inputs, weights=weights * spread, centre=centre,
+                           lengths=np.array([length for length, _ in chosen]))
+
+
+def choose(squares: np.ndarray, wanted: np.ndarray) -> list[tuple[float, float]]:
     """Length and noise (relative to v) of each parameter with the highest likelihood on a grid.
 
     Args:
@@ -78,11 +82,11 @@ def choose(squares: torch.Tensor, wanted: torch.Tensor) -> list[tuple[float, flo
     best = [(np.inf, 1.0, 1.0)] * wanted.shape[1]
     for length in LENGTHS:
         # one eigendecomposition serves every noise and parameter
-        values, vectors = torch.linalg.eigh(torch.exp(-0.5 * squares / length**2))
+        values, vectors = scipy.linalg.eigh(np.exp(-0.5 / length**2 * squares), driver="evd")
         turned = (vectors.T @ wanted) ** 2
         for noise in NOISES:
-            total = values.clamp(min=0.0)[:, None] + noise
-            scale = (turned / total).mean(dim=0)  # v, in closed form
-            loss = 0.5 * len(squares) * torch.log(scale) + 0.5 * torch.log(total).sum()
+            total = np.maximum(values, 0.0)[:, None] + noise
+            scale = (turned / total).mean(axis=0)  # v, in closed form
+            loss = 0.5 * len(squares) * np.log(scale + 1e-300) + 0.5 * np.log(total).sum()
             best = [min(b, (float(x), float(length), float(noise))) for b, x in zip(best, loss, strict=True)]
     return [(length, noise) for _, length, noise in best]

@@ -21,10 +21,10 @@ import numpy as np
 
 from ...sim.errors import CaretreeError
 from .clip import packed
-from .dataset import INDEX, DatasetSpec, read_index, read_shard, write_index
+from .dataset import INDEX, SHARD, DatasetSpec, read_index, read_shard, write_index
+from .film_camera import misplacement, standard_camera
+from .noise import disturb
 from .parameters import to_spec
-
-SHARD = 100  # clips in a shard
 
 
 def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> dict[str, Any]:
@@ -38,13 +38,10 @@ def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> di
     Returns:
         `file`, `clips`, `sha256`, `seconds` (processor time), and `bytes` when nothing was written.
     """
-    from .clip_world import film
-
     started = time.process_time()
     ids = range(number * SHARD, min((number + 1) * SHARD, spec.clips))
     units = np.array([spec.unit_of(i) for i in ids])
-    depth = np.array([packed(film(to_spec(u, spec.gown), seed=spec.seed * 1_000_003 + i,
-                                  disturbed=spec.kind == "disturbed").depth) for i, u in zip(ids, units, strict=True)])
+    depth = np.array(list(_depths(spec, ids)))
     buffer = io.BytesIO()
     np.savez_compressed(buffer, depth=depth, unit=units.astype(np.float32),
                         class_id=np.array([spec.class_of(i) for i in ids], np.int32),
@@ -56,6 +53,23 @@ def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> di
         return {**shard, "bytes": data}
     _write(folder / shard["file"], data)
     return shard
+
+
+def _depths(spec: DatasetSpec, ids: range) -> Iterator[np.ndarray]:
+    """Packed depth of each clip; a fall that is filmed several times is simulated once."""
+    from .clip_world import clip_of, path_of, seen
+
+    camera, last, gown, path = standard_camera(), -1, None, None
+    for i in ids:
+        if path is None or i // spec.views != last:
+            gown, last = to_spec(spec.unit_of(i), spec.gown_of(i)), i // spec.views
+            path = path_of(gown)
+        depth = seen(gown, path, camera.moved(spec.misplaced(i)) if spec.disturbed(i) else camera)
+        if spec.disturbed(i):
+            rng = np.random.default_rng([spec.seed_of(i), 5])
+            misplacement(rng)  # the numbers that `misplaced` used
+            depth = disturb(depth, rng)
+        yield packed(clip_of(depth, camera).depth)
 
 
 def shard_name(number: int) -> str:

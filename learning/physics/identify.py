@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
-from ...sim.gown import GOWNS
+from ...sim.gown import GOWNS, GownSpec
 from ...sim.gown_file import GownFile, write_gown
 from .clip import Clip
+from .cuts import same_cut
 from .film_camera import FilmCamera
-from .frames import frames_of
-from .ours import Inversion
+from .frames import look_at
+from .ours import OTHER, Ours
 from .parameters import NAMES, PARAMETERS, to_values
 from .simulator import Simulator
 
@@ -29,6 +29,7 @@ class Identified:
         lower: (6,) lower ends of the 90 % intervals.
         upper: (6,) upper ends.
         misfit: of the simulated clip, over the usual misfit; far above one says that the clip is not explained.
+        rough: whether the clip has the gaps of a real camera.
     """
 
     cut: str
@@ -36,6 +37,7 @@ class Identified:
     lower: np.ndarray
     upper: np.ndarray
     misfit: float
+    rough: bool
 
     def table(self) -> str:
         """What the command prints."""
@@ -55,7 +57,8 @@ class Identified:
         return GownFile(base=self.cut, values=values, intervals=intervals)
 
 
-def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bool = True) -> Identified:
+def identify(clip: Clip, method: Ours, cut: str = "medium", *, simulate: bool = True,
+             trained: GownSpec = GOWNS["medium"]) -> Identified:
     """Parameters of the gown in a clip.
 
     Args:
@@ -63,6 +66,7 @@ def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bo
         method: fitted, see weights.py.
         cut: the gown's cut, a name in `GOWNS`: its size is seen before it is hung up, its cloth is not.
         simulate: whether to correct the answer by simulating it (unless the intervals are not calibrated).
+        trained: a gown of the cut that the method was trained on: others get wider intervals.
 
     Raises:
         CaretreeError: unknown cut.
@@ -70,14 +74,22 @@ def identify(clip: Clip, method: Inversion, cut: str = "medium", *, simulate: bo
     if cut not in GOWNS:
         raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
     camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
-    simulate = simulate and "simulated" in method.widths
-    film = Simulator(GOWNS[cut], camera) if simulate else None
-    found = method.infer(torch.from_numpy(frames_of(clip.depth[None])), film)
-    usual = method.widths["simulated" if simulate else "alone"].after.usual_misfit
+    seen = look_at(clip.depth[None])
+    inversion = method.sort(bool(seen.rough[0]))
+    ways = ("simulated", "alone") if simulate else ("alone",)
+    if not same_cut(GOWNS[cut], trained):
+        ways = (*(way + OTHER for way in ways), *ways)
+    way = next(way for way in ways if way in inversion.widths)  # whose intervals are calibrated
+    if way.startswith("simulated"):
+        raw = inversion.simulated(seen.frames, Simulator(GOWNS[cut], camera))
+    else:
+        raw = inversion.alone(seen.frames)
+    found = inversion.judged(way, *raw)
+    usual = inversion.widths[way].after.usual_misfit
     values = to_values(found.unit[0])
     lower, upper = (np.where(end == found.unit[0], values, to_values(end)) for end in (found.lower[0], found.upper[0]))
     return Identified(cut=cut, values=values, lower=np.minimum(lower, values), upper=np.maximum(upper, values),
-                      misfit=float(found.misfit[0] / usual))
+                      misfit=float(found.misfit[0] / usual), rough=bool(seen.rough[0]))
 
 
 def write(identified: Identified, path: str | Path) -> Path:

@@ -5,59 +5,63 @@ wanted are those whose simulated clip gets the same answer as the clip seen:
 
     a(film(theta)) = a(clip)
 
-The slopes of the left side are first taken to be those of a perfect estimator, or measured by one simulation with each
-parameter moved by what the estimator does not know; after that the steps themselves correct them (Broyden).  The
-estimator reduces the clip to a few numbers that change
-smoothly; pixels do not, and Gauss-Newton steps on them get stuck where a parameter shows little.
+The slopes of the left side are first taken to be those of a perfect estimator, or measured, one unknown after the
+other; after that the steps themselves correct them (Broyden).  The estimator reduces the clip to a few numbers that
+change smoothly; pixels do not, and Gauss-Newton steps on them get stuck where a parameter shows little.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 STEP = (0.004, 0.12)  # bounds of the moves that measure slopes, in [0, 1]
 REACH = 3.0  # longest step, in moves
 RIDGE = 0.02  # keeps directions still that no answer depends on
+ENOUGH = 0.02  # steps shorter than this, in moves, end the search
 
 Answers = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Simulate and estimate: parameters (N, P) -> answers a (N, P), misfit to the clip seen (N,)."""
 
 
 def match(
-    answers: Answers, wanted: np.ndarray, unsure: np.ndarray, rounds: int, *, measure_slopes: bool = False
+    answers: Answers, wanted: np.ndarray, unsure: np.ndarray, rounds: int, *, measure: Sequence[int] = (),
+    low: float | np.ndarray = 0.0, high: float | np.ndarray = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Parameters that get the wanted answers; of all that were simulated, those with the smallest misfit are kept.
+    """Unknowns that get the wanted answers; of all that were simulated, those with the smallest misfit are kept.
 
     Args:
         answers: simulates N clips and estimates them.
         wanted: (N, P) answers for the clips seen, where the search starts.
         unsure: (N, P) deviation of these.
-        rounds: steps.
-        measure_slopes: spend P simulations more on the first slopes.
+        rounds: steps at most; it ends early when no clip's step is worth a simulation.
+        measure: unknowns whose first slopes are measured, at a simulation each.
+        low: bound of the unknowns, one or (P,).
+        high: the other.
 
     Returns:
-        (N, P) parameters, (N,) misfit; each clip is simulated 1 + rounds times, P more with `measure_slopes`.
+        (N, P) unknowns, (N,) misfit; each clip is simulated 1 + rounds times, and once for each of `measure`.
     """
     n, p = wanted.shape
     scale = np.clip(unsure, *STEP)
-    here = np.clip(wanted, 0.0, 1.0)
+    here = np.clip(wanted, low, high)
     given, misfit = answers(here)
     best, least = here.copy(), misfit.copy()
-    slopes = np.tile(np.eye(p), (n, 1, 1))  # of the answers in moves, by parameters in moves
-    for k in range(p if measure_slopes else 0):
-        move = np.where(here[:, k] + scale[:, k] <= 1.0, scale[:, k], -scale[:, k])
+    slopes = np.tile(np.eye(p), (n, 1, 1))  # of the answers in moves, by unknowns in moves
+    for k in measure:
         aside = here.copy()
-        aside[:, k] += move
+        aside[:, k] += np.where(here[:, k] + scale[:, k] <= np.broadcast_to(high, p)[k], scale[:, k], -scale[:, k])
         there, _ = answers(aside)
-        slopes[:, :, k] = (there - given) / scale * (scale[:, k] / move)[:, None]
+        slopes[:, :, k] = (there - given) / scale * (scale[:, k] / (aside - here)[:, k])[:, None]
     for _ in range(rounds):
         missing = (wanted - given) / scale
         normal = slopes.transpose(0, 2, 1) @ slopes + RIDGE * np.eye(p)
         step = np.linalg.solve(normal, slopes.transpose(0, 2, 1) @ missing[..., None])[..., 0]
-        after = np.clip(here + np.clip(step, -REACH, REACH) * scale, 0.0, 1.0)
+        after = np.clip(here + np.clip(step, -REACH, REACH) * scale, low, high)
         taken = (after - here) / scale
+        if np.abs(taken).max() < ENOUGH:
+            break
         there, misfit = answers(after)
         surprise = (there - given) / scale - np.einsum("nij,nj->ni", slopes, taken)
         slopes += surprise[:, :, None] * taken[:, None, :] / ((taken**2).sum(axis=1) + 1e-3)[:, None, None]

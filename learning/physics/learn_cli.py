@@ -42,14 +42,15 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("data", metavar="DATA", help="data set with parts train, val and test")
         p.add_argument("--out", required=True, metavar="DIR", help="weights, predictions and results; resumable")
         p.add_argument("--test", action="append", default=[], metavar="DATA", help="another test set; may be repeated")
+        p.add_argument("--cuts", metavar="DATA", help="clips of other cuts, which set the intervals' widths for these")
         p.add_argument("--method", action="append", default=[], choices=METHODS, help="only this one; may be repeated")
         p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
         p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")
         p.add_argument("--backbone", default="scores", choices=("scores", "small", "densenet121"))
         p.add_argument("--simulate", type=_whole, default=100, metavar="N",
-                       help="clips of each test that ours corrects by simulation (default 100, a second each)")
+                       help="clips of each test that ours corrects by simulation (default 100, half a second each)")
         p.add_argument("--calibrate", type=_whole, default=100, metavar="N",
-                       help="clips that set the intervals' widths (default 100)")
+                       help="clips of each sort that set the intervals' widths (default 100)")
         p.add_argument("--partial", action="store_true", help="take what is there of unfinished data sets")
     p = sub.add_parser("identify", help="parameters with intervals from one clip; writes a gown file")
     p.add_argument("clip", metavar="CLIP", help="an .npz, as `caretree learn physics clip` writes it")
@@ -72,14 +73,14 @@ def main(argv: list[str]) -> int:
         CaretreeError: the input cannot be used.
     """
     options = parser().parse_args(argv)
+    if options.command == "identify":
+        return _identify(options)
     try:
         import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
         raise CaretreeError(f"`caretree learn physics {options.command}` needs PyTorch: "
                             "pip install 'caretree[learn]'") from error
     torch.set_num_threads(1)  # clips are small: more threads only wait for each other
-    if options.command == "identify":
-        return _identify(options)
     if options.command == "pictures":
         from .pictures import draw
 
@@ -106,8 +107,9 @@ def _study(options: argparse.Namespace) -> int:
         loaded = load_examples(Path(folder), out, partial=options.partial)
         tests[loaded.kind] = loaded
     plan = Plan(steps=options.steps, backbone=options.backbone, folder=out, say=_say)
+    cuts = load_examples(Path(options.cuts), out, partial=options.partial) if options.cuts else None
     study = Study(data=data, tests=tests, plan=plan, seeds=options.seeds, simulate=options.simulate,
-                  calibrate=options.calibrate)
+                  calibrate=options.calibrate, cuts=cuts)
     study.run(_say, tuple(options.method))
     path = write_results(study)
     if options.command == "evaluate":
@@ -126,7 +128,8 @@ def _identify(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     found = identify(clip, method, options.cut, simulate=not options.fast)
     print(found.table())
-    _say(f"{time.perf_counter() - start:.1f} s; the clip is explained {_fit(found.misfit)}")
+    _say(f"{time.perf_counter() - start:.1f} s; a {'camera' if found.rough else 'rendered'} clip, "
+         f"explained {_fit(found.misfit)}")
     if options.out:
         print(write(found, options.out))
     return 0

@@ -1,142 +1,92 @@
-"""Ours: a Gaussian process on principal components, corrected by simulating its answer, with calibrated intervals.
+"""Ours: an inversion (inversion.py) for each sort of clips that was trained on, clean ones and rough ones.
 
-Fitting takes seconds: compression.py, gaussian_process.py, prior.py and, from the validation clips, conformal.py.
-Identifying a clip reads the parameters off the process; given a simulator of the gown, indirect.py then looks for the
-parameters whose simulated clip gets the same answer.
+Rough clips have the gaps of a real camera, which is seen from the clip itself (mend.py).  They want another compression
+and another process than rendered clips: noise hides small motions, and the camera is not quite where the clip says.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
-from .compression import Compression, fit_compression
-from .conformal import Calibration, calibrate
-from .gaussian_process import GaussianProcess, fit_gaussian_process
-from .indirect import match
+from .inversion import Estimate, Film, Inversion, fit_inversion
 from .method import Examples, Method
-from .prior import Prior, fit_prior
 
-SCORES = 128
-ROUNDS = 9  # steps of the correction
+OTHER = "_other"  # behind the name of a way: the clip shows a cut that was not trained on
+LEAST = 20  # clips of a sort, below which nothing is fitted to it
 
-Film = Callable[[np.ndarray], torch.Tensor]
-"""Simulates clips: parameters (N, P) in [0, 1] -> frames (N, T, 2, S, S)."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Estimate:
-    """What is said of each clip, in [0, 1].
-
-    Attributes:
-        unit: (N, P) parameters.
-        lower: (N, P) lower ends of the 90 % intervals.
-        upper: (N, P) upper ends.
-        misfit: (N,) distance, in scores, of the clip from the nearest one known, or from the one simulated.
-    """
-
-    unit: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-    misfit: np.ndarray
+Films = Callable[[np.ndarray], Film]
+"""Indices of clips (M,) -> what simulates their gowns, in this order."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Widths:
-    """Calibrations of one way of identifying.
-
-    Attributes:
-        before: of what the clip alone says.
-        after: once the prior is taken into account.
-    """
-
-    before: Calibration
-    after: Calibration
-
-
-class Inversion(Method):
+class Ours(Method):
     """The fitted method.
 
     Args:
-        compression: frames -> scores.
-        process: scores -> parameters.
-        prior: classes of the parameters, if any.
-        widths: calibrations, `alone` and, once calibrated with a simulator, `simulated`.
-        shown: indices of the parameters that a clip shows; simulating again moves only these.
+        clean: for clips without gaps.
+        rough: for clips with gaps; None: nothing was trained on such.
     """
 
     name = "ours"
 
-    def __init__(self, compression: Compression, process: GaussianProcess, prior: Prior,
-                 widths: dict[str, Widths], shown: tuple[int, ...]) -> None:  # fmt: skip
-        self.compression, self.process, self.prior, self.widths = compression, process, prior, widths
-        self.shown = list(shown)
+    def __init__(self, clean: Inversion, rough: Inversion | None = None) -> None:
+        self.clean, self.rough = clean, rough
 
-    def alone(self, frames: torch.Tensor) -> tuple[np.ndarray, np.ndarray]:
-        """What the process says: (N, P) parameters, (N,) distance to the nearest known clip."""
-        scores = self.compression(frames)
-        distance = torch.cdist(scores, self.process.inputs).min(dim=1).values
-        return self.process(scores).double().numpy(), distance.double().numpy()
+    def sort(self, rough: bool) -> Inversion:
+        """The inversion that reads such clips."""
+        return self.rough if rough and self.rough is not None else self.clean
 
-    def simulated(self, frames: torch.Tensor, film: Film, rounds: int = ROUNDS) -> tuple[np.ndarray, np.ndarray]:
-        """The same after correction: (N, P) parameters, (N,) distance to the simulated clip."""
-        wanted, novelty = self.alone(frames)
-        seen = self.compression(frames)
+    def raw(self, clips: Examples, films: Films | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (N, P) and misfits (N,) before the prior, corrected by simulation where `films` are given."""
+        unit, misfit = np.empty_like(clips.unit), np.empty(len(clips))
+        for rough in (False, True):
+            index = np.flatnonzero(clips.gaps == rough)
+            if len(index):
+                inversion = self.sort(rough)
+                if films is None:
+                    unit[index], misfit[index] = inversion.alone(clips.frames[index])
+                    continue
+                for one in index[:, None]:  # each for itself: some need few rounds
+                    unit[one], misfit[one] = inversion.simulated(clips.frames[one], films(one))
+        return unit, misfit
 
-        def answers(shown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            unit = np.clip(wanted, 0.0, 1.0)
-            unit[:, self.shown] = shown
-            scores = self.compression(film(unit))
-            return self.process(scores).double().numpy()[:, self.shown], (scores - seen).norm(dim=1).double().numpy()
+    def judged(self, way: str, rough: np.ndarray, unit: np.ndarray, misfit: np.ndarray) -> Estimate:
+        """The prior and intervals added to what `raw` found of clips that are rough or not, (N,).
 
-        unsure = self.widths["alone"].before.deviation(wanted, novelty)
-        found = wanted.copy()
-        found[:, self.shown], misfit = match(answers, wanted[:, self.shown], unsure[:, self.shown], rounds)
-        return found, misfit
+        The way is `alone` or `simulated`, with `OTHER` behind it where that was calibrated.
+        """
+        parts = {name: np.empty_like(unit) for name in ("unit", "lower", "upper")}
+        for sort in (False, True):
+            index = np.flatnonzero(rough == sort)
+            if len(index):
+                inversion = self.sort(sort)
+                known = way if way in inversion.widths else way.removesuffix(OTHER)
+                found = inversion.judged(known, unit[index], misfit[index])
+                for name, part in parts.items():
+                    part[index] = getattr(found, name)
+        return Estimate(misfit=misfit, **parts)
 
-    def infer(self, frames: torch.Tensor, film: Film | None = None) -> Estimate:
+    def infer(self, clips: Examples, films: Films | None = None, *, other: bool = False) -> Estimate:
         """Parameters and intervals of each clip.
 
         Args:
-            frames: (N, T, 2, S, S).
-            film: simulates the gown of these clips; None: the process alone.
+            clips: of which only the frames and the sort are looked at.
+            films: make a simulator of the gowns of some of these clips; None: the processes alone.
+            other: whether these gowns have a cut that was not trained on.
         """
-        if film is None:
-            return self.judged("alone", *self.alone(frames))
-        return self.judged("simulated", *self.simulated(frames, film))
+        way = ("alone" if films is None else "simulated") + (OTHER if other else "")
+        return self.judged(way, clips.gaps, *self.raw(clips, films))
 
-    def judged(self, way: str, unit: np.ndarray, misfit: np.ndarray) -> Estimate:
-        """The prior and intervals added to what `alone` or `simulated` found."""
-        widths = self.widths[way]
-        unit, _ = self.prior.combine(unit, widths.before.deviation(unit, misfit))
-        unit = np.clip(unit, 0.0, 1.0)
-        lower, upper = widths.after.intervals(unit, misfit)
-        return Estimate(unit=unit, lower=lower, upper=upper, misfit=misfit)
-
-    def estimate(self, frames: torch.Tensor) -> np.ndarray:
-        """Parameters by the process alone."""
-        return self.infer(frames).unit
-
-    def calibrate(self, valid: Examples, film: Film | None = None) -> None:
-        """Set the widths of the intervals from clips that took no part in the fit."""
-        found = self.alone(valid.frames) if film is None else self.simulated(valid.frames, film)
-        self.set_widths("alone" if film is None else "simulated", valid.unit, *found)
-
-    def set_widths(self, way: str, true: np.ndarray, unit: np.ndarray, misfit: np.ndarray) -> None:
-        """The same from estimates made before: `alone` or `simulated`, (V, P), (V, P), (V,)."""
-        before = calibrate(true, unit, misfit)
-        combined, _ = self.prior.combine(unit, before.deviation(unit, misfit, skip_self=True))
-        after = calibrate(true, np.clip(combined, 0.0, 1.0), misfit)
-        self.widths[way] = Widths(before=before, after=after)
+    def estimate(self, frames: Any) -> np.ndarray:
+        """Parameters of clean clips, by the process alone."""
+        return self.clean.judged("alone", *self.clean.alone(frames)).unit
 
 
-def fit_ours(train: Examples, valid: Examples, *, seed: int, shown: tuple[int, ...]) -> Inversion:
-    """Fit everything; the intervals of the corrected estimates still want `calibrate` with a simulator."""
-    compression = fit_compression(train.frames, SCORES, seed)
-    process = fit_gaussian_process(compression(train.frames), torch.from_numpy(train.unit).float(), seed)
-    method = Inversion(compression, process, fit_prior(train.unit, train.class_id), {}, shown)
-    method.calibrate(valid)
-    return method
+def fit_ours(train: Examples, valid: Examples, *, seed: int, shown: tuple[int, ...]) -> Ours:
+    """Fit everything; the intervals of the corrected estimates still want `set_widths`."""
+    def fit(rough: bool) -> Inversion:
+        return fit_inversion(train.part(train.gaps == rough), valid.part(valid.gaps == rough), seed=seed, shown=shown)
+
+    return Ours(fit(False), fit(True) if min(train.gaps.sum(), valid.gaps.sum()) >= LEAST else None)

@@ -91,7 +91,7 @@ def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path
     some = train.part(np.flatnonzero(train.class_id < CLASSES)[:CLIPS])
     depth = np.array([clip.depth for clip in scene_clips().values()])
     stars = np.array([to_unit(spec) for spec in scene_gowns().values()])
-    own = view(replace(some, frames=torch.from_numpy(frames_of(depth))))
+    own = view(replace(some, frames=frames_of(depth)))
     seen = embed(method.embedding, torch.cat([some.frames, own.frames])).numpy()
     figure = Figure(figsize=(8.4, 4.0))
     for axis, points, title in zip(figure.subplots(1, 2), (np.vstack([some.unit, stars]), seen),

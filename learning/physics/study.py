@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from .compression import fit_compression
+from .cuts import same_cut
 from .examples import Loaded
+from .inversion import SCORES
 from .method import Examples
 from .methods import NETWORKS, Plan, fit_network
-from .ours import SCORES, Inversion, fit_ours
+from .ours import OTHER, Ours, fit_ours
 from .parameters import SHOWN, values_to_unit
 from .simulator import Simulator
 from .training import machine
@@ -29,11 +33,12 @@ class Study:
 
     Attributes:
         data: what the methods are trained on; its part `test` is the first test.
-        tests: more tests, all their clips, by name.
+        tests: more tests, the part `test` of each, by name.
         plan: how the networks are trained.
         seeds: of the trainings.
-        simulate: clips of each test that are corrected by simulation, which takes about a second each.
-        calibrate: validation clips that set the intervals' widths for these.
+        simulate: clips of each test that are corrected by simulation, which takes more than half a second each.
+        calibrate: validation clips of each sort that set the intervals' widths for these.
+        cuts: clips of other cuts, which set the widths for gowns of a cut that was not trained on.
     """
 
     data: Loaded
@@ -42,6 +47,7 @@ class Study:
     seeds: tuple[int, ...]
     simulate: int = 100
     calibrate: int = 100
+    cuts: Loaded | None = None
 
     @property
     def folder(self) -> Path:
@@ -49,100 +55,141 @@ class Study:
         return self.plan.folder
 
     def view(self) -> Callable[[Examples], Examples]:
-        """What the networks are given of clips: frames, or scores where that is the backbone."""
+        """What the networks are given of clips: tensors of frames, or of scores where that is the backbone."""
         if self.plan.backbone != "scores":
-            return lambda clips: clips
+            return lambda clips: replace(clips, frames=torch.from_numpy(clips.frames))
         compression = fit_compression(self.data.part("train").frames, SCORES)
-        return lambda clips: replace(clips, frames=compression(clips.frames))
+        return lambda clips: replace(clips, frames=torch.from_numpy(compression(clips.frames)).float())
 
-    def ours(self, say: Callable[[str], None]) -> Inversion:
+    def ours(self, say: Callable[[str], None]) -> Ours:
         """Our method, fitted and calibrated, or as it was left in the folder."""
         path = self.folder / "ours.safetensors"
-        valid, method, calibrated_on = self.data.part("val"), None, 0
+        method, calibrated_on = None, {}
+        wanted = {"clips": self.calibrate, "cuts": self.cuts.examples.hash if self.cuts else None}
         if path.exists():
             kept, record = load_weights(path)
             if record["data"] == self.data.examples.hash:
                 method, calibrated_on = kept, record["calibrated_on"]
         if method is None:
-            method = fit_ours(self.data.part("train"), valid, seed=self.seeds[0], shown=SHOWN)
-        elif calibrated_on == self.calibrate:
+            method = fit_ours(self.data.part("train"), self.data.part("val"), seed=self.seeds[0], shown=SHOWN)
+        elif calibrated_on == wanted:
             return method
-        if self.calibrate:
-            some = valid.part(np.arange(min(self.calibrate, len(valid))))
-            method.set_widths("simulated", some.unit, *self._simulated("val", some, self.data, method, say))
+        for name, loaded, behind in (("val", self.data, ""), ("cuts", self.cuts, OTHER)):
+            if loaded is not None:
+                self._calibrate(name, loaded, behind, method, say)
         save_weights(method, path, {
             "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
-            "clips": int((self.data.split == "train").sum()), "calibrated_on": self.calibrate, "machine": machine(),
+            "clips": int((self.data.split == "train").sum()), "calibrated_on": wanted, "machine": machine(),
         })  # fmt: skip
         return method
 
-    def test_sets(self) -> Iterator[tuple[str, Examples, Loaded]]:
-        """Name, clips and origin of each test."""
-        yield self.data.kind, self.data.part("test"), self.data
+    def _calibrate(self, name: str, loaded: Loaded, behind: str, method: Ours, say: Callable[[str], None]) -> None:
+        index = loaded.where("val")
+        for rough in (False, True):
+            sort = index[loaded.examples.gaps[index] == rough]
+            if not len(sort) or (rough and method.rough is None):
+                continue
+            inversion = method.sort(rough)
+            clips = loaded.examples.part(sort)
+            if behind:
+                inversion.set_widths("alone" + behind, clips.unit, *inversion.alone(clips.frames))
+            if self.calibrate:
+                some = np.random.default_rng(0).permutation(sort)[: self.calibrate]  # more later keep these
+                found = self._simulated(f"{name}_{'rough' if rough else 'clean'}", loaded, some, method, say)
+                inversion.set_widths("simulated" + behind, loaded.examples.unit[some], *found)
+
+    def test_sets(self) -> Iterator[tuple[str, Loaded, np.ndarray]]:
+        """Name, origin and indices of the clips of each test."""
+        index = self.data.where("test")
+        if self.data.kind == "mixed":  # the first view of each fall, which is that of `uniform`
+            index = index[~self.data.examples.gaps[index]]
+        yield "uniform" if self.data.kind == "mixed" else self.data.kind, self.data, index
         for name, loaded in self.tests.items():
-            yield name, loaded.examples, loaded
+            yield name, loaded, loaded.where("test")
 
     def run(self, say: Callable[[str], None], only: tuple[str, ...] = ()) -> None:
         """Make all predictions that are missing, of all methods or of the named ones."""
+        self._forget_other_data()
         sets = list(self.test_sets())
         wanted = lambda name: not only or name in only  # noqa: E731
         todo = [(seed, name) for seed in self.seeds for name in NETWORKS if wanted(name)
                 and any(not self._file(t, name, seed).exists() for t, _, _ in sets)]
         if todo:
             view = self.view()
-            train, seen = view(self.data.part("train")), [(test, view(clips)) for test, clips, _ in sets]
+            train = view(self.data.part("train"))
+            seen = [(test, view(loaded.examples.part(index))) for test, loaded, index in sets]
             for seed, name in todo:
                 method = fit_network(name, train, self.plan, seed)
                 for test, clips in seen:
-                    self._keep(test, name, seed, clips, unit=method.estimate(clips.frames))
+                    self._keep(test, name, seed, clips.unit, unit=method.estimate(clips.frames))
         first = self.seeds[0]
         if wanted("random"):
             for seed in self.seeds:
-                for test, clips, _ in sets:
-                    self._keep(test, "random", seed, clips, unit=RandomParameters(seed).estimate(clips.frames))
+                for test, loaded, index in sets:
+                    clips = loaded.examples.part(index)
+                    self._keep(test, "random", seed, clips.unit, unit=RandomParameters(seed).estimate(clips.frames))
         if wanted("manual"):
             tried = values_to_unit(settings())
-            by_hand = ManualTuning(tried, Simulator(self.data.gown)(tried))
-            for test, clips, _ in sets:
-                self._keep(test, "manual", first, clips, unit=by_hand.estimate(clips.frames))
+            by_hand = ManualTuning(tried, Simulator(self.data.gowns[0])(tried))
+            for test, loaded, index in sets:
+                clips = loaded.examples.part(index)
+                self._keep(test, "manual", first, clips.unit, unit=by_hand.estimate(clips.frames))
         if wanted("ours"):
             self._ours(sets, say)
 
-    def _ours(self, sets: list[tuple[str, Examples, Loaded]], say: Callable[[str], None]) -> None:
+    def _ours(self, sets: list[tuple[str, Loaded, np.ndarray]], say: Callable[[str], None]) -> None:
         method, seed = self.ours(say), self.seeds[0]
-        for test, clips, origin in sets:
-            found = method.infer(clips.frames)
-            self._keep(test, "ours", seed, clips, unit=found.unit, lower=found.lower, upper=found.upper)
-            if "simulated" not in method.widths or not self.simulate:
+        for test, loaded, index in sets:
+            clips, other = loaded.examples.part(index), not same_cut(loaded.gowns[index[0]], self.data.gowns[0])
+            found = method.infer(clips, other=other)
+            self._keep(test, "ours", seed, clips.unit, unit=found.unit, lower=found.lower, upper=found.upper)
+            sorts = [method.sort(rough) for rough in np.unique(clips.gaps)]
+            if not self.simulate or not all("simulated" in sort.widths for sort in sorts):
                 continue
-            some = clips.part(np.arange(min(self.simulate, len(clips))))
-            found = method.judged("simulated", *self._simulated(test, some, origin, method, say))
-            self._keep(test, "ours_simulated", seed, some, unit=found.unit, lower=found.lower, upper=found.upper)
+            some = index[: self.simulate]
+            gaps = loaded.examples.gaps[some]
+            found = method.judged("simulated" + (OTHER if other else ""), gaps,
+                                  *self._simulated(test, loaded, some, method, say))
+            self._keep(test, "ours_simulated", seed, loaded.examples.unit[some], unit=found.unit, lower=found.lower,
+                       upper=found.upper)
 
-    def _simulated(
-        self, test: str, clips: Examples, origin: Loaded, method: Inversion, say: Callable[[str], None]
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _simulated(self, name: str, loaded: Loaded, index: np.ndarray, method: Ours,
+                   say: Callable[[str], None]) -> tuple[np.ndarray, np.ndarray]:
         """Parameters and misfits after correction by simulation, kept piece by piece."""
         pieces = []
-        for start in range(0, len(clips), PIECE):
-            path = self._file(test, f"piece-{start}", self.seeds[0])
+        for start in range(0, len(index), PIECE):
+            path = self._file(name, f"piece-{start}", self.seeds[0])
             if not path.exists():
-                piece = clips.part(np.arange(start, min(start + PIECE, len(clips))))
-                unit, misfit = method.simulated(piece.frames, Simulator(origin.gown))
-                self._keep(test, f"piece-{start}", self.seeds[0], piece, unit=unit, misfit=misfit)
-                say(f"{test}: {start + len(piece)} of {len(clips)} clips corrected by simulation")
+                part = index[start : start + PIECE]
+                clips = loaded.examples.part(part)
+                unit, misfit = method.raw(clips, lambda k, part=part: Simulator([loaded.gowns[i] for i in part[k]]))
+                self._keep(name, f"piece-{start}", self.seeds[0], clips.unit, unit=unit, misfit=misfit)
+                say(f"{name}: {start + len(part)} of {len(index)} clips corrected by simulation")
             with np.load(path) as file:
                 pieces.append((file["unit"], file["misfit"]))
         return np.concatenate([unit for unit, _ in pieces]), np.concatenate([misfit for _, misfit in pieces])
 
+    def _forget_other_data(self) -> None:
+        """Remove predictions of methods that learned from other data, and those of other clips than now."""
+        now = {"": self.data.examples.hash, **{name: one.examples.hash for name, one in self.tests.items()}}
+        now |= {"cuts": self.cuts.examples.hash} if self.cuts else {}
+        folder = self.folder / "predictions"
+        folder.mkdir(parents=True, exist_ok=True)
+        known = folder / "data.json"
+        before = json.loads(known.read_text()) if known.exists() else {}
+        for name in now:
+            if before.get(name, now[name]) != now[name]:
+                for path in folder.glob(f"{name}*.npz"):
+                    path.unlink()
+        known.write_text(json.dumps({**before, **now}))
+
     def _file(self, test: str, method: str, seed: int) -> Path:
         return self.folder / "predictions" / f"{test}-{method}-{seed}.npz"
 
-    def _keep(self, test: str, method: str, seed: int, clips: Examples, **arrays: np.ndarray) -> None:
+    def _keep(self, test: str, method: str, seed: int, true: np.ndarray, **arrays: np.ndarray) -> None:
         path = self._file(test, method, seed)
-        path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part.npz")
-        np.savez(part, allow_pickle=False, **{"true": clips.unit, **arrays})
+        np.savez(part, allow_pickle=False, **{"true": true, **arrays})
         os.replace(part, path)
 
     def predictions(self) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:

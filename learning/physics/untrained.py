@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
+from .gaussian_process import squared_distances
 from .method import Method
 from .parameters import BASE, NAMES
 
@@ -24,14 +24,18 @@ class ManualTuning(Method):
 
     name = "manual"
 
-    def __init__(self, unit: np.ndarray, frames: torch.Tensor) -> None:
-        self.unit, self.frames = unit, frames.float().flatten(1)
+    def __init__(self, unit: np.ndarray, frames: np.ndarray) -> None:
+        self.unit, self.frames = unit, _flat(frames)
 
-    def estimate(self, frames: torch.Tensor) -> np.ndarray:
+    def estimate(self, frames: np.ndarray) -> np.ndarray:
         """The setting with the smallest mean square difference of frames."""
-        parts = [torch.cdist(frames[i : i + 256].float().flatten(1), self.frames).argmin(dim=1)
+        parts = [squared_distances(_flat(frames[i : i + 256]), self.frames).argmin(axis=1)
                  for i in range(0, len(frames), 256)]
-        return self.unit[torch.cat(parts).numpy()]
+        return self.unit[np.concatenate(parts)]
+
+
+def _flat(frames: np.ndarray) -> np.ndarray:
+    return frames.reshape(len(frames), -1).astype(float)
 
 
 def settings() -> np.ndarray:
@@ -59,6 +63,6 @@ class RandomParameters(Method):
     def __init__(self, seed: int, parameters: int = len(NAMES)) -> None:
         self.seed, self.parameters = seed, parameters
 
-    def estimate(self, frames: torch.Tensor) -> np.ndarray:
+    def estimate(self, frames: np.ndarray) -> np.ndarray:
         """Draws, whatever the clip."""
         return np.random.default_rng(self.seed).random((len(frames), self.parameters))

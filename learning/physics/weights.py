@@ -1,91 +1,108 @@
-"""Our fitted method as one safetensors file."""
+"""Our fitted method as one safetensors file, which numpy alone can read."""
 
 from __future__ import annotations
 
 import json
 import os
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
-import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
-from safetensors import SafetensorError, safe_open  # pyright: ignore[reportMissingImports] - in the extra `learn`
-from safetensors.torch import save_file  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
 from .compression import Compression
 from .conformal import Calibration
 from .gaussian_process import GaussianProcess
-from .ours import Inversion, Widths
+from .inversion import Inversion, Widths
+from .ours import Ours
 from .parameters import HIGH, LOW, NAMES
 from .prior import Prior
 
-FORMAT = "caretree-garment-physics-1"
+FORMAT = "caretree-garment-physics-2"
 PACKAGED = Path(__file__).parent / "weights" / "ours.safetensors"
+_SMALL = {"compression.components": np.float16, "process.inputs": np.float32}  # kept in fewer bits
 
 
 def _ranges() -> str:
     return json.dumps([NAMES, LOW.tolist(), HIGH.tolist()])
 
 
-def save_weights(method: Inversion, path: str | Path, record: dict[str, object]) -> Path:
+def _arrays(prefix: str, part: object) -> dict[str, np.ndarray]:
+    """The fields of a dataclass by name."""
+    return {f"{prefix}.{f.name}": np.asarray(getattr(part, f.name)) for f in fields(part)}  # type: ignore[arg-type]
+
+
+def _inversion_arrays(inversion: Inversion) -> dict[str, np.ndarray]:
+    arrays = {**_arrays("compression", inversion.compression), **_arrays("process", inversion.process),
+              "prior.means": inversion.prior.means, "prior.variance": inversion.prior.variance}
+    for way, widths in inversion.widths.items():
+        arrays |= {**_arrays(f"{way}.before", widths.before), **_arrays(f"{way}.after", widths.after)}
+    return {name: np.ascontiguousarray(array, _SMALL.get(name, array.dtype)) for name, array in arrays.items()}
+
+
+def save_weights(method: Ours, path: str | Path, record: dict[str, object]) -> Path:
     """Write the method completely or not at all; `record` says how it came about.  Returns the path."""
+    from safetensors.numpy import save_file  # pyright: ignore[reportMissingImports] - in the extra `learn`
+
     path = Path(path)
-    tensors = {f"compression.{k}": v.half() if k == "components" else v
-               for k, v in method.compression.state_dict().items()}
-    tensors |= {f"process.{k}": v for k, v in method.process.state_dict().items()}
-    tensors["prior.means"] = torch.from_numpy(method.prior.means)
-    tensors["prior.variance"] = torch.from_numpy(method.prior.variance)
-    for way, widths in method.widths.items():
-        for stage in ("before", "after"):
-            one: Calibration = getattr(widths, stage)
-            tensors |= {f"{way}.{stage}.places": torch.from_numpy(one.places).float(),
-                        f"{way}.{stage}.errors": torch.from_numpy(one.errors).float(),
-                        f"{way}.{stage}.factor": torch.from_numpy(one.factor),
-                        f"{way}.{stage}.usual_misfit": torch.tensor([one.usual_misfit])}
-    about = {"format": FORMAT, "ranges": _ranges(), "shown": json.dumps(method.shown), "record": json.dumps(record)}
+    sorts = {"clean": method.clean} | ({"rough": method.rough} if method.rough else {})
+    tensors = {f"{sort}/{name}": array for sort, one in sorts.items() for name, array in _inversion_arrays(one).items()}
+    about = {"format": FORMAT, "ranges": _ranges(), "shown": json.dumps(method.clean.shown),
+             "record": json.dumps(record)}
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
-    save_file({k: v.contiguous() for k, v in tensors.items()}, part, metadata=about)
+    save_file(tensors, part, metadata=about)
     part.chmod(0o644)  # safetensors leaves it readable by its owner only
     os.replace(part, path)
     return path
 
 
-def load_weights(path: str | Path = PACKAGED) -> tuple[Inversion, dict[str, object]]:
+def load_weights(path: str | Path = PACKAGED, sorts: tuple[str, ...] = ("clean", "rough")) -> tuple[Ours, dict]:
     """The method in a file, and its record.
 
+    Args:
+        path: of the file.
+        sorts: which inversions to read: `rough` alone then stands for `clean` too, to save time.
+
     Raises:
-        CaretreeError: the file is missing, is none of ours, or was made for other parameter ranges.
+        CaretreeError: the file is missing, is none of ours, or was made for other parameter ranges; or the package
+            `safetensors` is missing.
     """
+    try:
+        from safetensors import SafetensorError, safe_open  # pyright: ignore[reportMissingImports] - extra `learn`
+    except ImportError as error:
+        raise CaretreeError("reading weights needs safetensors: pip install 'caretree[learn]'") from error
     path = Path(path)
     if not path.is_file():
         raise CaretreeError(f"{path}: there are no such weights; `caretree learn physics train DATA --method ours "
                             "--out DIR` makes them, DIR/ours.safetensors")
     try:
-        with safe_open(path, "pt") as file:
+        with safe_open(path, "numpy") as file:
             about = file.metadata() or {}
-            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 (it is no dict)
+            tensors = {key: file.get_tensor(key) for key in file.keys()  # noqa: SIM118 (it is no dict)
+                       if key.split("/")[0] in sorts}
     except SafetensorError as error:
         raise CaretreeError(f"{path}: this is no file of weights (safetensors)") from error
     if about.get("format") != FORMAT or about.get("ranges") != _ranges():
         raise CaretreeError(f"{path}: the weights are not in format {FORMAT} or were made for other parameter ranges")
+    shown = tuple(json.loads(about["shown"]))
+    read = [_inversion({name.removeprefix(f"{sort}/"): array for name, array in tensors.items()
+                        if name.startswith(f"{sort}/")}, shown)
+            for sort in sorts if f"{sort}/process.inputs" in tensors]
+    if not read:
+        return load_weights(path, ("clean",))
+    return Ours(read[0], read[-1] if len(read) > 1 or "clean" not in sorts else None), json.loads(about["record"])
 
-    def part(prefix: str) -> dict[str, torch.Tensor]:
+
+def _inversion(tensors: dict[str, np.ndarray], shown: tuple[int, ...]) -> Inversion:
+    def part(prefix: str) -> dict[str, np.ndarray]:
         return {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
 
-    def array(key: str) -> np.ndarray:
-        return tensors[key].double().numpy()
-
-    squeeze = part("compression.")
-    compression = Compression(squeeze["mean"], squeeze["components"].float(), squeeze["scale"])
-    process = GaussianProcess(**part("process."))
-    widths = {}
-    for way in ("alone", "simulated"):
-        if f"{way}.after.factor" in tensors:
-            widths[way] = Widths(**{stage: Calibration(
-                places=array(f"{way}.{stage}.places"), errors=array(f"{way}.{stage}.errors"),
-                factor=array(f"{way}.{stage}.factor"), usual_misfit=float(array(f"{way}.{stage}.usual_misfit")[0]),
-            ) for stage in ("before", "after")})  # fmt: skip
-    prior = Prior(array("prior.means"), array("prior.variance"))
-    shown = tuple(json.loads(about["shown"]))
-    return Inversion(compression, process, prior, widths, shown), json.loads(about["record"])
+    squeeze, process = part("compression."), part("process.")
+    compression = Compression(**{**squeeze, "components": squeeze["components"].astype(np.float32)})
+    process["inputs"] = process["inputs"].astype(float)
+    widths = {way: Widths(**{stage: Calibration(**{name: float(array[0]) if name == "usual_misfit" else array
+                                                   for name, array in part(f"{way}.{stage}.").items()})
+                             for stage in ("before", "after")})
+              for way in sorted({key.split(".")[0] for key in tensors if key.endswith(".after.factor")})}
+    return Inversion(compression, GaussianProcess(**process), Prior(**part("prior.")), widths, shown)

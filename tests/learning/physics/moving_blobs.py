@@ -1,10 +1,9 @@
 """Small clips whose motion follows two numbers exactly: what the learning tests learn from instead of gowns."""
 
-import numpy as np
-import pytest
+from dataclasses import replace
 
-torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
-from caretree.learning.physics.method import Examples  # noqa: E402
+import numpy as np
+from caretree.learning.physics.method import Examples
 
 FRAMES, SIZE = 5, 16
 
@@ -17,7 +16,7 @@ def blob_frames(unit):
     centre = 0.2 + 0.6 * unit[:, 0, None, None, None] * t
     shape = np.exp(-((x - centre) ** 2 + (y - 0.5) ** 2) / 0.05)
     depth = shape * (unit[:, 1, None, None, None] - 0.5) * t
-    return torch.from_numpy(np.stack([shape, depth], axis=2).astype(np.float16))
+    return np.stack([shape, depth], axis=2).astype(np.float16)
 
 
 def blobs(count, parameters=2, seed=0):
@@ -33,3 +32,10 @@ def blob_classes(classes, per_class, seed=0, spread=0.005):
     class_id = np.tile(np.arange(classes), per_class)
     unit = np.clip(centres[class_id] + rng.normal(0, spread, (len(class_id), 2)), 0, 1)
     return Examples(frames=blob_frames(unit), unit=unit, class_id=class_id, hash=f"classes{classes}-{seed}")
+
+
+def as_tensors(examples):
+    """The same examples as the networks want them."""
+    import torch
+
+    return replace(examples, frames=torch.from_numpy(examples.frames))

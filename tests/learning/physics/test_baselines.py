@@ -11,12 +11,12 @@ from caretree.learning.physics.parameters import BASE, HIGH, LOW, values_to_unit
 from caretree.learning.physics.training import Budget  # noqa: E402
 from caretree.learning.physics.untrained import ManualTuning, RandomParameters, settings  # noqa: E402
 
-from .moving_blobs import blobs  # noqa: E402
+from .moving_blobs import as_tensors, blobs  # noqa: E402
 
 
 @pytest.mark.parametrize("fitter", [fit_supervised, fit_contrastive_regression, fit_residual_only])
 def test_each_learns_more_than_the_mean(fitter, tmp_path):
-    train, test = blobs(80), blobs(30, seed=1)
+    train, test = as_tensors(blobs(80)), as_tensors(blobs(30, seed=1))
     method = fitter(train, Budget(steps=50, learning_rate=3e-3), seed=0, folder=tmp_path, backbone="small",
                     say=lambda _: None)  # fmt: skip
     estimated = method.estimate(test.frames)
@@ -28,7 +28,7 @@ def test_each_learns_more_than_the_mean(fitter, tmp_path):
 
 
 def test_baseline_2_leaves_the_embedding_of_phase_one_alone(tmp_path):
-    train = blobs(40)
+    train = as_tensors(blobs(40))
     arguments = {"seed": 0, "folder": tmp_path, "backbone": "small", "say": lambda _: None}
     method = fit_contrastive_regression(train, Budget(steps=5), **arguments)
     state = torch.load(tmp_path / "contrastive" / "checkpoint.pt", weights_only=True)["network"]
@@ -52,7 +52,7 @@ def test_settings_of_a_person_lie_in_range_and_hold_the_usual_gown():
 
 
 def test_random_parameters_are_uniform_and_seeded():
-    frames = torch.zeros(4000, 1)
+    frames = np.zeros((4000, 1))
     drawn = RandomParameters(3).estimate(frames)
     np.testing.assert_array_equal(drawn, RandomParameters(3).estimate(frames))
     np.testing.assert_allclose(drawn.mean(axis=0), 0.5, atol=0.03)

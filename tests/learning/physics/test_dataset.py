@@ -9,6 +9,7 @@ from caretree.learning.physics import clip_world, dataset, generate
 from caretree.learning.physics.clip import FRAMES, SIZE
 from caretree.learning.physics.clip_world import film
 from caretree.learning.physics.dataset import INDEX, SPREAD, Dataset, DatasetSpec
+from caretree.learning.physics.frames import look_at
 from caretree.learning.physics.parameters import NAMES, to_spec
 from caretree.sim.errors import CaretreeError
 from caretree.sim.gown import GOWNS, GownSpec
@@ -20,8 +21,11 @@ PAPER = DatasetSpec(kind="paper", classes=3, per_class=5)
 def quick(monkeypatch, small_gown):
     """Shards of four clips of a small gown."""
     monkeypatch.setattr(generate, "SHARD", 4)
+    monkeypatch.setattr(dataset, "SHARD", 4)
     monkeypatch.setitem(GOWNS, "medium", small_gown)
     monkeypatch.setattr(dataset, "HELDOUT_GOWN", replace(small_gown, name="heldout", length=8))
+    monkeypatch.setattr(dataset, "random_cut", lambda seed, number: replace(small_gown, length=8 - number % 2))
+    monkeypatch.setattr(dataset, "FALLS_PER_CUT", 2)
 
 
 def test_a_dataset_is_what_was_asked_for(tmp_path):
@@ -32,7 +36,7 @@ def test_a_dataset_is_what_was_asked_for(tmp_path):
     np.testing.assert_array_equal(data.class_id, np.arange(15) % 3)
     for k in range(3):
         assert sorted(data.split[data.class_id == k]) == ["test", "train", "train", "train", "val"]
-    clip = film(to_spec(PAPER.unit_of(7), PAPER.gown))
+    clip = film(to_spec(PAPER.unit_of(7), PAPER.gown_of(7)))
     np.testing.assert_allclose(data.depth[7], clip.depth, atol=1e-4)
     assert [line for line in said if "left" in line]
     index = yaml.safe_load((tmp_path / INDEX).read_text())
@@ -91,7 +95,7 @@ def test_other_kinds(tmp_path, kind):
     data = Dataset.load(generate.generate(tmp_path, spec))
     assert set(data.class_id) == {-1}
     assert set(data.split) == ({"train", "val", "test"} if kind == "uniform" else {"test"})
-    clean = film(to_spec(spec.unit_of(0), spec.gown)).depth
+    clean = film(to_spec(spec.unit_of(0), spec.gown_of(0))).depth
     same = np.isfinite(clean) == np.isfinite(data.depth[0])
     assert same.all() == (kind != "disturbed")
 
@@ -194,6 +198,39 @@ def test_without_ray_several_jobs_are_refused(tmp_path, monkeypatch):
 
 
 def test_the_heldout_gown_is_another_cut_that_can_be_filmed():
-    held = DatasetSpec(kind="heldout_gown", classes=1, per_class=1).gown
+    held = DatasetSpec(kind="heldout_gown", classes=1, per_class=1).gown_of(0)
     assert clip_world.cut_of(held)[0].vertices.shape != clip_world.cut_of(GOWNS["medium"])[0].vertices.shape
     assert isinstance(held, GownSpec)
+
+
+def test_mixed_films_the_falls_of_uniform_clean_and_three_times_rough(tmp_path):
+    uniform = Dataset.load(generate.generate(tmp_path / "u", DatasetSpec(kind="uniform", classes=1, per_class=5)))
+    mixed = Dataset.load(generate.generate(tmp_path / "m", DatasetSpec(kind="mixed", classes=1, per_class=20)))
+    np.testing.assert_array_equal(mixed.depth.raw[::4], uniform.depth.raw)
+    np.testing.assert_array_equal(mixed.unit, np.repeat(uniform.unit, 4, axis=0))
+    np.testing.assert_array_equal(mixed.split, np.repeat(uniform.split, 4))  # no fall is both learned from and tested
+    spec = mixed.spec
+    again = film(to_spec(spec.unit_of(2), spec.gown_of(2)), seed=spec.seed_of(2), disturbed=True).depth
+    np.testing.assert_allclose(mixed.depth[2], again, atol=1e-4)  # the camera and the noise are the ones it names
+    assert look_at(mixed.depth).rough.reshape(5, 4).tolist() == [[False, True, True, True]] * 5
+    assert not spec.misplaced(0).any()
+    assert np.abs(spec.misplaced(1)).max() > 0.01
+    assert (spec.misplaced(1) != spec.misplaced(2)).all()
+
+
+def test_cuts_change_after_some_falls_and_all_clips_calibrate(tmp_path):
+    data = Dataset.load(generate.generate(tmp_path, DatasetSpec(kind="cuts", classes=1, per_class=8)))
+    assert [data.spec.gown_of(i).length for i in data.numbers] == [8, 8, 8, 8, 7, 7, 7, 7]
+    assert set(data.split) == {"val"}
+    there = np.isfinite(data.depth[:8])
+    assert not (there[0] == there[1]).all()  # the second view of a fall is rough
+
+
+def test_a_part_of_a_dataset_knows_which_clips_it_holds(tmp_path):
+    spec = DatasetSpec(kind="uniform", classes=1, per_class=12)
+    generate.generate(tmp_path, spec)
+    index = dataset.read_index(tmp_path)
+    dataset.write_index(tmp_path, spec, index["shards"][1:], {})
+    data = Dataset.load(tmp_path, partial=True)
+    assert data.numbers == list(range(4, 12))
+    np.testing.assert_allclose(data.unit[0], spec.unit_of(4), atol=1e-6)

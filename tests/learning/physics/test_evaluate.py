@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ class BlobSimulator:
     def __init__(self, cut, camera=None):
         self.films = 0
 
-    def __call__(self, unit):
+    def __call__(self, unit, misplaced=None):
         self.films += len(unit)
         return blob_frames(unit)
 
@@ -49,8 +50,8 @@ class BlobSimulator:
 def study(tmp_path, small_gown, monkeypatch, request):
     monkeypatch.setattr(study_module, "Simulator", BlobSimulator)
     split = np.array(["train", "train", "train", "val", "test"])
-    data = Loaded(kind="uniform", gown=small_gown, examples=blobs(60, parameters=6), split=np.resize(split, 60))
-    other = Loaded(kind="heldout_gown", gown=small_gown, examples=blobs(8, 6, seed=5), split=np.full(8, "test"))
+    data = Loaded(kind="uniform", gowns=[small_gown] * 60, examples=blobs(60, parameters=6), split=np.resize(split, 60))
+    other = Loaded(kind="heldout_gown", gowns=[small_gown] * 8, examples=blobs(8, 6, seed=5), split=np.full(8, "test"))
     plan = Plan(steps=3, backbone=request.param, folder=tmp_path, say=lambda _: None)
     return Study(data=data, tests={other.kind: other}, plan=plan, seeds=(0, 1), simulate=11, calibrate=10)
 
@@ -82,3 +83,15 @@ def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
     monkeypatch.setattr(BlobSimulator, "__call__", again)
     study.run(lambda _: None, ("ours",))
     assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
+
+
+def test_predictions_from_other_data_are_forgotten(study):
+    study.run(lambda _: None, ("random",))
+    kept = study.folder / "predictions" / "uniform-random-0.npz"
+    before = np.load(kept)["true"]
+    study.run(lambda _: None, ("manual",))
+    assert kept.exists()
+    grown = replace(study, data=replace(study.data, examples=replace(blobs(60, 6, seed=3), hash="other")))
+    grown.run(lambda _: None, ("manual",))
+    assert not kept.exists()
+    assert len(before) == 12

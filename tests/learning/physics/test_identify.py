@@ -1,22 +1,20 @@
 import numpy as np
 import pytest
-
-torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
-from caretree.learning.physics import identify as identify_module  # noqa: E402
-from caretree.learning.physics import learn_cli  # noqa: E402
-from caretree.learning.physics.clip import Clip  # noqa: E402
-from caretree.learning.physics.clip_world import film  # noqa: E402
-from caretree.learning.physics.frames import frames_of  # noqa: E402
-from caretree.learning.physics.identify import identify, write  # noqa: E402
-from caretree.learning.physics.method import Examples  # noqa: E402
-from caretree.learning.physics.ours import fit_ours  # noqa: E402
-from caretree.learning.physics.parameters import NAMES, SHOWN, to_spec, values_of  # noqa: E402
-from caretree.learning.physics.simulator import Simulator  # noqa: E402
-from caretree.learning.physics.weights import load_weights, save_weights  # noqa: E402
-from caretree.sim.errors import CaretreeError  # noqa: E402
-from caretree.sim.gown import GOWNS  # noqa: E402
-from caretree.sim.gown_file import read_gown  # noqa: E402
-from caretree.trees.cli import main  # noqa: E402
+from caretree.learning.physics import identify as identify_module
+from caretree.learning.physics import learn_cli
+from caretree.learning.physics.clip import Clip
+from caretree.learning.physics.clip_world import film
+from caretree.learning.physics.frames import frames_of
+from caretree.learning.physics.identify import identify, write
+from caretree.learning.physics.method import Examples
+from caretree.learning.physics.ours import fit_ours
+from caretree.learning.physics.parameters import NAMES, SHOWN, to_spec, values_of
+from caretree.learning.physics.simulator import Simulator
+from caretree.learning.physics.weights import load_weights, save_weights
+from caretree.sim.errors import CaretreeError
+from caretree.sim.gown import GOWNS
+from caretree.sim.gown_file import read_gown
+from caretree.trees.cli import main
 
 
 def make(small_gown, count, seed):
@@ -28,7 +26,8 @@ def make(small_gown, count, seed):
 def fitted(small_gown):
     valid = make(small_gown, 24, 1)
     method = fit_ours(make(small_gown, 60, 0), valid, seed=0, shown=SHOWN)
-    method.calibrate(valid.part(np.arange(12)), Simulator(small_gown))
+    some = valid.part(np.arange(12))
+    method.clean.set_widths("simulated", some.unit, *method.raw(some, lambda _: Simulator(small_gown)))
     return method
 
 
@@ -51,11 +50,11 @@ def test_weights_come_back_as_they_were_saved(fitted, small_gown, tmp_path):
     path = save_weights(fitted, tmp_path / "w.safetensors", {"data": "abc"})
     again, record = load_weights(path)
     assert record == {"data": "abc"}
-    frames = make(small_gown, 3, 7).frames
-    before, after = fitted.infer(frames), again.infer(frames)
-    np.testing.assert_allclose(after.unit, before.unit, atol=2e-3)  # components are kept in half precision
-    np.testing.assert_allclose(after.lower, before.lower, atol=5e-3)
-    assert set(again.widths) == {"alone", "simulated"}
+    clips = make(small_gown, 3, 7)
+    before, after = fitted.infer(clips), again.infer(clips)
+    np.testing.assert_allclose(after.unit, before.unit, atol=1e-6)
+    np.testing.assert_allclose(after.lower, before.lower, atol=1e-6)
+    assert set(again.clean.widths) == {"alone", "simulated"}
 
 
 def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_path):
@@ -65,7 +64,7 @@ def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_p
     true = values_of(gown)
     shown = list(SHOWN)
     errors = [np.abs(f.values / true - 1)[shown].mean() for f in (found, quick)]
-    assert errors[0] < 0.1
+    assert errors[0] < 0.15, errors
     assert errors[0] < errors[1]
     assert (found.lower <= found.values).all()
     assert (found.values <= found.upper).all()

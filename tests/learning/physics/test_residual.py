@@ -6,7 +6,7 @@ from caretree.learning.physics.paper_method import ResidualObjective, fit_paper 
 from caretree.learning.physics.residual import draw_pairs, nearest  # noqa: E402
 from caretree.learning.physics.training import Budget, fit  # noqa: E402
 
-from .moving_blobs import blob_classes  # noqa: E402
+from .moving_blobs import as_tensors, blob_classes  # noqa: E402
 
 
 def test_nearest_finds_the_nearest_and_skips_itself():
@@ -38,7 +38,7 @@ def test_residual_network_learns_a_difference(tmp_path):
 
 
 def test_papers_method_recognises_classes(tmp_path):
-    train, test = blob_classes(6, 12), blob_classes(6, 4, seed=1)
+    train, test = as_tensors(blob_classes(6, 12)), as_tensors(blob_classes(6, 4, seed=1))
     method = fit_paper(train, Budget(steps=60, learning_rate=3e-3), seed=0, folder=tmp_path, backbone="small",
                        say=lambda _: None)  # fmt: skip
     errors = np.abs(method.estimate(test.frames) - test.unit)
