@@ -160,6 +160,7 @@ def build_gown(spec: GownSpec) -> GownMesh:
         loops[f"cuff_{side}"] = np.array(rings[-1])
         for three in zip(rings, rings[1:], rings[2:], strict=False):
             stays += zip(*three, strict=True)
+        stays += zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)  # the binding is a tape
     front = [index[i, j] for i, j in used if panel.start <= i <= panel.stop]
     collar = np.array([index[i, 0] for i in range(panel.start, panel.stop + 1)])
     return GownMesh(spec=spec, vertices=np.array(vertices), faces=np.array(faces), labels=np.array(labels), loops=loops,

@@ -29,8 +29,8 @@ class PullLaw:
 
     clearance: float = 0.09
     look_ahead: float = 0.04
-    slow_from: float = 4.0
-    stop_at: float = 8.0
+    slow_from: float = 5.5
+    stop_at: float = 9.0
     yielding: float = 0.006
     steering: float = 2.0
     turning: float = 1.5

@@ -21,7 +21,7 @@ from .strap_grip import StrapGrip
 from .tracking import watch_arm
 
 HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
-FARTHEST, TAUT = 0.12, 3.5  # the strap is drawn at most this far [m] and this hard [N]
+FARTHEST, TAUT = 0.12, 4.8  # the strap is drawn at most this far [m] and this hard [N]
 SPEED = 0.11  # [m/s]
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
 SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]

@@ -33,10 +33,10 @@ from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 # The first sleeve slips back a little while the second is pulled.
 HEAD_END: dict[Side, float] = {"right": -0.45, "left": -0.45}
 SEAT: dict[Side, float] = {"right": -0.30, "left": -0.30}
-# How hard a sleeve is drawn on its way to the hand, and beyond the shoulder, where 4.4 N stretch the strap of a light
-# gown to double its length; the second must not draw the first off its arm [N].
+# How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
+# half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
-TAUT_ON: dict[Side, float] = {"right": 3.7, "left": 3.0}
+TAUT_ON: dict[Side, float] = {"right": 5.6, "left": 3.4}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  Misses with the right sleeve
 # folded: 0.03, -0.01, -0.08; hands that came through: 0.07 to 0.17 on the right, -0.03 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": -0.05}
@@ -60,6 +60,9 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
             ReleaseArm(f"{name}: open the {arm} hold", context, hand=lifting))
         return sequence(f"{name}, {arm}", put_down, back_off(context, f"{name}: free hands, {arm}", 0.0))
 
+    def grasp(name: str) -> Behaviour:
+        return GraspSleeve(name, context, side=arm, hand=pulling, hold=hold, grip=grip)
+
     def again() -> Behaviour:
         return PresentSleeve(f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold,
                              taut=TAUT[arm])
@@ -69,13 +72,13 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         Navigate(f"stand by the {arm} arm", context, goal=stance(arm, "lift")),
         look("look at"),
         LiftArm(f"lift the {arm} arm", context, side=arm, hand=lifting, hold=hold),
-        RecoverBy(f"until the {arm} sleeve opens", sequence(
-            f"take the {arm} sleeve",
-            GraspSleeve(f"grasp the {arm} sleeve", context, side=arm, hand=pulling, hold=hold, grip=grip),
-            PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold,
-                          taut=TAUT[arm], opens=OPENS[arm])),
-            {Reason.SLEEVE_FOLDED: lambda: LaySleeve(f"lay the {arm} sleeve down", context, grip=grip, hold=hold)},
-            attempts=3),
+        grasp(f"grasp the {arm} sleeve"),
+        RecoverBy(f"until the {arm} sleeve opens", PresentSleeve(
+            f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold, taut=TAUT[arm], opens=OPENS[arm]),
+            {Reason.SLEEVE_FOLDED: lambda: sequence(
+                f"the {arm} sleeve is folded",
+                LaySleeve(f"lay the {arm} sleeve down", context, grip=grip, hold=hold),
+                grasp(f"grasp the {arm} sleeve again"))}, attempts=3),
         RecoverBy(f"over the {arm} hand", PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold,
                                                        upto=PAST_WRIST), {Reason.SLEEVE_MISSED: again}, attempts=3),
         fallback(f"free the lifting hand, {arm}",

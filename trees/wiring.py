@@ -112,9 +112,10 @@ class Wiring:
         if isinstance(node, RecoverBy):
             lost: set[str] = set()
             for recovery in dict.fromkeys(node.recoveries.values()):
-                ways += self._flow(recovery, failed)
-                lost |= written_below(recovery)
-            done = without(done, lost)  # a recovery may have unset or rewritten them
+                recovered, broken = self._flow(recovery, failed)
+                ways += [recovered, broken]
+                lost |= {key for key in written_below(recovery) if recovered.get(key, done) != done.get(key)}
+            done = without(done, lost)  # a recovery may have unset them, or written something else there
         return done, without(common(ways), written_below(node.body))
 
     def _sequence(self, node: Behaviour, have: Have) -> tuple[Have, Have]:

@@ -23,7 +23,8 @@ def test_stays_add_springs_at_the_sleeves_only_and_no_borders():
     cloth, sewn = set(edge_counts(MESH.faces)), set(edge_counts(MESH.sewn))
     rings = len(MESH.loops["armhole_left"])
     assert cloth < sewn
-    assert len(sewn - cloth) == 2 * rings * MESH.spec.sleeve  # one from each vertex around a hole, ring by ring
+    # from each vertex around a hole, ring by ring; and along the binding, but where a face spans the corner already
+    assert 2 * rings * MESH.spec.sleeve < len(sewn - cloth) <= 2 * rings * (MESH.spec.sleeve + 1)
     middle = np.abs(MESH.vertices[:, 0]) < 0.3
     assert not any(middle[a] and middle[b] for a, b in sewn - cloth)
 
