@@ -34,7 +34,9 @@ class RingWatch:
     """
 
     def __init__(self, skill: Skill, arm: Side, hand: Side) -> None:
-        self._skill, self._arm, self._hand = skill, arm, hand
+        self._skill = skill
+        self._arm: Side = arm
+        self._hand: Side = hand
         self.aside = self.off = 0.0
         self.place: float | None = None
         self._looked = self._placed = -np.inf

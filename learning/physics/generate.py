@@ -61,7 +61,7 @@ def _depths(spec: DatasetSpec, ids: range) -> Iterator[np.ndarray]:
 
     camera, last, gown, path = standard_camera(), -1, None, None
     for i in ids:
-        if path is None or i // spec.views != last:
+        if gown is None or path is None or i // spec.views != last:
             gown, last = to_spec(spec.unit_of(i), spec.gown_of(i)), i // spec.views
             path = path_of(gown)
         depth = seen(gown, path, camera.moved(spec.misplaced(i)) if spec.disturbed(i) else camera)

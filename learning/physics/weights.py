@@ -101,8 +101,11 @@ def _inversion(tensors: dict[str, np.ndarray], shown: tuple[int, ...]) -> Invers
     squeeze, process = part("compression."), part("process.")
     compression = Compression(**{**squeeze, "components": squeeze["components"].astype(np.float32)})
     process["inputs"] = process["inputs"].astype(float)
-    widths = {way: Widths(**{stage: Calibration(**{name: float(array[0]) if name == "usual_misfit" else array
-                                                   for name, array in part(f"{way}.{stage}.").items()})
-                             for stage in ("before", "after")})
+    widths = {way: Widths(**{stage: _calibration(part(f"{way}.{stage}.")) for stage in ("before", "after")})
               for way in sorted({key.split(".")[0] for key in tensors if key.endswith(".after.factor")})}
     return Inversion(compression, GaussianProcess(**process), Prior(**part("prior.")), widths, shown)
+
+
+def _calibration(tensors: dict[str, np.ndarray]) -> Calibration:
+    arrays = {name: array for name, array in tensors.items() if name != "usual_misfit"}
+    return Calibration(usual_misfit=float(tensors["usual_misfit"][0]), **arrays)
