@@ -37,8 +37,8 @@ SEAT: dict[Side, float] = {"right": -0.30, "left": -0.30}
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
 TAUT_ON: dict[Side, float] = {"right": 5.6, "left": 3.4}
-# How far beyond the armhole the cuff shows at least, before a hand that came through.  In ten whole runs sleeves that
-# missed the hand showed -0.06 to 0.02, those that came over it 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
+# How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
+# sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
