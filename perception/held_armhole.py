@@ -28,9 +28,7 @@ def held_armhole(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpe
     Raises:
         PerceptionFailure: too little of it is seen.
     """
-    mask = (surfaces(frame.rgb) == Surface.ARMHOLE) & (frame.depth > 0)
-    points = points_in_map(frame)[mask].reshape(-1, 3)
-    points = points[np.linalg.norm(points - near_in_map, axis=1) < RADIUS]
+    points = held_binding(frame, Surface.ARMHOLE, near_in_map)
     if len(points) < POINTS:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"held armhole of the {side} sleeve")
     low, high = np.percentile(points, (3, 97), axis=0)
@@ -39,3 +37,9 @@ def held_armhole(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveOpe
                          position_in_map=np.asarray(near_in_map, float), approach_in_map=view,
                          closing_in_map=unit(np.cross(view, (0.0, 0.0, 1.0))), ring_points_in_map=points,
                          centre_in_map=(low + high) / 2)
+
+
+def held_binding(frame: Frame, binding: Surface, near_in_map: np.ndarray) -> np.ndarray:
+    """Points (n, 3) of one of a sleeve's bindings that are seen around a grip at (3,) [m]."""
+    points = points_in_map(frame)[(surfaces(frame.rgb) == binding) & (frame.depth > 0)].reshape(-1, 3)
+    return points[np.linalg.norm(points - near_in_map, axis=1) < RADIUS]

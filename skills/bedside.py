@@ -17,6 +17,7 @@ SHOULDER = (0.97, -0.62)
 Stand = Literal["lift", "shoulder"]
 LIFTING: dict[Side, Side] = {"right": "left", "left": "right"}  # arm -> the robot's hand on the head side
 PULLING: dict[Side, Side] = {"right": "right", "left": "left"}  # arm -> the robot's hand on the feet side
+HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
 
 
 def stance(arm: Side, stand: Stand) -> np.ndarray:

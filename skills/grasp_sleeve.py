@@ -29,7 +29,7 @@ from .tracking import Hold, careful, watch_arm
 
 DISTANCE = 0.29  # from the hand's camera to the strap it looks at [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
-HEADWARD = np.array((0.0, -0.05, 0.0))  # from an armhole to its strap, in a gown laid with its collar headward [m]
+TO_STRAP = np.array((0.0, -0.05, 0.0))  # from an armhole to its strap, in a gown laid with its collar headward [m]
 # The hand points that far below the horizontal when it looks, its camera 35 degrees less: at a sleeve that lies on
 # the bed, and at one that hangs over its edge.
 _VIEWS_LYING, _VIEWS_HANGING = np.deg2rad((97.0, 80.0, 65.0)), np.deg2rad((52.0, 68.0, 40.0))
@@ -82,7 +82,7 @@ class GraspSleeve(Skill):
         problem: PerceptionFailure | MotionError | None = None
         hangs = far.position_in_map[2] < self.world.room.bed[1, 2] - _HANGS
         for tilt in _VIEWS_HANGING if hangs else _VIEWS_LYING:
-            pose = self._seeing(far.position_in_map + HEADWARD, tilt)
+            pose = self._seeing(far.position_in_map + TO_STRAP, tilt)
             try:
                 yield from move_hands(self, {self.hand: pose}, way="any", speed=careful(self, 0.5))
             except MotionError as stop:
@@ -100,7 +100,7 @@ class GraspSleeve(Skill):
     def _seeing(self, target: np.ndarray, tilt: float) -> np.ndarray:
         """Hand pose (4, 4) from the robot's side whose camera has `target` in the middle."""
         approach = -np.cos(tilt) * outwards(self.side) - np.sin(tilt) * UP
-        pose = hand_pose(np.zeros(3), approach, HEADWARD)
+        pose = hand_pose(np.zeros(3), approach, TO_STRAP)
         camera = _camera_in_hand(self.hand)
         if (pose[:3, :3] @ camera[:3, 2]) @ outwards(self.side) > pose[:3, 2] @ outwards(self.side):
             pose = pose @ np.diag((-1.0, -1.0, 1.0, 1.0))  # the camera's side of the hand towards the robot

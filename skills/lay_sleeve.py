@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .arm_path import UP
-from .bedside import outwards
+from .bedside import HEADWARD, outwards
 from .context import Context
 from .hands import hand_now, move_hands, open_gripper
 from .holding import holding
@@ -16,7 +16,6 @@ from .pinch import back_off
 from .ports import Input
 from .reasons import Reason
 from .scripted_person import offer_person
-from .seat_sleeve import HEADWARD
 from .skill import Skill
 from .strap_grip import StrapGrip
 from .tracking import Hold, careful

@@ -10,6 +10,7 @@ import numpy as np
 from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..sim.world import SIDES, HandTwist
+from .bedside import HEADWARD
 from .context import Context
 from .hands import cloth_load
 from .ports import Input
@@ -20,7 +21,6 @@ from .skill import Skill
 from .strap_grip import StrapGrip
 from .tracking import watch_arm
 
-HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
 FARTHEST, TAUT = 0.12, 4.8  # the strap is drawn at most this far [m] and this hard [N]
 SPEED = 0.11  # [m/s]
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands

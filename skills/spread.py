@@ -11,7 +11,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.world import SIDES, HandTwist, Side
 from .arm_path import UP, ArmPath
-from .bedside import outwards
+from .bedside import HEADWARD, outwards
 from .context import Context
 from .hands import cloth_load, hand_now, move_hands, open_gripper
 from .motion.errors import MotionError
@@ -22,7 +22,6 @@ from .reasons import Reason, SkillFailure
 from .retreat import withdraw
 from .ring_watch import RingWatch
 from .scripted_person import offer_person
-from .seat_sleeve import HEADWARD
 from .skill import Skill
 from .tracking import watch_arm
 
