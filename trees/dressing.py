@@ -30,9 +30,7 @@ from .composers import fallback, sequence
 from .decorators import Condition, RecoverBy, Retry, Stage, Timeout
 
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
-# The first sleeve slips back a little while the second is pulled.
-HEAD_END: dict[Side, float] = {"right": -0.45, "left": -0.45}
-SEAT: dict[Side, float] = {"right": -0.30, "left": -0.30}
+HEAD_END, SEAT = -0.45, -0.30
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
@@ -85,7 +83,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)),
         RecoverBy(f"up to the {arm} shoulder", PullAlongArm(
-            f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END[arm], seat=SEAT[arm],
+            f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END, seat=SEAT,
             stand=stance(arm, "shoulder"), taut=TAUT_ON[arm]),
             {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2),
         SeatSleeve(f"seat the {arm} sleeve", context, grip=grip))

@@ -75,7 +75,7 @@ def gown_patch(
         per_second: the world's units of time in a second.
     """
     settings = ClothSettings(friction=mesh.spec.friction, gravity=(0.0, 0.0, -gravity))
-    return ClothPatch(model.effects, start, mesh.sewn, mesh.spec.mass, settings, pinned, capsules, per_second)
+    return ClothPatch(model.effects, start, mesh.faces, mesh.spec.mass, settings, pinned, capsules, per_second)
 
 
 def loaded(mesh: GownMesh, patch: ClothPatch) -> GownMesh:
