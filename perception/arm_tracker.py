@@ -37,6 +37,8 @@ _SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard
 _EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
 _WORST = 6.0  # mean squared residual of a fit that is believed
 _SIZES = (0.85, 1.15)  # of bodies, relative to 174 cm
+_PITCHES = np.deg2rad((-6.0, 30.0))  # at which an arm is looked for: at rest on the bed, and as a robot leaves it
+_OFF = 0.10  # from where the head says that it is, a shoulder is not believed [m]
 _LOST = 0.10  # standard deviation at which a joint counts as lost [m]
 
 
@@ -194,11 +196,8 @@ class ArmTracker:
 
     def _start(self, frame: Frame, view: SkinView) -> None:
         """Find the arm: try a fan of postures next to the trunk, keep the one that explains the skin best."""
-        head = head_seen(frame, self.bed)
-        self.middle = head.middle
-        if self._judge_size:
-            self.scale = float(np.clip((head.crown_in_map[2] - self.bed[1, 2]) / HEAD_HEIGHT, *_SIZES))
-        self.shoulder_y = float(head.crown_in_map[1]) + CROWN_TO_SHOULDER * self.scale
+        if not self.started:  # the trunk stays where it lies, and is best seen before anything covers it
+            self._find_trunk(frame)
         view = self._view(frame)
         if len(view.points) < 40:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
@@ -206,25 +205,36 @@ class ArmTracker:
                              self.bed[1, 2] + SHOULDER_ABOVE_BED))
         anchor = np.array((0.03, 0.20, 0.30, 0.40))
         best: tuple[float, ChainFit] | None = None
-        for abduction in np.deg2rad((15.0, 40.0, 65.0)):
-            for bend in np.deg2rad((0.0, 45.0)):
-                start = self._posture(shoulder, abduction, bend)
-                fit = fit_chain(view, start, scale=self.scale, gate=0.15, anchor=anchor, iterations=15)
-                missed = 1 - fit.used / len(view.points)
-                score = fit.cost + 20 * missed
-                if best is None or score < best[0]:
-                    best = (score, fit)
+        for pitch in _PITCHES:
+            for abduction in np.deg2rad((15.0, 40.0, 65.0)):
+                for bend in np.deg2rad((0.0, 45.0)):
+                    start = self._posture(shoulder, pitch, abduction, bend)
+                    fit = fit_chain(view, start, scale=self.scale, gate=0.15, anchor=anchor, iterations=15)
+                    missed = 1 - fit.used / len(view.points)
+                    score = fit.cost + 20 * missed
+                    if best is None or score < best[0]:
+                        best = (score, fit)
         assert best is not None
-        fit = fit_chain(view, best[1].joints, scale=self.scale, gate=0.06,
-                        anchor=np.array((0.03, 0.2, 0.3, 0.4)), iterations=10)
-        if fit.used < 0.7 * len(view.points):
+        home = best[1].joints.copy()
+        home[0] = shoulder  # which lies on the bed however the arm is raised
+        fit = fit_chain(view, best[1].joints, scale=self.scale, gate=0.06, home=home, anchor=anchor, iterations=10)
+        if fit.used < 0.7 * len(view.points) or np.linalg.norm(fit.joints[0] - shoulder) > _OFF:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
         self._make_filter(fit, frame.stamp)
 
-    def _posture(self, shoulder: np.ndarray, abduction: float, bend: float) -> np.ndarray:
-        """Joints (4, 3) of an arm in the plane of the bed, forearm turned towards the body by `bend` [rad]."""
-        upper = np.array((self._sign * np.sin(abduction), np.cos(abduction), -0.12))
-        fore = np.array((self._sign * np.sin(abduction - bend), np.cos(abduction - bend), -0.05))
+    def _find_trunk(self, frame: Frame) -> None:
+        """Middle, size and shoulders of the body by its head."""
+        head = head_seen(frame, self.bed)
+        self.middle = head.middle
+        if self._judge_size:
+            self.scale = float(np.clip((head.crown_in_map[2] - self.bed[1, 2]) / HEAD_HEIGHT, *_SIZES))
+        self.shoulder_y = float(head.crown_in_map[1]) + CROWN_TO_SHOULDER * self.scale
+
+    def _posture(self, shoulder: np.ndarray, pitch: float, abduction: float, bend: float) -> np.ndarray:
+        """Joints (4, 3) of an arm raised by `pitch`, its forearm turned towards the body by `bend` [rad]."""
+        flat, up = np.cos(pitch), np.sin(pitch)
+        upper = np.array((self._sign * flat * np.sin(abduction), flat * np.cos(abduction), up))
+        fore = np.array((self._sign * flat * np.sin(abduction - bend), flat * np.cos(abduction - bend), up))
         lengths = LENGTHS * self.scale
         elbow = shoulder + lengths[0] * upper
         wrist = elbow + lengths[1] * fore

@@ -24,6 +24,17 @@ def test_found_in_one_frame(scenes, bed):
     assert (np.percentile(errors, 90, axis=0) < 0.05).all()
 
 
+@pytest.mark.parametrize("lift", [0.35, 0.5, 0.65])
+def test_a_raised_arm_is_found_afresh(scenes, bed, lift):
+    """Joints have friction: an arm that a robot let go of stays up, and has to be found like that."""
+    for seed in range(4):
+        scene = scenes.person(seed, lift=lift)
+        for side in ("left", "right"):
+            tracker = ArmTracker(side, bed)
+            tracker.update(scene.frame(seed))
+            assert errors_of(tracker, scene, 0.0).max() < 0.06
+
+
 def test_deviation_is_honest(scenes, bed):
     inside = []
     for seed in range(6):
