@@ -63,7 +63,7 @@ def record(
     markers = np.sort(spread_vertices(mesh.vertices, MARKERS, set()))
     rng = np.random.default_rng([seed, 4])
     out.mkdir(parents=True, exist_ok=True)
-    write_obj(out / "gown.obj", start, mesh.sewn)
+    write_obj(out / "gown.obj", start, mesh.faces, mesh.stays)
     written, listed = [], []
     for k, pins in enumerate(_places(mesh)):
         t, paths = _hang(mesh, start, pins, effects, duration, TIME_STEP)

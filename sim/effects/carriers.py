@@ -20,6 +20,11 @@ CARRIER_MASS = 5e-4  # [kg]; lighter ones do not pass a force on to the cloth
 RADIUS = 0.004  # [m] of the sphere, which collides with nothing
 
 
+def carrier_count(vertices: int) -> int:
+    """How many carriers a cloth of so many vertices gets."""
+    return int(np.clip(vertices // 12, 12, 60))
+
+
 def spread_vertices(vertices: np.ndarray, count: int, avoid: set[int]) -> np.ndarray:
     """Vertices far from each other (farthest point sampling), never one of `avoid`, (count,).
 
@@ -84,8 +89,7 @@ class ClothPatch:
         self._anchors: list[int] = []
         self.vertices = np.zeros(0, dtype=int)
         if self._carried:
-            count = int(np.clip(len(vertices) // 12, 12, 60))
-            self.vertices = spread_vertices(vertices, count, pinned or set())
+            self.vertices = spread_vertices(vertices, carrier_count(len(vertices)), pinned or set())
             self._lay_out(vertices, faces, mass)
         self.cloth_mass = mass - CARRIER_MASS * len(self.vertices)
 

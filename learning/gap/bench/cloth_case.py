@@ -18,6 +18,7 @@ from ..cloth.simulate import simulate
 from ..measurement import Episode, MeasurementSet
 from .case import Truth, coloured, draw_kind
 
+LEAST = 0.5  # size over the noise below which nothing is hidden: another effect is drawn instead
 CARRIERS = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 INSIDE = (
     "air_drag",
@@ -140,9 +141,13 @@ def _draw(rng, kind, truth, vertices, limb, duration, noise, scene, parsed):
     if set(names) == {"wind", "tilted_gravity"}:
         names = [names[0], "delay"]
     entries = []
+    spare = [n for n in bank if n not in names and not {n, *names} >= {"wind", "tilted_gravity"}]
     for name in names:
         size = float(np.exp(rng.uniform(np.log(0.7), np.log(6.0))))
         entry, got = _sized(rng, name, size, vertices, duration, noise, scene, parsed)
+        while got < LEAST:  # cloth that hardly touches the limb shows no friction, however much is changed
+            name = spare.pop(int(rng.integers(len(spare))))
+            entry, got = _sized(rng, name, size, vertices, duration, noise, scene, parsed)
         entries.append(entry)
         truth.effects.append({"name": name, "target": _target(name), "size": got})
         if name == "snag":

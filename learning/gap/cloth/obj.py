@@ -1,4 +1,7 @@
-"""Read a triangle mesh from an OBJ file, strictly: PyBullet hangs on a bad one."""
+"""Read a triangle mesh from an OBJ file, strictly: PyBullet hangs on a bad one.
+
+Triangles after a line `g stays` are springs alone, as a garment's seams and tapes: no air acts on them.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,8 @@ from ..errors import GapError
 MOST = 8192  # vertices a PyBullet soft body takes on every platform
 
 
-def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (V, 3) [m] and triangles (F, 3); polygons are split into fans.
+def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (V, 3) [m], triangles (F, 3) and stays (S, 3); polygons are split into fans.
 
     Raises:
         GapError: the file is missing, empty, too large or names vertices that do not exist.
@@ -21,36 +24,43 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
         raise GapError(f"{path}: no such file")
     vertices: list[list[float]] = []
     faces: list[list[int]] = []
+    stays: list[list[int]] = []
+    group = faces
     for row, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
         parts = line.split()
         try:
             if parts[:1] == ["v"]:
                 vertices.append([float(x) for x in parts[1:4]])
+            elif parts[:1] == ["g"]:
+                group = stays if parts[1:] == ["stays"] else faces
             elif parts[:1] == ["f"]:
                 corner = [int(p.split("/")[0]) for p in parts[1:]]
                 corner = [c - 1 if c > 0 else len(vertices) + c for c in corner]
-                faces += [[corner[0], corner[k], corner[k + 1]] for k in range(1, len(corner) - 1)]
+                group += [[corner[0], corner[k], corner[k + 1]] for k in range(1, len(corner) - 1)]
         except (ValueError, IndexError):
             raise GapError(f"{path}: row {row} is '{line[:40]}', not a vertex or a face") from None
     if not vertices or not faces:
         raise GapError(f"{path}: the mesh is empty ({len(vertices)} vertices, {len(faces)} faces)")
     v, f = np.array(vertices, dtype=float), np.array(faces, dtype=int)
+    s = np.array(stays, dtype=int).reshape(-1, 3)
+    every = np.vstack([f, s])
     if v.shape[1:] != (3,) or not np.isfinite(v).all():
         raise GapError(f"{path}: vertices need three finite coordinates")
-    if f.min() < 0 or f.max() >= len(v):
-        raise GapError(f"{path}: a face names vertex {int(f.max()) + 1}, there are {len(v)}")
+    if every.min() < 0 or every.max() >= len(v):
+        raise GapError(f"{path}: a face names vertex {int(every.max()) + 1}, there are {len(v)}")
     if len(v) > MOST:
         raise GapError(f"{path}: {len(v)} vertices, at most {MOST} can be simulated")
     if np.ptp(v, axis=0).max() > 20.0:
         raise GapError(f"{path}: the mesh is {np.ptp(v, axis=0).max():.3g} long, it must be in metres")
-    if len(np.unique(f)) != len(v):
-        raise GapError(f"{path}: {len(v) - len(np.unique(f))} vertices belong to no face, remove them")
-    return v, f
+    if len(np.unique(every)) != len(v):
+        raise GapError(f"{path}: {len(v) - len(np.unique(every))} vertices belong to no face, remove them")
+    return v, f, s
 
 
-def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray) -> None:
-    """Write a mesh as PyBullet reads it."""
-    path.write_text(
-        "".join("v {:.9f} {:.9f} {:.9f}\n".format(*v) for v in vertices)
-        + "".join("f {} {} {}\n".format(*(f + 1)) for f in faces)
-    )
+def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray, stays: np.ndarray | None = None) -> None:
+    """Write a mesh as PyBullet reads it; stays, where there are some, in a group of their own."""
+    lines = ["v {:.9f} {:.9f} {:.9f}\n".format(*v) for v in vertices]
+    lines += ["f {} {} {}\n".format(*(f + 1)) for f in faces]
+    if stays is not None and len(stays):
+        lines += ["g stays\n", *("f {} {} {}\n".format(*(f + 1)) for f in stays)]
+    path.write_text("".join(lines))

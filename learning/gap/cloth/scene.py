@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ....sim.effects.carriers import CARRIER_MASS, carrier_count
 from ..errors import GapError
 from ..measurement import Episode, MeasurementSet, require_columns
 from ..table import read_table
@@ -20,6 +21,8 @@ DEFAULTS = {
     "bending_stiffness": 0.1,
     "friction": 0.4,
 }
+FINEST = 2e-5  # [s]; a finer time step than this is no simulation any more
+FAR = 10.0  # [m] a marker may move beyond the mesh's own size
 STABLE = 0.7  # elastic * dt^2 / vertex mass above which explicit springs explode
 
 
@@ -58,13 +61,28 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class ClothScene:
-    """Everything but the episode.  capsules: (K, 7) a, b, radius; markers: vertex ids."""
+    """Everything but the episode.
+
+    Attributes:
+        vertices: (V, 3) start pose [m].
+        faces: (F, 3) of the cloth.
+        stays: (S, 3) triangles that are springs alone.
+        physics: of the soft body.
+        capsules: (K, 7) a, b, radius [m].
+        markers: vertex ids.
+    """
 
     vertices: np.ndarray
     faces: np.ndarray
     physics: Physics
     capsules: np.ndarray
     markers: tuple[int, ...]
+    stays: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), dtype=int))
+
+    @property
+    def sewn(self) -> np.ndarray:
+        """(F + S, 3) all triangles whose edges are springs."""
+        return np.vstack([self.faces, self.stays])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,13 +114,14 @@ def read_scene(measured: MeasurementSet) -> tuple[ClothScene, list[ClothEpisode]
     file, s = measured.folder / "measurement.yaml", measured.settings
     if not isinstance(s.get("mesh"), str):
         raise GapError(f"{file}: `mesh` is {s.get('mesh')!r}, the path of an OBJ file is needed")
-    vertices, faces = read_obj(measured.folder / s["mesh"])
+    vertices, faces, stays = read_obj(measured.folder / s["mesh"])
     ids = s.get("markers")
     if not isinstance(ids, list) or not ids or not all(isinstance(i, int) and 0 <= i < len(vertices) for i in ids):
         raise GapError(f"{file}: `markers` must list vertex ids from 0 to {len(vertices) - 1}")
     scene = ClothScene(
         vertices=vertices,
         faces=faces,
+        stays=stays,
         physics=_physics(file, s.get("physics") or {}, len(vertices)),
         capsules=_capsules(file, s.get("capsules") or []),
         markers=tuple(ids),
@@ -130,6 +149,12 @@ def _physics(file: Path, given: Any, count: int) -> Physics:
         ):
             raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
         values[key] = float(x)
+    least = 1.5 * CARRIER_MASS * carrier_count(count)
+    if values["mass"] < least:
+        raise GapError(
+            f"{file}: physics.mass is {values['mass']:g} kg, effects act through carriers of "
+            f"{least / 1.5:g} kg together, so a cloth of {count} vertices must weigh at least {least:g} kg"
+        )
     g = given.get("gravity", -9.81)
     g = (0.0, 0.0, -abs(g)) if isinstance(g, int | float) else g
     if not isinstance(g, list | tuple) or len(g) != 3 or not all(_finite(x) for x in g):
@@ -137,7 +162,12 @@ def _physics(file: Path, given: Any, count: int) -> Physics:
     step = given.get("time_step", 0.002)
     if not _finite(step) or not 1e-5 <= step <= 0.02:
         raise GapError(f"{file}: physics.time_step is {step!r}, a number from 0.00001 to 0.02 [s] is needed")
-    limit = np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9))
+    limit = float(np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9)))
+    if limit < FINEST:
+        raise GapError(
+            f"{file}: physics.elastic_stiffness is {values['elastic_stiffness']:g} at a mass of {values['mass']:g} kg over "
+            f"{count} vertices, springs this stiff would need steps of {limit:.1g} s, at least {FINEST:g} s can be simulated"
+        )
     while step > limit:  # explicit springs explode above this
         step /= 2.0
     unit = given.get("per_second", 1.0)
@@ -201,6 +231,19 @@ def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
 def _episode(e: Episode, scene: ClothScene, pins: tuple[Pin, ...]) -> ClothEpisode:
     names = [f"m{k}{a}" for k in range(len(scene.markers)) for a in "xyz"]
     require_columns(e, names)
+    step = float(np.median(np.diff(e.t)))
+    if step > 0.5:
+        raise GapError(f"{e.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
+    size = float(np.ptp(scene.vertices, axis=0).max())
+    for name, place in zip(names, scene.vertices[list(scene.markers)].ravel(), strict=True):
+        row = int(np.argmax(np.abs(e.columns[name] - place)))
+        if abs(e.columns[name][row] - place) > FAR + 2.0 * size:
+            raise GapError(
+                f"{e.file}: column '{name}', row {row + 2} is {e.columns[name][row]:g}, markers must be in metres in "
+                "the mesh's frame"
+            )
+    if not any(np.ptp(e.columns[name]) for name in names):
+        raise GapError(f"{e.file}: columns '{names[0]}' to '{names[-1]}' never change (rows 2 to {len(e.t) + 1})")
     markers = np.stack([e.columns[n] for n in names], axis=1).reshape(len(e.t), -1, 3)
     first = markers[0] - scene.vertices[list(scene.markers)]
     k = int(np.argmax(np.abs(first).max(axis=1)))

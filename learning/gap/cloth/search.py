@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from ....sim.effects.carriers import spread_vertices
+from ....sim.effects.carriers import carrier_count, spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .candidates import Candidate, candidates
 from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
+from .patches import best_patch
 from .scene import ClothEpisode, ClothScene
 from .simulate import Simulator
 
@@ -22,7 +23,7 @@ VERIFIED = 4  # candidates per round that are fitted by simulation
 MOST = 3  # effects and recalibrations at once
 CARRIED = 0.8  # carriers are taken as given where they alone bring the squares below this part
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
-SHARE = 0.01  # and by this part of what is explained
+SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
 SAME = 12.0  # criterion within which two explanations fit alike
 
@@ -80,7 +81,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     after = before
     loads = [e.load for e in episodes]
     while len(chosen) < MOST and (
-        (after.p_value < 0.01 and after.shared > 0.03 * after.floor**2) or load_misfit(fit.residuals, loads, m) < 0.01
+        _shares(after) or load_misfit(fit.residuals, loads, m) < 0.01
     ):
         pool = candidates(scene, episodes, fit.residuals)
         taken = {c.name for c in chosen}
@@ -101,8 +102,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
                 continue
             begun = _begun(some, fit.model, c, part.rss)
             joined = some.fit(begun, _steps([*chosen, c]), rounds=1 if done else 2)
-            rest = coherence(joined.residuals, pairs, m)
-            done = done or rest.p_value >= 0.01 or rest.shared <= 0.03 * rest.floor**2
+            done = done or not _shares(coherence(joined.residuals, pairs, m))
             say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(part.rss, 1e-30)):.3f} of the residual left")
             tried.append((c, joined))
         if not tried:
@@ -118,8 +118,10 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         now = worth * np.log(part.rss / count) + _price(len(pool), fit.model)
         drop = part.rss - top.fit.rss
         explained = start.rss * count / rows - top.fit.rss
-        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss or drop < SHARE * explained:
+        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
             break
+        if drop < SHARE * explained and _shares(coherence(top.fit.residuals, pairs, m)):
+            break  # a large effect that is not quite right leaves something to mop up for any other
         chosen.append(top.added)
         rivals[top.added.name] = tuple(
             dict.fromkeys(
@@ -133,6 +135,11 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     return ClothSearch(
         chosen=tuple(chosen), fit=fit, plain=plain, before=before, after=after, rivals=rivals, worth=worth
     )
+
+
+def _shares(left: Coherence) -> bool:
+    """Whether neighbours still share something material."""
+    return left.p_value < 0.01 and left.shared > 0.03 * left.floor**2
 
 
 def _weights(fitter: ClothFitter, markers: int) -> np.ndarray:
@@ -225,10 +232,12 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
     last = chosen[-1]
     seen = fitter.residuals(fit.model)  # it was verified on fewer recordings
     fit = replace(fit, residuals=seen, rss=fitter.rss(seen))
-    if last.name in ("added_mass", "snag"):
+    if last.name == "added_mass":
+        fit = best_patch(fitter, fit, scene, _steps(chosen))
+    if last.name == "snag":
         entry = next(e for e in fit.model.effects if e.name == last.name)
         here = np.array([entry.parameters[a] for a in "xyz"])
-        places = scene.vertices[spread_vertices(scene.vertices, int(np.clip(len(scene.vertices) // 12, 12, 60)), set())]
+        places = scene.vertices[spread_vertices(scene.vertices, carrier_count(len(scene.vertices)), set())]
         near = places[np.argsort(np.linalg.norm(places - here, axis=1))[:9]]
         best = fit
         for place in near:
@@ -257,16 +266,6 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
         free = (*fit.model.free, ("strain_stiffening", "onset"))
         bent = fitter.fit(replace(fit.model, free=free), {**_steps(chosen), ("strain_stiffening", "onset"): 0.02}, 4)
         fit = replace(bent, model=replace(bent.model, free=fit.model.free))
-    if last.name == "added_mass":
-        entry = next(e for e in fit.model.effects if e.name == last.name)
-        for factor in (0.5, 0.7, 1.4):
-            values = {**entry.parameters, "radius": entry.parameters["radius"] * factor}
-            other = fitter.fit(
-                _with(fit.model, EffectEntry(name=last.name, target=entry.target, parameters=values)),
-                _steps(chosen),
-                rounds=1,
-            )
-            fit = other if other.rss < fit.rss else fit
     return fitter.fit(fit.model, _steps(chosen), rounds=3)
 
 

@@ -92,7 +92,7 @@ class Simulator:
     def _key(self, episode: ClothEpisode, effects: tuple[EffectEntry, ...], physics: dict[str, float]) -> str:
         h = hashlib.sha256()
         s = self.scene
-        for x in (s.vertices, s.faces, s.capsules, episode.t):
+        for x in (s.vertices, s.faces, s.stays, s.capsules, episode.t):
             h.update(np.ascontiguousarray(x).tobytes())
         for p in episode.pins:
             h.update(repr((p.vertices, p.release_t, None if p.path is None else p.path.tobytes())).encode())
@@ -209,7 +209,7 @@ def _run(
     for c in scene.capsules:
         _capsule(p, c)
     with tempfile.TemporaryDirectory() as folder:
-        write_obj(Path(folder) / "cloth.obj", scene.vertices, scene.faces)
+        write_obj(Path(folder) / "cloth.obj", scene.vertices, scene.sewn)
         cloth = p.loadSoftBody(
             str(Path(folder) / "cloth.obj"),
             mass=patch.cloth_mass,

@@ -27,6 +27,7 @@ NEAR = 12.0  # criterion within which another set is asked before `unknown` is s
 TRANSFER = 3.0  # held-out energy over the worst fitted drop's from which on an explanation is asked if it holds there
 TRANSFERRED = 0.06  # `unknown` above this part of the explainable held-out energy
 CONFIDENCE = 0.8
+MOST_EFFECTS = 2  # with a third, five or six numbers follow any smooth force, which is no evidence for three effects
 MOST_ROWS = 500  # of one drop
 
 
@@ -86,8 +87,8 @@ class FallStudy(Study):
     def chosen(self) -> DropFit:
         """The best set, without effects the bootstrap over drops does not keep.
 
-        Where it leaves a force that repeats from drop to drop, a set that fits nearly as well and leaves none is
-        taken instead: the bank is asked twice before `unknown` is said.
+        Where it leaves a force that repeats from drop to drop, or takes more than two effects, a set that fits nearly
+        as well without is taken instead: the bank is asked twice before `unknown` is said.
         """
         best = self.found.best
         fit = self.found.refit(best.names, best.mode)
@@ -95,12 +96,15 @@ class FallStudy(Study):
             kept = self._kept(fit)
             names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
             fit = fit if names == best.names else self.found.refit(names, best.mode)
-        if self._repeats(fit).p_value >= SURE:
+        many = len(fit.names) + (fit.mode == "late") > MOST_EFFECTS
+        if not many and self._repeats(fit).p_value >= SURE:
             return fit
         for c in self.found.candidates:
             if c.score - self.found.candidates[0].score > NEAR:
                 break
-            if c.effects and c.fit.names != fit.names and self._repeats(c.fit).p_value >= CLEAN:
+            if not 0 < len(c.effects) <= MOST_EFFECTS:
+                continue
+            if (many or c.fit.names != fit.names) and self._repeats(c.fit).p_value >= CLEAN:
                 return self.found.refit(c.fit.names, c.fit.mode)
         return fit
 
@@ -165,9 +169,14 @@ class FallStudy(Study):
         explained = max(_squares(self.found.given) - _squares(self.chosen), 0.0) / self.found.rows
         if self.leftover.p_value < SURE and energy / (energy + explained + 1e-30) > REMAINDER:
             return "unknown"
-        if self._strange > TRANSFERRED:
+        if self._strange > TRANSFERRED or self._many:
             return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
+
+    @property
+    def _many(self) -> bool:
+        """Whether it would take more effects at once than drops can tell from any other smooth force."""
+        return len(self.chosen.names) + (self.late is not None) > MOST_EFFECTS
 
     @cached_property
     def _strange(self) -> float:
@@ -286,6 +295,8 @@ class FallStudy(Study):
         guess = ""
         if self.verdict == "unknown":
             guess = "the effects that explain the fitted drops do not hold on the held-out ones"
+            if self._many:
+                guess = "a smooth force that only three effects of the bank together can follow, as they follow any"
         if self.verdict == "unknown" and self.leftover.p_value < SURE:
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
         return self.verdict, tuple(out), (), guess

@@ -77,6 +77,11 @@ class ArmModel(RigidModel):
         self.prismatic = tuple("P" in self.model.joints[i].shortname()[10:12] for i in range(1, self.model.njoints))
         self._round = [self.model.joints[i].nq == 2 for i in range(1, self.model.njoints)]
 
+    @property
+    def strongest(self) -> tuple[float, ...]:
+        """Effort limits of the URDF [N m]."""
+        return tuple(float(x) if x > 0 else float("inf") for x in self.model.effortLimit)
+
     def configuration(self, q: np.ndarray) -> np.ndarray:
         """Pinocchio's configuration of joint angles (n,): continuous joints become cosine and sine."""
         if not any(self._round):

@@ -19,6 +19,11 @@ class AxisModel(RigidModel):
     joints = ("axis",)
     prismatic = (True,)
 
+    @property
+    def strongest(self) -> tuple[float, ...]:
+        """No axis of any kind pushes harder than this [N]."""
+        return (1e6,)
+
     def __init__(self, mass: float | None) -> None:
         self.mass_known = mass is not None
         self.mass = 1.0 if mass is None else float(mass)

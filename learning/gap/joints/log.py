@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....sim.effects.effect import JointMotion, Spread
+from ..errors import GapError
 from ..measurement import Episode
 from ..smoothing import bandwidth, derivative, lowpass, resample
 from .rigid import RigidModel
 
 ROWS = 6000  # an episode is thinned to at most about this many rows
+FEWEST = 10  # rows of an episode that the filters have to leave sound
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
 
@@ -89,7 +91,11 @@ def _matrix(episode: Episode, names: tuple[str, ...]) -> np.ndarray:
 
 
 def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -> list[JointLog]:
-    """Smooth and differentiate all episodes with one bandwidth, and compare each with the model."""
+    """Smooth and differentiate all episodes with one bandwidth, and compare each with the model.
+
+    Raises:
+        GapError: an episode is too short for that.
+    """
     raw = []
     for episode in episodes:
         n = len(names.q)
@@ -147,6 +153,11 @@ def _prepare(
     residual = lowpass(smooth - rigid, dt, shared)
     slow = np.maximum(4.0 * noise_v, 2e-3 * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
     trim = int(min(len(t) // 10, np.ceil(0.7 / (shared * dt))))
+    if len(t) - 2 * trim < FEWEST:
+        raise GapError(
+            f"{episode.file}: rows 2 to {len(episode.t) + 1} last {t[-1] - t[0]:.3g} s, too short to be differentiated "
+            f"at {shared:.3g} Hz, which this set's motion needs"
+        )
     return JointLog(
         name=episode.name,
         role=episode.role,

@@ -37,6 +37,11 @@ class RigidModel(abc.ABC):
     joints: tuple[str, ...]
     prismatic: tuple[bool, ...]
 
+    @property
+    def strongest(self) -> tuple[float, ...]:
+        """Largest load each joint is made for [N or N m], inf where nothing says so."""
+        return (float("inf"),) * len(self.joints)
+
     @abc.abstractmethod
     def load(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Joint loads along a motion, (T, n) [N or N m]."""

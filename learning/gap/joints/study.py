@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
-from ..measurement import MeasurementSet, require_columns
+from ..measurement import Episode, MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
 from .alternatives import alternatives, best_experiment, mass_twins
@@ -26,6 +26,9 @@ from .placebo import placebos
 from .rigid import RigidModel
 from .rollout import patched_joints, rollout_gap
 from .workflow import Named, explained, name_effects
+
+WRONG_UNIT = 20.0  # numbers this many times too large or too small are in another unit
+LIKE = 0.9  # correlation from which on a speed column is the slope of the position
 
 
 def columns_of(measured: MeasurementSet) -> JointColumns:
@@ -53,6 +56,7 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
         step = float(np.median(np.diff(episode.t)))
         if step > 0.5:
             raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
+        _check_speed(episode, names, "metres" if measured.system == "axis" else "radians")
         for name in names.q:
             x = episode.columns[name]
             row = int(np.argmax(np.abs(x)))
@@ -64,6 +68,37 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
                     f"{episode.file}: column '{name}' never changes (rows 2 to {len(x) + 1}), nothing can be learnt"
                 )
     return names
+
+
+def _check_speed(episode: Episode, names: JointColumns, unit: str) -> None:
+    """Refuse a speed that is the slope of the position in another unit."""
+    for q, dq in zip(names.q, names.dq, strict=True):
+        if dq not in episode.columns:
+            continue
+        slope, speed = np.gradient(episode.columns[q], episode.t), episode.columns[dq]
+        if slope.std() == 0 or speed.std() == 0 or np.corrcoef(slope, speed)[0, 1] < LIKE:
+            continue
+        ratio = float(speed.std() / slope.std())
+        if not 1.0 / WRONG_UNIT < ratio < WRONG_UNIT:
+            row = int(np.argmax(np.abs(speed)))
+            raise GapError(
+                f"{episode.file}: column '{dq}', row {row + 2} is {speed[row]:.4g}, the column is {ratio:.3g} times the "
+                f"slope of '{q}', it must be in {unit} per second"
+            )
+
+
+def _check_load(measured: MeasurementSet, names: JointColumns, model: RigidModel) -> None:
+    """Refuse loads no joint of this robot can have."""
+    unit = "N" if measured.system == "axis" else "N m"
+    for episode in measured.episodes:
+        for name, most in zip(names.load, model.strongest, strict=True):
+            x = episode.columns[name]
+            row = int(np.argmax(np.abs(x)))
+            if abs(x[row]) > WRONG_UNIT * most:
+                raise GapError(
+                    f"{episode.file}: column '{name}', row {row + 2} is {x[row]:.4g}, it must be in {unit} "
+                    f"(this joint is made for {most:.3g})"
+                )
 
 
 def rigid_model(measured: MeasurementSet, joints: int) -> RigidModel:
@@ -96,6 +131,7 @@ class JointStudy(Study):
     def _logs(self) -> tuple[RigidModel, list[JointLog]]:
         columns = columns_of(self.measured)
         model = rigid_model(self.measured, len(columns.q))
+        _check_load(self.measured, columns, model)
         logs = read_logs(list(self.measured.episodes), columns, model)
         if isinstance(model, AxisModel) and not model.mass_known:
             fit = [log for log in logs if log.role != "heldout"]

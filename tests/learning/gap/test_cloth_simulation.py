@@ -171,6 +171,15 @@ def test_a_bad_mesh_is_refused_before_pybullet_hangs_on_it(tmp_path):
             read_obj(tmp_path / "bad.obj")
 
 
+def test_stays_are_springs_and_no_cloth(tmp_path):
+    vertices = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)])
+    write_obj(tmp_path / "sewn.obj", vertices, np.array([(0, 1, 2), (1, 3, 2)]), np.array([(0, 1, 3)]))
+    read, faces, stays = read_obj(tmp_path / "sewn.obj")
+    assert np.allclose(read, vertices)
+    assert faces.tolist() == [[0, 1, 2], [1, 3, 2]]
+    assert stays.tolist() == [[0, 1, 3]]
+
+
 def test_neighbours_share_a_model_error_and_not_their_noise():
     rng = np.random.default_rng(0)
     points = np.array([(i * 0.1, j * 0.1, 0.0) for i in range(4) for j in range(4)])
