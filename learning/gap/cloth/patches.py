@@ -38,16 +38,14 @@ def best_patch(fitter: ClothFitter, fit: ClothFit, scene: ClothScene, steps: dic
     parts = parts[np.argsort(np.linalg.norm(parts - centre, axis=1))[:PARTS]]
     each = max(entry.parameters["mass"], 1e-4) / 3.0
     without = _placed(fit.model, entry, centre, 0.0, 0.0)
-    base = fitter.residuals(without)
-    fitter.sim.ahead(
-        [(e, m.acting, m.physics) for p in parts for m in [_placed(fit.model, entry, p, each, 0.0)] for e in fitter.episodes]
-    )
+    loaded = [_placed(fit.model, entry, p, each, 0.0) for p in parts]
+    fitter.sim.ahead([(e, m.acting, m.physics) for m in loaded for e in fitter.episodes])
 
     def flat(residuals: list[np.ndarray]) -> np.ndarray:
         return np.concatenate([(r * fitter.weights).ravel() for r in residuals])
 
-    start = flat(base)
-    alone = np.stack([start - flat(fitter.residuals(_placed(fit.model, entry, p, each, 0.0))) for p in parts], axis=1)
+    start = flat(fitter.residuals(without))
+    alone = np.stack([start - flat(fitter.residuals(m)) for m in loaded], axis=1)
     ranked = []
     for place, radius, inside in _patches(scene.vertices, parts):
         left, factor = _left(start, alone[:, inside].mean(axis=1))

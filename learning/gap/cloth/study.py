@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ....sim.effects.cloth_bank import CLOTH_EFFECTS
+from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
 from ..measurement import MeasurementSet
 from ..pictures import Curve
@@ -36,6 +37,9 @@ class ClothStudy(Study):
         self.scene: ClothScene
         self._timed, self._most = False, 3
         self.scene, self.episodes = read_scene(measured)
+        for e, given in zip(self.episodes, measured.episodes, strict=True):
+            if not np.ptp(e.markers, axis=0).any():
+                raise GapError(f"{given.file}: columns 'm0x' and on never change (rows 2 to {len(e.t) + 1})")
         jobs = int(os.environ.get("CARETREE_JOBS", min(2, os.cpu_count() or 1)))
         self.sim = Simulator(self.scene, cache, jobs)
 

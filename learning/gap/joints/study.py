@@ -56,7 +56,6 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
         step = float(np.median(np.diff(episode.t)))
         if step > 0.5:
             raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
-        _check_speed(episode, names, "metres" if measured.system == "axis" else "radians")
         for name in names.q:
             x = episode.columns[name]
             row = int(np.argmax(np.abs(x)))
@@ -67,6 +66,7 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
                 raise GapError(
                     f"{episode.file}: column '{name}' never changes (rows 2 to {len(x) + 1}), nothing can be learnt"
                 )
+        _check_speed(episode, names, "metres" if measured.system == "axis" else "radians")
     return names
 
 
@@ -82,8 +82,8 @@ def _check_speed(episode: Episode, names: JointColumns, unit: str) -> None:
         if not 1.0 / WRONG_UNIT < ratio < WRONG_UNIT:
             row = int(np.argmax(np.abs(speed)))
             raise GapError(
-                f"{episode.file}: column '{dq}', row {row + 2} is {speed[row]:.4g}, the column is {ratio:.3g} times the "
-                f"slope of '{q}', it must be in {unit} per second"
+                f"{episode.file}: column '{dq}', row {row + 2} is {speed[row]:.4g}, the column is {ratio:.3g} times "
+                f"the slope of '{q}', it must be in {unit} per second"
             )
 
 

@@ -35,6 +35,7 @@ def cloth_set(tmp_path):
     t = np.arange(0.0, 0.5, 0.02)
     markers = [0, 3, 24, 45, 48]
     table = np.column_stack([t, *(np.full_like(t, v[m][a]) for m in markers for a in range(3)), *np.zeros((3, len(t)))])
+    table[:, 1] += 1e-4 * np.sin(9.0 * t)  # markers that never change would be refused
     header = ["t", *(f"m{k}{a}" for k in range(5) for a in "xyz"), "fx", "fy", "fz"]
     for k in range(2):
         np.savetxt(tmp_path / f"e{k}.csv", table, delimiter=",", header=",".join(header), comments="")
@@ -109,6 +110,8 @@ def test_an_effect_of_no_size_changes_nothing_but_brings_its_carriers(cloth_set)
         ({"physics": {"gravity": "down"}}, "physics.gravity is 'down'"),
         ({"physics": {"gravity": [0, 0]}}, "physics.gravity is"),
         ({"physics": {"time_step": 0}}, "physics.time_step is 0"),
+        ({"physics": {"mass": 0.1, "elastic_stiffness": 1e12}}, "need steps of"),
+        ({"physics": {"mass": 0.001}}, "must weigh at least 0.009 kg"),
         ({"pins": "left"}, "`pins` is 'left'"),
         ({"pins": [{"vertices": [0], "release_t": "soon"}]}, "release_t of a pin is 'soon'"),
         ({"pins": [{"vertices": [0], "path": 7}]}, "path of a pin is 7"),
@@ -119,6 +122,28 @@ def test_a_set_that_does_not_fit_is_refused(cloth_set, change, words):
     file.write_text(yaml.safe_dump({**yaml.safe_load(file.read_text()), **change}))
     with pytest.raises(GapError, match=words):
         read_scene(load_set(cloth_set))
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "words"),
+    [(0, 1000.0, "column 't' steps by 20, it must be in seconds"), (6, 1000.0, "column 'm1z', row 2 .* in metres")],
+)
+def test_numbers_in_a_wrong_unit_are_refused(cloth_set, column, factor, words):
+    table = np.loadtxt(cloth_set / "e1.csv", delimiter=",", skiprows=1)
+    header = (cloth_set / "e1.csv").read_text().splitlines()[0]
+    table[:, column] *= factor
+    np.savetxt(cloth_set / "e1.csv", table, delimiter=",", header=header, comments="")
+    with pytest.raises(GapError, match=words):
+        read_scene(load_set(cloth_set))
+
+
+def test_markers_that_never_move_teach_nothing(cloth_set):
+    table = np.loadtxt(cloth_set / "e1.csv", delimiter=",", skiprows=1)
+    header = (cloth_set / "e1.csv").read_text().splitlines()[0]
+    table[:, 1:] = table[0, 1:]
+    np.savetxt(cloth_set / "e1.csv", table, delimiter=",", header=header, comments="")
+    with pytest.raises(GapError, match=r"e1.csv: columns 'm0x' and on never change"):
+        open_study(load_set(cloth_set))
 
 
 def test_a_load_is_used_only_where_every_recording_has_one(cloth_set):

@@ -44,6 +44,8 @@ def test_phases_reach_every_episode(axis_set):
         (lambda f: replace_cell(f, 0, 3, "torque"), ("e1.csv", "column 'force' is missing", "row 1")),
         (lambda f: scale(f, 1, 1000.0), ("e1.csv", "column 'q'", "row", "metres")),
         (lambda f: scale(f, 0, 1000.0), ("e1.csv", "column 't'", "seconds")),
+        (lambda f: scale(f, 2, 1000.0), ("e1.csv", "column 'dq'", "row", "the slope of 'q'", "metres per second")),
+        (lambda f: scale(f, 3, 1e9), ("e1.csv", "column 'force'", "row", "in N")),
     ],
 )
 def test_bad_input_is_one_sentence_with_file_column_and_row(axis_set, spoil, words):
