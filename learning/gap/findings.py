@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+VISIBLE = 0.5  # of the noise floor; an experiment that parts two explanations by less is none
+
 VerdictName = Literal["adequate", "recalibration", "effects", "unknown"]
 
 
@@ -62,7 +64,7 @@ class EffectFinding:
         experiment: what would tell them apart, computed.
         size: root mean square of its load over the floor, in the channel it changes most.
         smallest: smallest size of this effect this data could have shown, as a factor of the size found.
-        confidence: part of the bootstrap resamples in which it keeps paying its price.
+        confidence: part of the bootstrap resamples in which it keeps paying its price; NaN where none were drawn.
     """
 
     name: str
@@ -72,7 +74,21 @@ class EffectFinding:
     experiment: str = ""
     size: float = 0.0
     smallest: float = float("nan")
-    confidence: float = 1.0
+    confidence: float = float("nan")
+
+
+def told_apart(experiment: str, name: str, other: str, apart: float) -> str:
+    """Sentence on the experiment in which two explanations part most.
+
+    Args:
+        experiment: what to do, or "" where none parts them at all.
+        name: of the one explanation.
+        other: of the other.
+        apart: by how much they would differ, over the noise floor.
+    """
+    if not experiment or apart < VISIBLE:
+        return f"no experiment tried tells {name} from {other}: they would differ by less than {VISIBLE:g} noise floors"
+    return f"{experiment}: {name} and {other} would then differ by {apart:.2g} times the noise floor"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ def draw(curves: list[Curve], width: float = 7.4) -> str:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, 1.55 * len(curves) + 0.35), dpi=150)
+    figure = Figure(figsize=(width, 1.55 * len(curves) + 0.35), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(len(curves), 2, squeeze=False, sharex="row")
     for (left, right), c in zip(axes, curves, strict=True):
@@ -59,10 +59,10 @@ def draw(curves: list[Curve], width: float = 7.4) -> str:
             axis.tick_params(labelsize=6.5, length=2)
             axis.spines[["top", "right"]].set_visible(False)
     axes[0][1].set_title("what is left; grey: noise floor, yellow: places found", fontsize=7.5, loc="left")
-    axes[0][0].legend(fontsize=6, frameon=False, ncol=3, loc="upper right", bbox_to_anchor=(1.0, 1.42))
+    lines, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(lines, labels, fontsize=6.5, frameon=False, ncol=3, loc="outside upper left")
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", fontsize=7)
-    figure.tight_layout(pad=0.6)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()

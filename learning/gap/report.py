@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 
 from .findings import EffectFinding, Gap, Verdict
@@ -44,12 +45,26 @@ def write_report(verdict: Verdict, curves: list[Curve]) -> str:
             f"{f.before:.3g} to {f.after:.3g} {f.unit}.</p>"
         )
     if verdict.placebos:
-        rows = "; ".join(f"{escape(p.what)}: gap &times; {p.ratio:.3f}" for p in verdict.placebos)
+        rows = "; ".join(f"{_words(p.what)}: gap &times; {p.ratio:.3f}" for p in verdict.placebos)
         parts.append(f"<p>Controls that must not help: {rows}.</p>")
     parts += ["<h2>What to measure next</h2>", _next(verdict)]
     if verdict.notes:
         parts.append("<p class='small'>" + " ".join(escape(n) for n in verdict.notes) + "</p>")
     return "\n".join(parts)
+
+
+def _words(text: str) -> str:
+    """A sentence with the bank's names as words, for HTML; names of joints and files stay as they are."""
+    from ...sim.effects.body_bank import BODY_EFFECTS
+    from ...sim.effects.cloth_bank import CLOTH_EFFECTS
+    from ...sim.effects.joint_bank import JOINT_EFFECTS
+
+    names = sorted({*BODY_EFFECTS, *CLOTH_EFFECTS, *JOINT_EFFECTS}, key=len, reverse=True)
+    return re.sub(rf"\b({'|'.join(names)})\b", lambda m: m[0].replace("_", " "), escape(text))
+
+
+def _percent(x: float) -> str:
+    return f"{100 * x:.0f} %" if x == x else "&ndash;"
 
 
 def _summary(v: Verdict) -> str:
@@ -94,26 +109,31 @@ def _where(v: Verdict) -> str:
 def _what(v: Verdict) -> str:
     out = []
     if v.recalibration:
-        out.append("<p>Refitted first, the model's own parameters:</p>" + _effects(v.recalibration))
+        out.append("<p>Refitted first, the model's own parameters:</p>")
+        out.append(_effects(v.recalibration, "change of " if v.system in ("arm", "axis") else ""))
     if v.effects:
         out.append(_effects(v.effects))
+    added = [f"{f.name.replace('_', ' ')} on {escape(f.target)}" for f in v.effects]
+    added += [f"{f.name.replace('_', ' ')} of {escape(f.target)} changed" for f in v.recalibration]
+    if added:
+        out.append(f"<p>Added to the model in <code>model.yaml</code>: {', '.join(added)}.</p>")
     if v.verdict == "unknown":
         out.append(f"<p>Symbolic guess for what is left: {escape(v.guess) or 'none'}.</p>")
     return "".join(out) or "<p>No effect in the bank explains more than noise would.</p>"
 
 
-def _effects(findings: tuple[EffectFinding, ...]) -> str:
+def _effects(findings: tuple[EffectFinding, ...], prefix: str = "") -> str:
     rows = []
     for f in findings:
         values = "<br>".join(
-            f"{escape(x.name.replace('_', ' '))} {x.value:.4g} {escape(x.unit) if x.unit != '1' else ''}"
+            f"{prefix}{escape(x.name.replace('_', ' '))} {x.value:.4g} {escape(x.unit) if x.unit != '1' else ''}"
             + (f" ({x.low:.4g} to {x.high:.4g})" if x.low != x.high else "")
             for x in f.parameters
         )
-        others = escape(", ".join(f.equivalent).replace("_", " ")) or "&ndash;"
+        others = _words(", ".join(f.equivalent)) or "&ndash;"
         rows.append(
             f"<tr><td>{escape(f.name.replace('_', ' '))}</td><td>{escape(f.target)}</td><td>{values}</td>"
-            f"<td class=n>{f.size:.1f}</td><td class=n>{100 * f.confidence:.0f} %</td><td>{others}</td></tr>"
+            f"<td class=n>{f.size:.1f}</td><td class=n>{_percent(f.confidence)}</td><td>{others}</td></tr>"
         )
     return (
         "<table><tr><th>effect<th>on<th>value (95 % interval)<th class=n>size / floor<th class=n>kept in resamples"
@@ -143,7 +163,7 @@ def _gap_table(gap: Gap) -> str:
 
 
 def _next(v: Verdict) -> str:
-    items = [f"<li>{escape(f.experiment)}</li>" for f in (*v.effects, *v.recalibration) if f.experiment]
+    items = [f"<li>{_words(f.experiment)}</li>" for f in (*v.effects, *v.recalibration) if f.experiment]
     small = [
         f"<li>{escape(f.name.replace('_', ' '))} on {escape(f.target)} would have been seen down to "
         f"{100 * f.smallest:.0f} % of the size found</li>"

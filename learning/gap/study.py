@@ -58,7 +58,7 @@ class Study(abc.ABC):
             placebos=placebos,
             forward=forward,
             detectable=detectable,
-            notes=tuple(self.notes),
+            notes=tuple(dict.fromkeys(self.notes)),
             seconds=seconds,
         )
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....sim.effects.model_file import EffectEntry
+from ..findings import told_apart
 from .fitting import ClothModel
 from .scene import ClothEpisode, Pin
 from .simulate import Simulator
@@ -44,7 +45,7 @@ def separating(sim: Simulator, episode: ClothEpisode, model: ClothModel, name: s
         size = float(np.sqrt(np.mean(apart**2)) / max(floor, 1e-9))
         if size > best[1]:
             best = (text, size)
-    return f"{best[0]}: {name} and {rival} would then differ by {best[1]:.2g} times the noise floor"
+    return told_apart(best[0], name, rival, best[1])
 
 
 def _still(e: ClothEpisode) -> ClothEpisode:

@@ -25,6 +25,7 @@ CARRIED = 0.8  # carriers are taken as given where they alone bring the squares 
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
+NUMBER = 10.0  # what a fitted number has to keep gaining to stay
 SAME = 12.0  # criterion within which two explanations fit alike
 
 
@@ -284,7 +285,7 @@ def _prune(
             rest = [x for x in chosen if x is not c]
             without = fitter.fit(fit.model.without(c.name), _steps(rest), rounds=2)
             if (
-                worth * np.log(without.rss / fit.rss) < 10.0 * len(c.start.free)
+                worth * np.log(without.rss / fit.rss) < NUMBER * len(c.start.free)
                 or without.rss - fit.rss < MATERIAL * fit.rss
             ):
                 fit, chosen, changed = without, rest, True

@@ -16,15 +16,17 @@ from ..measurement import MeasurementSet
 from ..pictures import Curve
 from ..regions import phase_of, scan
 from ..study import Study
+from .candidates import Candidate
 from .experiment import separating
 from .fitting import ClothFitter, ClothModel, predict, scaled
 from .noise import coherence, load_misfit, neighbours
 from .scene import ClothEpisode, ClothScene, read_scene
-from .search import ClothSearch, search
+from .search import NUMBER, ClothSearch, search
 from .simulate import Simulator
 
 REMAINDER = 0.12  # `unknown` above this part of the explainable energy left shared between neighbours
 NOTHING = 1e-5  # a recalibrated number this small has run into its bound
+STRETCHES = 6  # per recording, resampled for the confidence
 SLOW = 0.8  # [s] for one run
 UNITS = {"mass": "kg", "elastic_stiffness": "N/m", "damping_stiffness": "N s/m", "bending_stiffness": "N/m"}
 
@@ -197,7 +199,8 @@ class ClothStudy(Study):
                 parameters=tuple(values),
                 equivalent=rivals,
                 size=size,
-                smallest=float(np.sqrt(10.0 * len(c.start.free) / max(gained, 1e-9))),
+                confidence=self._kept(without, c),
+                smallest=float(np.sqrt(NUMBER * len(c.start.free) / max(gained, 1e-9))),
                 experiment=separating(self.sim, self.fitted[0], f.fit.model, c.name, rivals[0], f.after.floor)
                 if rivals
                 else "",
@@ -207,6 +210,21 @@ class ClothStudy(Study):
         if self.verdict == "unknown":
             guess = _shape_of(f.fit.residuals, self.fitted, len(self.scene.markers))
         return self.verdict, tuple(effects), tuple(recalibration), guess
+
+    def _kept(self, without: list[np.ndarray], c: Candidate) -> float:
+        """Part of resampled stretches in which a candidate keeps paying its price."""
+        width = 3 * len(self.scene.markers)
+        table = np.array(
+            [
+                (np.sum(a[rows, :width] ** 2), np.sum(b[rows, :width] ** 2))
+                for a, b in zip(without, self.found.fit.residuals, strict=True)
+                for rows in np.array_split(np.arange(len(a)), STRETCHES)
+            ]
+        )
+        rng = np.random.default_rng(0)
+        draws = table[rng.integers(len(table), size=(200, len(table)))].sum(axis=1)
+        gained = self.found.worth * np.log(np.maximum(draws[:, 0], 1e-30) / np.maximum(draws[:, 1], 1e-30))
+        return float(np.mean(gained > NUMBER * len(c.start.free)))
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""

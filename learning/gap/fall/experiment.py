@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....sim.effects.body_bank import BODY_EFFECTS
+from ..findings import told_apart
 from .drop import height
 from .fit import Drop, DropFit, fit_drops, table_of
 from .search import EFFECT, FIRST, DropSearch
@@ -37,8 +38,7 @@ def separating(drops: list[Drop], fit: DropFit, other: tuple[str, DropFit], floo
             apart = float(np.sqrt(np.mean((gap - gap.mean()) ** 2)) / floor)
             if apart > best[1]:
                 best = (f"drop from {top * factor:.3g} m", apart)
-    names = " + ".join(fit.names)
-    return f"{best[0]}: {names} and {other[0]} would then differ by {best[1]:.2g} times the noise floor"
+    return told_apart(best[0], " + ".join(fit.names), other[0], best[1])
 
 
 def detectable(found: DropSearch, base: DropFit) -> dict[str, str]:

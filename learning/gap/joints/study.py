@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
+from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where, told_apart
 from ..measurement import Episode, MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
@@ -239,14 +239,7 @@ class JointStudy(Study):
         experiment = ""
         if others:
             text, apart = best_experiment(block, theta, others[0], self.model, self.fitted, self.named.noise.rms)
-            experiment = (
-                (
-                    f"{text}: {block.name} and {' + '.join(others[0].names)} would then differ by "
-                    f"{apart:.2g} times the noise floor"
-                )
-                if text
-                else "no motion of this log tells them apart"
-            )
+            experiment = told_apart(text, block.name, " + ".join(others[0].names), apart)
         loads = np.concatenate([block.build(log) @ theta for log in self.fitted])
         size = float(np.max(np.sqrt(np.mean(loads**2, axis=0)) / self.named.noise.rms[list(block.channels)]))
         smallest = smallest_found(search, chosen, chosen[k], theta)
