@@ -14,6 +14,7 @@ from .arm_path import UP, ArmPath
 from .hands import collision_checker
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
+from .motion.trajectory import free_postures
 from .skill import Skill
 
 FORCE = 28.0  # squeezing an arm; the guard allows 30 [N]
@@ -39,14 +40,9 @@ def top_down_reachable(skill: Skill, side: Side, pose: np.ndarray, also_up: Sequ
     Raises:
         Unreachable: neither can be reached.
     """
-    seen, kinematics, checker = skill.world.observe(), default_kinematics(), collision_checker(skill)
+    seen, kinematics = skill.world.observe(), default_kinematics()
     n, limits = SIDES.index(side), kinematics.limits[side]
-
-    def accept(q: np.ndarray) -> bool:
-        arms = seen.arm_positions.copy()
-        arms[n] = q
-        return checker.free(seen.pose_base_in_map, arms)
-
+    accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     best: tuple[float, np.ndarray] | None = None
     problem: Unreachable | None = None
     for turned in (pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))):

@@ -26,7 +26,7 @@ _GAIN = 1.5  # of the correction towards the arc [1/s]
 _LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
 _TURN = 0.75  # share of the arm's turn that the hand makes with it
 _HEAVY, _HEAVIEST = 26.0, 29.5  # load from which the lift slows down, and at which it stands still [N]
-_RISE = 0.25  # of the hand above the arm in a whole lift [m]
+RISE = 0.25  # of the hand above the arm in a whole lift [m]
 ENOUGH = 0.8  # share of the lift that will do when time is up
 
 
@@ -59,7 +59,7 @@ class LiftArm(Skill):
         yield from open_gripper(self, self.hand)
         above = over_arm(posture, self.place, lift=ABOVE)
         left = max(self.pitch - ArmPath.of(posture).pitch, 0.0) / self.pitch  # less than all where it is up already
-        above = top_down_reachable(self, self.hand, above, (0.0, _RISE * left))
+        above = top_down_reachable(self, self.hand, above, (0.0, RISE * left))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, 0.5))
         grip = above.copy()
         grip[:3, 3] = ArmPath.of(posture).point(self.place) - DEEPER * UP

@@ -19,6 +19,7 @@ from ..sim.world import SIDES, GripperOpening, Side
 from .hands import OPEN, SPEED, close_gripper, collision_checker, hand_now, move_hands, open_gripper
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
+from .motion.trajectory import free_postures
 from .reasons import Reason, SkillFailure
 from .skill import Skill
 
@@ -66,13 +67,8 @@ def grasp_poses(skill: Skill, side: Side, position: np.ndarray, approach: np.nda
         Unreachable: with no roll.
     """
     seen, n = skill.world.observe(), SIDES.index(side)
-    kinematics, checker = default_kinematics(), collision_checker(skill)
-    arms = seen.arm_positions.copy()
-
-    def accept(q: np.ndarray) -> bool:
-        arms[n] = q
-        return checker.free(seen.pose_base_in_map, arms)
-
+    kinematics = default_kinematics()
+    accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     across = np.cross(approach, closing)
     failure: Unreachable | None = None
     for roll in _ROLLS:

@@ -22,7 +22,7 @@ from .strap_grip import StrapGrip, presenting
 from .tracking import Hold, watch_arm
 
 SPEED_AT_HAND, SPEED = 0.08, 0.11  # over the person's hand, and further up the arm [m/s]
-BASE_SPEED = 0.05  # of the base that comes along [m/s]
+BASE_SPEED = 0.10  # of the base that comes along [m/s]
 CAUGHT = 5.0  # a sleeve that pulls harder than this and does not come on is caught [N]
 STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
@@ -78,7 +78,10 @@ class PullAlongArm(Skill):
                 window.popleft()
             if place < _ON and self._stands(window):
                 break  # as far as the arm, or the cloth, goes
-            self._judge(window)
+            if follower is not None and not follower.done(seen.pose_base_in_map) and self._stands(window):
+                window.clear()  # an arm at its end waits for the base, which still comes
+            else:
+                self._judge(window)
             if place > _THROUGH:
                 ring.look(path, place, hand[:3, 3])
             if before is not None and before > _SURE >= place and ring.missed(path):
@@ -97,6 +100,7 @@ class PullAlongArm(Skill):
                 self._drive(follower, seen)
             self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
             yield
+
     def _there(self, ring: float | None, grip: float) -> bool:
         """The armhole lags behind the grip, more or less: as far as it is seen, it decides where the pull ends."""
         if ring is None or not np.isfinite(self.seat):
@@ -105,11 +109,13 @@ class PullAlongArm(Skill):
 
     def _stands(self, window: deque[tuple[float, float, float]]) -> bool:
         """The hand has not come on for a while."""
-        return window[-1][0] - window[0][0] > 0.9 * STUCK_FOR and window[-1][1] - window[0][1] < ADVANCE
+        if not window or window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
+            return False
+        return window[-1][1] - window[0][1] < ADVANCE
 
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
         """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""
-        if window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
+        if not window or window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
             return
         _, way, load = np.array(window).T
         moved = float(way[-1] - way[0])

@@ -16,6 +16,7 @@ from .bedside import outwards, stance
 from .hands import collision_checker
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
+from .motion.trajectory import free_postures
 from .skill import Skill
 from .strap_grip import StrapGrip, presenting, strap_grip
 
@@ -45,7 +46,7 @@ def presenting_place(path: ArmPath, beyond: float) -> np.ndarray:
     return path.points[3] + beyond * unit(path.direction(2.5) * (1.0, 1.0, 0.0))
 
 
-def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmPath) -> WayIn:
+def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmPath, *, worn: bool = False) -> WayIn:
     """The best way to take a strap.
 
     Args:
@@ -54,19 +55,15 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
         hand: that takes it.
         strap: where it is.
         path: of the arm that is to be dressed, where it is now.
+        worn: the sleeve is over the hand already: it is pulled on from where it is.
 
     Raises:
-        Unreachable: no way in leads to a grasp with which the sleeve could be presented.
+        Unreachable: no way in leads to a grasp with which the sleeve could be presented, or pulled on.
     """
-    seen, kinematics, checker = skill.world.observe(), default_kinematics(), collision_checker(skill)
+    seen, kinematics = skill.world.observe(), default_kinematics()
     n, base = SIDES.index(hand), seen.pose_base_in_map
     limits = kinematics.limits[hand]
-
-    def accept(q: np.ndarray) -> bool:
-        arms = seen.arm_positions.copy()
-        arms[n] = q
-        return checker.free(base, arms)
-
+    accept = free_postures(collision_checker(skill), hand, base, seen.arm_positions)
     found: list[tuple[float, WayIn, StrapGrip, np.ndarray]] = []
     problem: Unreachable | None = None
     for approach in _approaches(strap, arm):
@@ -78,7 +75,7 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
             try:
                 q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=6, accept=accept)
                 q1 = solve_ik(kinematics, hand, inside, base, q0, seeds=2, accept=accept)
-                q2 = _presented(kinematics, grip, path, base, q1, accept)
+                q2 = q1 if worn else _presented(kinematics, grip, path, base, q1, accept)
             except Unreachable as stop:
                 problem = stop
                 continue
@@ -89,8 +86,9 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
         assert problem is not None
         raise problem
     best: tuple[float, WayIn] | None = None
+    begin = path.place_of(strap.position_in_map) if worn else np.inf
     for _, way, grip, q in sorted(found, key=lambda entry: -entry[0]):
-        room = _room_to_pull(kinematics, grip, path, base, q)
+        room = _room_to_pull(kinematics, grip, path, base, q, begin)
         if best is None or room > best[0]:
             best = (room, way)
         if room > _ROOM:
@@ -99,14 +97,15 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
     return best[1]
 
 
-def _room_to_pull(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray) -> float:
-    """Least room to a joint limit [rad] on the way from the fingertips to the shoulder; -1 for each place not reached.
+def _room_to_pull(kinematics: Kinematics, grip: StrapGrip, path: ArmPath, base: np.ndarray, q: np.ndarray,
+                  begin: float) -> float:
+    """Least room to a joint limit [rad] on the way from `begin` to the shoulder; -1 for each place not reached.
 
     The base drifts to where the shoulder is in reach on the second half of the way, as `PullAlongArm` does.
     """
     limits, room, lost = kinematics.limits[grip.hand], np.inf, 0
     stand = stance(grip.arm, "shoulder")
-    for place in _PLACES:
+    for place in (place for place in _PLACES if place < begin):
         there = base + np.clip((1.5 - place) / 1.8, 0.0, 1.0) * (stand - base) * (1.0, 1.0, 0.0)
         pose = presenting(grip, path.direction(place), path.point(place) + _ABOVE * path.frame(place)[:, 2])
         try:

@@ -134,7 +134,8 @@ class RecoverBy(Wrapper):
     Args:
         name: of the node.
         body: what to do.
-        recoveries: reason -> function that builds the subtree (a node, or a class or lambda that makes one).
+        recoveries: reason -> function that builds the subtree (a node, or a class or lambda that makes one); reasons
+            with the same function share one subtree.
         attempts: how often the body may be tried in all.
     """
 
@@ -143,8 +144,9 @@ class RecoverBy(Wrapper):
         if not recoveries or not all(isinstance(reason, Reason) for reason in recoveries):
             raise TreeError(f"recoveries of {name!r} map a Reason to a function that builds a subtree, e.g. "
                             "{Reason.MULTI_LAYER: build_shake}")
-        subtrees = {reason: make() for reason, make in recoveries.items()}
-        super().__init__(name, body, *subtrees.values())
+        built = {make: make() for make in dict.fromkeys(recoveries.values())}
+        subtrees = {reason: built[make] for reason, make in recoveries.items()}
+        super().__init__(name, body, *built.values())
         self.recoveries = subtrees
         self.attempts = _positive(name, "attempts", attempts)
         self.tried = 0

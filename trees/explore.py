@@ -1,7 +1,7 @@
 """Runs a tree with stubs for leaves through every combination of their outcomes, in milliseconds.
 
-Each leaf succeeds, fails for each reason that anybody above reacts to and for one that nobody does, or, under a
-timeout, never ends.  A situation that was met before is not followed again, so the work grows with
+Each leaf succeeds, fails in each way that makes a difference to anybody above and in one that nobody reacts to, or,
+under a timeout, never ends.  A situation that was met before is not followed again, so the work grows with
 the number of situations, not with the number of ways through the tree.
 """
 
@@ -218,12 +218,12 @@ class Explorer:
         return (*state, *(self._state(child, active) for child in node.children))
 
     def _outcomes(self, stub: Stub) -> list[Any]:
-        """True, then each reason that makes a difference above, then `never` under a timeout."""
-        handled: set[Reason] = set()
+        """True, then one reason for each way of reacting above, then `never` under a timeout."""
+        reacting: list[RecoverBy] = []
         timed = False
         for above, child in _ancestors(stub):
             if child is above.children[0]:  # in the body, not in a recovery
-                handled |= set(above.recoveries) if isinstance(above, RecoverBy) else set()
+                reacting += [above] if isinstance(above, RecoverBy) else []
                 timed |= isinstance(above, Timeout)
         leaf = stub.leaf
         if isinstance(leaf, Condition):
@@ -231,8 +231,12 @@ class Explorer:
         else:
             possible = set(leaf.reasons) if isinstance(leaf, Skill) else set()
             possible |= set(FROM_OUTSIDE) if isinstance(leaf, Skill) else set()
-        reasons = sorted(handled & possible, key=lambda reason: reason.name)
-        return [True, OTHER, *reasons, *([None] if timed and isinstance(leaf, Skill) else [])]
+        ways: dict[Any, Reason] = {}  # reasons with the same recoveries all the way up lead to the same situations
+        for reason in sorted(possible, key=lambda reason: reason.name):
+            way = tuple(node.recoveries.get(reason) for node in reacting)
+            if any(way):
+                ways.setdefault(way, reason)
+        return [True, OTHER, *ways.values(), *([None] if timed and isinstance(leaf, Skill) else [])]
 
     def _replace_leaves(self, root: Behaviour) -> Behaviour:
         if not root.children:

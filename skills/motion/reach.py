@@ -12,7 +12,7 @@ from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked, Unreachable
 from .ik import FreeAxis, solve_ik
 from .rrt import connect, segment_free
-from .trajectory import HandSpeed, plan_joint_motion, standing_contacts
+from .trajectory import HandSpeed, free_postures, plan_joint_motion, standing_contacts
 
 _LINE_STEP = 0.02  # [m]
 _LINE_TURN = 0.1  # [rad]
@@ -71,14 +71,7 @@ def plan_reach(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_pos
     target = arms.copy()
     for side in sides:
         n = SIDES.index(side)
-
-        def accept(q: np.ndarray, n: int = n) -> bool:
-            if checker is None:
-                return True
-            trial = target.copy()
-            trial[n] = q
-            return checker.free(pose_base_in_map, trial)
-
+        accept = None if checker is None else free_postures(checker, side, pose_base_in_map, target)
         target[n] = solve_ik(kinematics, side, goals[side], pose_base_in_map, arms[n], free=free, accept=accept)
     return plan_arms(kinematics, target, arms, pose_base_in_map, sides=tuple(sides), speed_scale=speed_scale,
                      hand_speed=hand_speed, checker=checker)

@@ -95,6 +95,21 @@ def standing_contacts(checker: CollisionChecker, moving: list[Side], pose_base_i
             if not any(name.startswith(side) for side in moving for name in hit)}
 
 
+def free_postures(checker: CollisionChecker, side: Side, pose_base_in_map: np.ndarray,
+                  arms: np.ndarray) -> Callable[[np.ndarray], bool]:
+    """Test of postures (7,) of one arm while the other one of `arms` (2, 7) stays: they touch nothing anew."""
+    n, given = SIDES.index(side), standing_contacts(checker, [side], pose_base_in_map, arms)
+
+    def accept(q: np.ndarray) -> bool:
+        trial = np.array(arms, float)
+        trial[n] = q
+        if given:
+            return given.issuperset(checker.collisions(pose_base_in_map, trial))
+        return checker.free(pose_base_in_map, trial)
+
+    return accept
+
+
 def _distinct(points: np.ndarray) -> np.ndarray:
     """Waypoints without repetitions, which a spline cannot pass."""
     keep = np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-6)
