@@ -67,7 +67,11 @@ class JointMotion:
     @property
     def direction(self) -> np.ndarray:
         """Sign of the velocity, passing smoothly through zero within `slow`, (T,)."""
-        return np.tanh(2.0 * self.dq / max(self.slow, 1e-12))
+        return self.direction_within(0.0)
+
+    def direction_within(self, width: float) -> np.ndarray:
+        """Sign of the velocity, passing smoothly through zero within `width` or within `slow`, if that is more."""
+        return np.tanh(2.0 * self.dq / max(self.slow, width, 1e-12))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +100,7 @@ class JointEffect(abc.ABC):
     name: ClassVar[str]
     linear: ClassVar[tuple[Parameter, ...]]
     shape: ClassVar[tuple[Parameter, ...]] = ()
+    optional: ClassVar[tuple[Parameter, ...]] = ()  # shape that a file may leave out, 0 then
     systems: ClassVar[frozenset[str]] = frozenset({"arm", "axis"})
     contains: ClassVar[frozenset[str]] = frozenset()  # effects that are special cases of this one
     memoryless: ClassVar[bool] = True  # the load depends on this instant alone
@@ -112,7 +117,8 @@ class JointEffect(abc.ABC):
     def load(self, motion: JointMotion, values: dict[str, float]) -> np.ndarray:
         """Load this effect adds to the model's, (T,) [N or N m]."""
         theta = np.array([values[p.name] for p in self.linear])
-        return self.columns(motion, {p.name: values[p.name] for p in self.shape}) @ theta
+        shape = {p.name: values.get(p.name, 0.0) for p in (*self.shape, *self.optional)}
+        return self.columns(motion, shape) @ theta
 
     def check(self, values: dict[str, float]) -> None:
         """Refuse values this effect cannot have.
@@ -120,11 +126,12 @@ class JointEffect(abc.ABC):
         Raises:
             EffectError: a parameter is missing, unknown or outside its physical bounds.
         """
-        wanted = {p.name: p for p in (*self.linear, *self.shape)}
-        if set(values) != set(wanted):
+        needed = {p.name for p in (*self.linear, *self.shape)}
+        wanted = {p.name: p for p in (*self.linear, *self.shape, *self.optional)}
+        if not needed <= set(values) <= set(wanted):
             raise EffectError(f"effect {self.name} has parameters {sorted(values)}, it takes {sorted(wanted)}")
         for name, p in wanted.items():
-            if not p.lower <= values[name] <= p.upper:
+            if name in values and not p.lower <= values[name] <= p.upper:
                 raise EffectError(
                     f"effect {self.name}: {name} = {values[name]:g} is outside {p.lower:g} to {p.upper:g}"
                 )

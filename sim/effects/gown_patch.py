@@ -34,7 +34,8 @@ def gown_effects(path: str | Path) -> EffectModel:
             if e.name not in SPEC or set(e.parameters) != {e.name} or e.parameters[e.name] <= 0:
                 raise EffectError(f"recalibration of '{e.name}' does not fit a gown, it has {', '.join(SPEC)}")
     except EffectError as error:
-        raise CaretreeError(f"--model {path}: {error}") from None
+        text = str(error)
+        raise CaretreeError(f"--model {text if text.startswith(str(path)) else f'{path}: {text}'}") from None
     return model
 
 

@@ -22,33 +22,30 @@ from .score import interval
 
 Named = set[tuple[str, str]]
 METHODS = ("one-shot least squares", "STLSQ", "all terms")
+QUESTIONS = {"single": "exact, single >= 2", "two": "exact, two effects", "none": "false alarm"}
 KEEP = 0.2  # an effect is named where its load exceeds this part of the residual left, root mean square
 
 
 def compare(cases: list[tuple[str, int]], out: Path, say: Callable[[str], None]) -> list[str]:
-    """Exact-set rate of each method on single effects of size 2 and more, and its false alarms."""
+    """Exact-set rate of each method on single effects of size 2 and more and on pairs, and its false alarms."""
     wanted = [(s, k) for s, k in cases if s in ("arm", "axis")]
-    right = {m: [0, 0] for m in METHODS}
-    alarms = {m: [0, 0] for m in METHODS}
+    tally = {(m, q): [0, 0] for m in METHODS for q in QUESTIONS}
     for count, (system, seed) in enumerate(wanted):
         name = f"{system}_{seed:05d}"
         truth = json.loads((out / "truth" / f"{name}.json").read_text())
-        single = truth["kind"] == "single" and truth["effects"][0]["size"] >= 2.0
-        if not single and truth["kind"] != "none":
+        kind = truth["kind"]
+        if kind not in QUESTIONS or (kind == "single" and truth["effects"][0]["size"] < 2.0):
             continue
         hidden = {(e["name"], e["target"]) for e in truth["effects"]}
         for method, said in zip(METHODS, _solve(out / "sets" / name), strict=True):
-            if single:
-                right[method][0] += said == hidden
-                right[method][1] += 1
-            else:
-                alarms[method][0] += bool(said)
-                alarms[method][1] += 1
+            tally[method, kind][0] += bool(said) if kind == "none" else said == hidden
+            tally[method, kind][1] += 1
         if count % 10 == 9:
             say(f"ablations {count + 1}/{len(wanted)}")
     lines = []
     for method in METHODS:
-        for label, (hits, n) in (("exact, single >= 2", right[method]), ("false alarm", alarms[method])):
+        for kind, label in QUESTIONS.items():
+            hits, n = tally[method, kind]
             if n:
                 low, high = interval(hits, n)
                 lines.append(

@@ -73,7 +73,7 @@ def joint_block(effect: JointEffect, model: RigidModel, joint: int, shape: dict[
         parameters=effect.linear,
         build=build,
         shape=shape,
-        shape_parameters=effect.shape,
+        shape_parameters=(*effect.shape, *(p for p in effect.optional if p.name in shape)),
         contains=effect.contains,
         trials=trials,
     )

@@ -25,11 +25,12 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
             shape = {f"com_{a}": float(x) for a, x in zip("xyz", com, strict=True)}
             out[i] = body_block(replace(block.term, shape=shape), model)
         elif block.shape and block.name in JOINT_EFFECTS:
-            out[i] = _fit_shape(block, [b for k, b in enumerate(out) if k != i], model, logs)
+            out[i] = fit_shape(block, [b for k, b in enumerate(out) if k != i], model, logs)
     return out
 
 
-def _fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:
+def fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:
+    """One block with its shape fitted, the linear parameters of all projected out."""
     channel = block.channels[0]
     effect = JOINT_EFFECTS[block.name]
     mine = [b for b in others if channel in b.channels]

@@ -147,11 +147,12 @@ class Search:
 
     def crossed(self, chosen: Set, added: int, base: Set) -> bool:
         """Whether `added` pays off on folds the parameters were not fitted to."""
-        gain = self._held(base) - self._held(chosen)
+        gain = self.held(base) - self.held(chosen)
         whole = float(self.weight @ (self.rss(base) - self.rss(chosen)))
         return gain > CROSS * whole
 
-    def _held(self, chosen: Set) -> float:
+    def held(self, chosen: Set) -> float:
+        """Weighted squares on every fold with the parameters fitted to the others, up to a constant."""
         s = self.columns(chosen)
         total = 0.0
         if len(s):

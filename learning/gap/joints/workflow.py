@@ -14,6 +14,7 @@ from .noise import NoiseModel, estimate_noise, repeat_difference
 from .refine import refined
 from .rigid import RigidModel
 from .search import Search
+from .widen import widened
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,8 +117,9 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
             )
     search = Search(gram=gram, noise=noise, strict=strict)
     chosen = unequal_levels(search, chosen)
+    search = widened(search, chosen, model, logs)
     return Named(
-        blocks=tuple(gram.blocks[i] for i in chosen),
+        blocks=tuple(search.blocks[i] for i in chosen),
         noise=noise,
         search=search,
         chosen=chosen,

@@ -108,3 +108,17 @@ def test_effects_that_do_not_hold_on_the_held_out_recording_are_not_believed(axi
     _, verdict, _, _, guess = solved(folder)
     assert verdict == "unknown"
     assert "do not hold on the held-out" in guess
+
+
+def test_dry_friction_is_as_wide_as_the_log_shows(axis_set):
+    _, verdict, effects, _, _ = solved(axis_set(lambda q, v, a: 3.0 * np.tanh(2.0 * v / 0.1)))
+    assert verdict == "effects"
+    assert [f.name for f in effects] == ["coulomb_friction"]
+    values = {p.name: p.value for p in effects[0].parameters}
+    assert values["level"] == pytest.approx(3.0, rel=0.1)
+    assert values["width"] == pytest.approx(0.1, rel=0.3)
+
+
+def test_dry_friction_that_jumps_gets_no_width(axis_set):
+    _, _, effects, _, _ = solved(axis_set(lambda q, v, a: 0.8 * np.sign(v)))
+    assert [p.name for p in effects[0].parameters] == ["level"]

@@ -47,3 +47,16 @@ def test_backlash_starts_at_a_reversal_and_ends_after_the_gap():
     assert not free[: turn - 5].any()
     assert free[turn + 5]
     assert not free[np.flatnonzero((T[turn] < T) & (MOTION.q < 0.8))].any() or MOTION.q[free].min() < -0.8
+
+
+def test_the_width_of_dry_friction_may_be_left_out():
+    motion = JointMotion(t=np.arange(3.0), q=np.zeros(3), dq=np.array([-0.01, 0.01, 5.0]), ddq=np.zeros(3),
+                         load=np.zeros(3), measured=np.zeros(3), slow=1e-6)
+    both = {"coulomb_friction": {"level": 2.0}, "asymmetric_friction": {"forward": 2.0, "backward": 2.0}}
+    for name, values in both.items():
+        effect = JOINT_EFFECTS[name]
+        effect.check(values)
+        assert effect.load(motion, values) == pytest.approx([-2.0, 2.0, 2.0])
+        assert effect.load(motion, {**values, "width": 1.0}) == pytest.approx([-0.04, 0.04, 2.0], abs=1e-4)
+        with pytest.raises(EffectError, match="width = -1"):
+            effect.check({**values, "width": -1.0})
