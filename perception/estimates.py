@@ -127,6 +127,21 @@ class SleeveHeading(Estimate):
     cuff_from_armhole_in_map: np.ndarray
 
 
+@dataclass(frozen=True, kw_only=True)
+class WornSleeve(Estimate):
+    """Where a sleeve shows along an upper arm.
+
+    Attributes:
+        side: of the person.
+        armhole_at: middle of what shows of the armhole's binding, 0 shoulder, 1 elbow.
+        cuff_at: the same of the cuff's.
+    """
+
+    side: Side
+    armhole_at: float
+    cuff_at: float
+
+
 Primitive = Literal["move_left", "direct", "move_right"]
 
 

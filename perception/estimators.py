@@ -22,6 +22,7 @@
 | hand_cover | points_in_map | Cover |
 | held_armhole | side, near_in_map | SleeveOpening |
 | sleeve_heading | side, near_in_map | SleeveHeading: from the armhole to the cuff |
+| worn_sleeve | side, arm_in_map | WornSleeve: where it shows along the upper arm |
 | arm | side, grip_in_map, fraction | ArmPosture |
 
 `frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
@@ -52,6 +53,7 @@ from .skin import head_seen
 from .sleeve import sleeve_opening
 from .sleeve_heading import sleeve_heading
 from .strap import sleeve_strap
+from .worn_sleeve import worn_sleeve
 
 Estimator = Callable[..., Estimate]
 
@@ -98,5 +100,6 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
             "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
             "sleeve_opening": sleeve_opening, "hook": hook, "shown_corner": shown_corner,
             "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole,
-            "sleeve_heading": sleeve_heading, "hand_cover": hand_cover, "sleeve_strap": sleeve_strap,
-            "collar_near_shoulder": collar_near_shoulder, "head": head, "chest_cover": cover, "arm": arm}
+            "sleeve_heading": sleeve_heading, "worn_sleeve": worn_sleeve, "hand_cover": hand_cover,
+            "sleeve_strap": sleeve_strap, "collar_near_shoulder": collar_near_shoulder, "head": head,
+            "chest_cover": cover, "arm": arm}

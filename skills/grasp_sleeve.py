@@ -48,10 +48,7 @@ class GraspSleeve(Skill):
     def _grasp(self) -> Iterator[None]:
         """Look from afar, look from close by, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
-        fingertip = watch_arm(self, self.side, hold=self.hold).points_in_map[3]
-        frame = self.world.look("head")
-        near = fingertip * (1.0, 1.0, 0.0) + self.world.room.bed[1, 2] * UP
-        far = self.context.perceive("sleeve_opening", frame, side=self.side, near_in_map=near)
+        far = self._find()
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
@@ -68,6 +65,18 @@ class GraspSleeve(Skill):
                 yield from back_off(self, self.hand)
             raise
         self.grip = strap_grip(self.side, self.hand, strap, pose)
+
+    def _find(self) -> SleeveOpening:
+        """From afar: below the hand, where it was laid, or by the elbow, where it may be after a miss."""
+        frame, arm = self.world.look("head"), watch_arm(self, self.side, hold=self.hold).points_in_map
+        lost: PerceptionFailure | None = None
+        for near in (arm[3] * (1.0, 1.0, 0.0) + self.world.room.bed[1, 2] * UP, arm[1]):
+            try:
+                return self.context.perceive("sleeve_opening", frame, side=self.side, near_in_map=near)
+            except PerceptionFailure as stop:
+                lost = lost or stop
+        assert lost is not None
+        raise lost
 
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""

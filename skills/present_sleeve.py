@@ -36,7 +36,7 @@ class PresentSleeve(Skill):
 
     Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
     is carried no farther, lest the gown be drawn off the other arm [N]; `opens`, how far beyond the armhole the cuff
-    has to show in the end, along the hand [m].
+    has to show in the end, along the hand, -inf for anything [m].
     """
 
     grip = Input(StrapGrip)
@@ -69,13 +69,18 @@ class PresentSleeve(Skill):
         yield from self._check(path)
 
     def _check(self, path: ArmPath) -> Iterator[None]:
-        """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it."""
+        """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it.
+
+        One that hides behind its panel cannot be centred on the hand either.
+        """
+        if not np.isfinite(self.opens):
+            return
         yield from holding(self, self.hold, self.wait(0.3))
         try:
             seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
                                          near_in_map=hand_now(self, self.grip.hand)[:3, 3])
-        except PerceptionFailure:
-            return  # what cannot be seen is left to the pull, which looks whether the hand comes through
+        except PerceptionFailure as hidden:
+            raise SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}") from hidden
         assert isinstance(seen, SleeveHeading)
         beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
         if beyond < self.opens:

@@ -6,7 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ..perception.estimates import COLLAR_OF, SLEEVE_OF, ArmPosture, Cover, Estimate, GraspPoint, Head, SleeveOpening
+from ..perception.estimates import (
+    COLLAR_OF,
+    SLEEVE_OF,
+    ArmPosture,
+    Cover,
+    Estimate,
+    GraspPoint,
+    Head,
+    SleeveOpening,
+    WornSleeve,
+)
 from ..sim.world import Frame, Side
 from .context import Context
 
@@ -57,7 +67,10 @@ def offer_person(context: Context) -> None:
                           position_in_map=mirrored(np.array((0.14, -0.5, 0.80)), side),
                           approach_in_map=np.array((0.0, 0.0, -1.0)), closing_in_map=np.array((0.0, 1.0, 0.0)))
 
+    def worn(frame: Frame, side: Side, **_: Any) -> Estimate:
+        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6)
+
     for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
                             ("held_armhole", sleeve), ("hand_cover", cover), ("head", head),
-                            ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
+                            ("worn_sleeve", worn), ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
         context.perception.offer(name, estimator)

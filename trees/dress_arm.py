@@ -1,9 +1,9 @@
 """Half of stage C: one arm into its sleeve.
 
-over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the wrist
-                 again with the arm put down, whatever went wrong
-to the shoulder  let the arm go, pull on, seat
-                 again with a new hold of the sleeve, which stays on the arm
+over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the
+                 wrist, let the arm go
+to the shoulder  pull on, seat; where that fails, with a new hold of the sleeve, which stays on the arm
+inside?          back off and look; whatever went wrong until here, the arm is put down and all begins again
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from py_trees.behaviour import Behaviour
 
 from ..sim.world import Side
 from ..skills.bedside import LIFTING, PULLING, stance
+from ..skills.check_sleeve import CheckSleeve
 from ..skills.context import Context
 from ..skills.find_stand import FindStand
 from ..skills.grasp_sleeve import GraspSleeve
@@ -67,13 +68,13 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
             GraspSleeve(f"grasp the worn {arm} sleeve", context, side=arm, hand=PULLING[arm], worn=True,
                         grip=Key(f"{arm}_grip")))
 
-    return sequence(
-        f"dress the {arm} arm",
-        RecoverBy(f"over the {arm} hand, at last", over_hand(context, arm, look), dict.fromkeys(MISSES, let_go),
-                  attempts=3),
+    once = sequence(
+        f"dress the {arm} arm once", over_hand(context, arm, look),
         RecoverBy(f"up to the {arm} shoulder", up_arm(context, arm),
-                  dict.fromkeys(STUCK, take_on) | {Reason.ARM_LOST: lambda: look("look again at")}, attempts=3),
-        back_off(context, f"back off from the {arm} arm", 0.25))
+                  dict.fromkeys(STUCK, take_on) | {Reason.ARM_LOST: lambda: look("look again at")}, attempts=2),
+        back_off(context, f"back off from the {arm} arm", 0.25),
+        CheckSleeve(f"the {arm} arm is inside", context, side=arm))
+    return RecoverBy(f"dress the {arm} arm", once, dict.fromkeys(MISSES, let_go), attempts=3)
 
 
 def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> Behaviour:

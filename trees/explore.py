@@ -26,6 +26,7 @@ FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reas
 OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20
+ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
 
 
 class _Known(Exception):  # noqa: N818 ends an execution, no defect
@@ -105,6 +106,9 @@ class Explorer:
         self._context = Context(world=world, guard=None)  # type: ignore[arg-type] stubs neither send nor ask the guard
         self._root = self._replace_leaves(root)
         self._nodes = list(self._root.iterate())
+        for node in self._nodes:
+            if isinstance(node, (Retry, RecoverBy)):
+                node.attempts = min(node.attempts, ATTEMPTS)
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._seen: set[Any] = set()
