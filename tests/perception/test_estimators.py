@@ -29,8 +29,8 @@ def fresh(bed):
     return classical_estimators(RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed), 0)
 
 
-ELSEWHERE = {"hook", "shown_corner", "hung_corner", "hung_side", "held_armhole", "sleeve_heading", "hand_cover", "worn_sleeve",
-             "sleeve_strap", "chest_cover"}  # these need a whole scene
+ELSEWHERE = {"hook", "shown_corner", "hung_corner", "hung_side", "held_armhole", "sleeve_heading", "hand_cover",
+             "worn_sleeve", "sleeve_strap", "chest_cover"}  # these need a whole scene
 
 
 def test_all_are_covered(bed):
