@@ -7,11 +7,12 @@ import numpy as np
 from .cloth_effect import CarrierState, ClothEffect
 from .effect import Parameter
 
-DAMPING = 0.3  # [N s/m] so that the caught place does not ring
+SETTLING = 0.1  # [s] damping over stiffness, so that the caught place does not ring
+MOST_DAMPING = 0.3  # [N s/m]; more would be unstable on a carrier
 
 
 class Snag(ClothEffect):
-    """The carrier nearest to a place in the start pose is held where it is from `t0` to `t1` by a spring."""
+    """The carrier nearest to a place in the start pose is held where it is from `t0` to `t1` by a spring, damped."""
 
     name = "snag"
     parameters = (
@@ -41,5 +42,6 @@ class Snag(ClothEffect):
             self._held.pop(k, None)
             return out
         held = self._held.setdefault(k, state.x[k].copy())
-        out[k] = values["stiffness"] * (held - state.x[k]) - DAMPING * state.v[k]
+        stiffness = values["stiffness"]
+        out[k] = stiffness * (held - state.x[k]) - min(SETTLING * stiffness, MOST_DAMPING) * state.v[k]
         return out

@@ -13,6 +13,7 @@ from .fitting import ClothModel, Free
 from .scene import ClothEpisode, ClothScene
 
 MOMENT = 0.02  # [s] by which the instant of a slip is moved in a fit
+PULL = 0.3  # [N/m] of a snag: a cloth weighs a newton or two
 PATCHES = 7  # places of the cloth where a mass or a snag is tried
 
 
@@ -50,7 +51,13 @@ def _effect(name: str, target: str, zero: dict[str, float], push: dict[str, floa
 
 
 def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[np.ndarray]) -> list[Candidate]:
-    """Every hypothesis for this scene, places and times taken from where the residual is."""
+    """Every hypothesis for this scene, places and times taken from where the residual is.
+
+    Args:
+        scene: the cloth.
+        episodes: recordings.
+        residuals: of the model so far with carriers on the cloth, as every local effect brings them.
+    """
     out = [
         _effect("air_drag", "cloth", {"coefficient": 0.0}, {"coefficient": 1.0}, ("coefficient",)),
         _effect(
@@ -106,17 +113,13 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
     end = float(max(e.t[-1] for e in episodes))
     caught = {a: float(x) for a, x in zip("xyz", scene.vertices[scene.markers[marker]], strict=True)}
     worst = {a: float(x) for a, x in zip("xyz", _worst_place(scene, residuals), strict=True)}
-    for place in (caught, worst) if worst != caught else (caught,):
-        for t1 in (t0 + 0.25 * (end - t0), t0 + 0.6 * (end - t0)):
-            out.append(
-                _effect(
-                    "snag",
-                    "region",
-                    {"stiffness": 0.0, **place, "t0": t0, "t1": t1},
-                    {"stiffness": 3.0, **place, "t0": t0, "t1": t1},
-                    ("stiffness",),
-                )
-            )
+    short, long = t0 + 0.25 * (end - t0), t0 + 0.6 * (end - t0)
+    spots = [{a: float(x) for a, x in zip("xyz", p, strict=True)} for p in places]
+    for place, t1 in [(p, t1) for p in (caught, worst) for t1 in (short, long)] + [(p, long) for p in spots]:
+        span = {**place, "t0": t0, "t1": t1}
+        out.append(
+            _effect("snag", "region", {"stiffness": 0.0, **span}, {"stiffness": PULL, **span}, ("stiffness",))
+        )
     if any(e.pins for e in episodes):
         for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
             slip = _effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",))

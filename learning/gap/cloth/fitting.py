@@ -15,6 +15,7 @@ from ....sim.effects.model_file import EffectEntry
 from .scene import ClothEpisode
 from .simulate import Simulator
 
+ENOUGH = 0.003
 IDLE = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 Free = tuple[str, str]  # (effect name or "physics", parameter)
 
@@ -120,8 +121,15 @@ class ClothFitter:
         """Weighted sum of squares."""
         return float(sum(np.sum((r * self.weights) ** 2) for r in residuals))
 
-    def fit(self, model: ClothModel, steps: dict[Free, float], rounds: int = 3) -> ClothFit:
-        """Gauss-Newton from the model's own values, each step halved until it helps."""
+    def fit(self, model: ClothModel, steps: dict[Free, float], rounds: int = 3, least: float = ENOUGH) -> ClothFit:
+        """Gauss-Newton from the model's own values, each step halved until it helps.
+
+        Args:
+            model: where it starts.
+            steps: finite difference of each free parameter.
+            rounds: at most.
+            least: part of the sum of squares that another round has to have gained.
+        """
         residuals = self.residuals(model)
         best = self.rss(residuals)
         covariance = np.zeros((len(model.free), len(model.free)))
@@ -145,9 +153,32 @@ class ClothFitter:
                 break
             gained = best - rss
             model, residuals, best = tried, left, rss
-            if gained < 0.003 * best:
+            if gained < least * best:
                 break
         return ClothFit(model=model, rss=best, residuals=residuals, covariance=covariance)
+
+    def sized(self, models: list[ClothModel], without: ClothModel, which: Free) -> list[tuple[float, ClothModel]]:
+        """Each model with one size scaled to what the recordings want, by one simulation; best first.
+
+        Args:
+            models: the models.
+            without: the same with that size zero.
+            which: the size.
+
+        Returns:
+            Predicted weighted sum of squares, and the model.
+        """
+        self.sim.ahead([(e, m.acting, m.physics) for m in (without, *models) for e in self.episodes])
+        start = self.flat(self.residuals(without))
+        out = []
+        for model in models:
+            left, factor = scaled_to(start, start - self.flat(self.residuals(model)))
+            out.append((left, model.moved({which: factor * model.value(which)})))
+        return sorted(out, key=lambda pair: pair[0])
+
+    def flat(self, residuals: list[np.ndarray]) -> np.ndarray:
+        """Weighted residuals of all episodes in a row."""
+        return np.concatenate([(r * self.weights).ravel() for r in residuals])
 
     def _columns(self, model: ClothModel, residuals: list[np.ndarray], steps: dict[Free, float]) -> np.ndarray:
         columns = []
@@ -164,6 +195,12 @@ class ClothFitter:
                 / (change if change else 1.0)
             )
         return np.stack(columns, axis=1)
+
+
+def scaled_to(residual: np.ndarray, column: np.ndarray) -> tuple[float, float]:
+    """Sum of squares left once as much of a column as helps is taken out, and how much that is (never negative)."""
+    factor = max(float(column @ residual) / (float(column @ column) + 1e-30), 0.0)
+    return float(np.sum((residual - factor * column) ** 2)), factor
 
 
 def scaled(model: ClothModel, factor: float, start: ClothModel) -> ClothModel:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ....sim.effects.carriers import carrier_count, spread_vertices
 from ....sim.effects.model_file import EffectEntry
-from .fitting import ClothFit, ClothFitter, ClothModel, Free
+from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled_to
 from .scene import ClothScene
 
 NAME = "added_mass"
@@ -40,34 +40,18 @@ def best_patch(fitter: ClothFitter, fit: ClothFit, scene: ClothScene, steps: dic
     without = _placed(fit.model, entry, centre, 0.0, 0.0)
     loaded = [_placed(fit.model, entry, p, each, 0.0) for p in parts]
     fitter.sim.ahead([(e, m.acting, m.physics) for m in loaded for e in fitter.episodes])
-
-    def flat(residuals: list[np.ndarray]) -> np.ndarray:
-        return np.concatenate([(r * fitter.weights).ravel() for r in residuals])
-
-    start = flat(fitter.residuals(without))
-    alone = np.stack([start - flat(fitter.residuals(m)) for m in loaded], axis=1)
+    start = fitter.flat(fitter.residuals(without))
+    alone = np.stack([start - fitter.flat(fitter.residuals(m)) for m in loaded], axis=1)
     ranked = []
     for place, radius, inside in _patches(scene.vertices, parts):
-        left, factor = _left(start, alone[:, inside].mean(axis=1))
+        left, factor = scaled_to(start, alone[:, inside].mean(axis=1))
         ranked.append((left, _placed(fit.model, entry, place, factor * each, radius)))
     ranked.sort(key=lambda x: x[0])
-    close = []
-    for _, model in ranked[:SIMULATED]:
-        mass = model.value((NAME, "mass"))
-        left, factor = _left(start, start - flat(fitter.residuals(model)))
-        close.append((left, model.moved({(NAME, "mass"): factor * mass})))
-    close.sort(key=lambda x: x[0])
     best = fit
-    for _, model in close[:FITTED]:
+    for _, model in fitter.sized([m for _, m in ranked[:SIMULATED]], without, (NAME, "mass"))[:FITTED]:
         tried = fitter.fit(model, steps, rounds=1)
         best = tried if tried.rss < best.rss else best
     return best
-
-
-def _left(residual: np.ndarray, column: np.ndarray) -> tuple[float, float]:
-    """Sum of squares left once as much of a column as helps is taken out, and how much that is."""
-    factor = max(float(column @ residual) / (float(column @ column) + 1e-30), 0.0)
-    return float(np.sum((residual - factor * column) ** 2)), factor
 
 
 def _placed(model: ClothModel, entry: EffectEntry, place: np.ndarray, mass: float, radius: float) -> ClothModel:

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from ....sim.effects.carriers import carrier_count, spread_vertices
-from ....sim.effects.model_file import EffectEntry
 from .candidates import Candidate, candidates
+from .catches import best_catch
 from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .patches import best_patch
@@ -84,7 +83,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     while len(chosen) < MOST and (
         _shares(after) or load_misfit(fit.residuals, loads, m) < 0.01
     ):
-        pool = candidates(scene, episodes, fit.residuals)
+        pool = candidates(scene, episodes, fitter.residuals(replace(fit.model, carried=True)))
         taken = {c.name for c in chosen}
         pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]
         say(f"round {len(chosen) + 1}: {len(pool)} hypotheses, {sim.runs} simulations so far")
@@ -236,18 +235,7 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
     if last.name == "added_mass":
         fit = best_patch(fitter, fit, scene, _steps(chosen))
     if last.name == "snag":
-        entry = next(e for e in fit.model.effects if e.name == last.name)
-        here = np.array([entry.parameters[a] for a in "xyz"])
-        places = scene.vertices[spread_vertices(scene.vertices, carrier_count(len(scene.vertices)), set())]
-        near = places[np.argsort(np.linalg.norm(places - here, axis=1))[:9]]
-        best = fit
-        for place in near:
-            values = {**entry.parameters, **{a: float(x) for a, x in zip("xyz", place, strict=True)}}
-            model = _with(fit.model, EffectEntry(name=last.name, target=entry.target, parameters=values))
-            residuals = fitter.residuals(model)
-            if fitter.rss(residuals) < best.rss:
-                best = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
-        fit = best
+        fit = best_catch(fitter, fit, scene, _steps(chosen))
     if last.name == "grip_slip":  # from the screened instants' spacing down to a few time steps
         away = 0.1 * float(max(e.t[-1] for e in fitter.episodes))
         while away > 0.002:
@@ -258,20 +246,11 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
                 if fitter.rss(residuals) < fit.rss:
                     fit = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
             away *= 0.6
-    if last.name == "snag":
-        free = (*fit.model.free, ("snag", "t0"), ("snag", "t1"))
-        steps = {**_steps(chosen), ("snag", "t0"): 0.15, ("snag", "t1"): 0.15}
-        timed = fitter.fit(replace(fit.model, free=free), steps, rounds=4)
-        fit = replace(timed, model=replace(timed.model, free=fit.model.free))
     if last.name == "strain_stiffening":  # from which stretch on
         free = (*fit.model.free, ("strain_stiffening", "onset"))
         bent = fitter.fit(replace(fit.model, free=free), {**_steps(chosen), ("strain_stiffening", "onset"): 0.02}, 4)
         fit = replace(bent, model=replace(bent.model, free=fit.model.free))
     return fitter.fit(fit.model, _steps(chosen), rounds=3)
-
-
-def _with(model: ClothModel, entry: EffectEntry) -> ClothModel:
-    return replace(model, effects=tuple(entry if e.name == entry.name else e for e in model.effects))
 
 
 def _prune(
