@@ -55,6 +55,20 @@ def collision_checker(skill: Skill) -> CollisionChecker:
     return skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
 
 
+def until_taut(skill: Skill, side: Side, load: float, motion: Iterator[None]) -> Iterator[None]:
+    """Let `motion` go on until the cloth that the hand on `side` carries pulls harder than `load` [N].
+
+    Raises:
+        SkillFailure: MOTION_BLOCKED when the motion does not stop then, and whatever `motion` raises.
+    """
+    for _ in motion:
+        if np.linalg.norm(cloth_load(skill, side)) > load:
+            skill.world.stop()
+            yield from skill.until(skill.context.guard.still, timeout=2.0, reason=Reason.MOTION_BLOCKED)
+            return
+        yield
+
+
 def move_hands(skill: Skill, goals: Mapping[Side, np.ndarray], *, speed: Speed = SPEED, free: FreeAxis = "none",
                way: Way = "line", retreat: bool = False, patience: float = 2.0) -> Iterator[None]:
     """Bring one or both hands to poses.

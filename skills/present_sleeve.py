@@ -12,7 +12,7 @@ from ..perception.estimates import SleeveHeading
 from .arm_path import UP, ArmPath
 from .bedside import outwards
 from .context import Context
-from .hands import cloth_load, hand_now, move_hands
+from .hands import cloth_load, hand_now, move_hands, until_taut
 from .holding import holding
 from .motion.errors import MotionError
 from .ports import Input
@@ -93,22 +93,13 @@ class PresentSleeve(Skill):
         for beyond in BEYOND:
             goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
             try:
-                yield from self._until_taut(move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED),
-                                                       way="either"))
+                motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
+                yield from until_taut(self, self.grip.hand, self.taut, motion)
                 return
             except MotionError as stop:
                 problem = stop
         assert problem is not None
         raise problem
-
-    def _until_taut(self, motion: Iterator[None]) -> Iterator[None]:
-        """Let `motion` go on until the cloth pulls back."""
-        for _ in motion:
-            if np.linalg.norm(cloth_load(self, self.grip.hand)) > self.taut:
-                self.world.stop()
-                yield from self.until(self.context.guard.still, timeout=2.0, reason=Reason.MOTION_BLOCKED)
-                return
-            yield
 
     @classmethod
     def example(cls, context: Context) -> Skill:

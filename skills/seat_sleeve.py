@@ -23,14 +23,13 @@ from .tracking import watch_arm
 
 FARTHEST, TAUT = 0.12, 4.8  # the strap is drawn at most this far [m] and this hard [N]
 SPEED = 0.11  # [m/s]
-TIMES = 2  # an arm that sinks takes the sleeve along, so that it has to be drawn again
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
 SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]
 SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
 
 
 class SeatSleeve(Skill):
-    """Draws the strap on towards the head of the bed, keeps it there while the arm sinks, draws again, and slackens it.
+    """Draws the strap on towards the head of the bed, keeps it there while the arm sinks, and slackens it.
 
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length.  It ends with the hand still closed.
@@ -44,10 +43,9 @@ class SeatSleeve(Skill):
 
     def steps(self) -> Iterator[None]:
         """Draw, hold, slacken."""
-        for _ in range(TIMES):
-            yield from self._draw()
-            self.note(f"holds the {self.grip.arm} sleeve until the arm rests")
-            yield from self._hold()
+        yield from self._draw()
+        self.note(f"holds the {self.grip.arm} sleeve until the arm rests")
+        yield from self._hold()
         self.note(f"slackens the {self.grip.arm} sleeve")
         yield from self._slacken()
 

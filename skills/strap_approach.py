@@ -23,7 +23,7 @@ from .strap_grip import StrapGrip, presenting, strap_grip
 DEPTH = 0.014  # of the fingertips below the cloth [m]
 STANDOFF = 0.10  # the straight way in [m]
 # From the fingertip to where the sleeve is presented first, as far as the arm reaches [m].  It swings out ahead.
-BEYOND = (0.50, 0.40, 0.30)
+BEYOND = (0.36, 0.30)
 _TILTS = np.deg2rad((25.0, 40.0, 55.0, 72.0, 88.0))  # of the approach below the horizontal
 _SIDEWAYS = np.deg2rad(30.0)  # the approach keeps at least this near to the robot's own direction
 _PLACES = (3.3, 2.7, 2.1, 1.5, 1.0, 0.5, 0.0, -0.3)  # of the pull, at which its posture is tried

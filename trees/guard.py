@@ -69,6 +69,7 @@ class GuardedWorld:
         self._arm_until = {side: -np.inf for side in SIDES}  # what the arm itself was last told to do
         self._arm_speed = {side: 0.0 for side in SIDES}
         self._last: Observation | None = None
+        self._heavy_since: dict[Side, float | None] = {side: None for side in SIDES}
         self._fast_since: dict[Side, float | None] = {side: None for side in SIDES}
 
     # -- what skills tell and ask ------------------------------------------------------------------------
@@ -177,13 +178,25 @@ class GuardedWorld:
         for n, side in enumerate(SIDES):
             load = float(np.linalg.norm(seen.wrench_hand_in_map[n, :3]))
             limit = self._load_stop(side)
-            if load >= limit and not self._over[side]:
+            if load >= limit and self._lasts(side, load, seen.time) and not self._over[side]:
                 self._over[side] = True
                 self.stop()
                 detail = f"{load:.1f} N on the {side} hand, limit {limit:g} N"
                 self._fault = Failure(Reason.FORCE_LIMIT, detail, "guard")
-            elif load < limit * self.limits.cloth_load_rearm / self.limits.cloth_load_stop:
+            elif load < limit:
+                self._heavy_since[side] = None
+            if load < limit * self.limits.cloth_load_rearm / self.limits.cloth_load_stop:
                 self._over[side] = False
+
+    def _lasts(self, side: Side, load: float, time: float) -> bool:
+        """Whether a load above the limit counts: the pull of a held arm has to last, or to be far above it."""
+        if self._grip[side] != "arm" or load >= self.limits.arm_load_peak:
+            return True
+        since = self._heavy_since[side]
+        if since is None:
+            self._heavy_since[side] = time
+            return False
+        return time - since > self.limits.arm_load_for
 
     def _judge_speed(self, seen: Observation) -> None:
         last = self._last
@@ -211,6 +224,8 @@ class GuardedWorld:
         load, stop = float(np.linalg.norm(force)), self._load_stop(side)
         if retreat or not np.any(motion) or float(motion @ force) > 0.0:
             return 1.0  # the hand moves the way it is pulled, or away: relief must stay possible
+        if load >= stop and self._grip[side] == "arm" and not self._over[side]:
+            return 0.0  # it waits for the load to fall, or to have lasted too long
         if load >= stop:
             raise SkillFailure(Reason.FORCE_LIMIT, f"{load:.1f} N on the {side} hand, limit {stop:g} N")
         slow = self.limits.cloth_load_slow

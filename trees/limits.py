@@ -19,7 +19,9 @@ class Limits:
         cloth_load_slow: twists that pull against the cloth are scaled down from here [N].
         cloth_load_stop: motion stops and only relieving motion passes from here on [N].
         cloth_load_rearm: the stop is armed again below this [N].
-        arm_load_stop: the same stop while the hand holds the person's arm [N].
+        arm_load_stop: the same stop while the hand holds the person's arm [N], once it has lasted for `arm_load_for`.
+        arm_load_peak: load on such a hand that stops it at once [N].
+        arm_load_for: how long a held arm may pull harder than `arm_load_stop` [s].
         grip_force_arm: squeezing force on the person's arm [N].
         lift_duration: an arm lift lasts at least this long [s].
         lift_height: the lift that `lift_duration` is meant for; their ratio caps the hand's speed [m].
@@ -44,6 +46,8 @@ class Limits:
     cloth_load_stop: float = 18.0
     cloth_load_rearm: float = 14.0
     arm_load_stop: float = 30.0
+    arm_load_peak: float = 45.0
+    arm_load_for: float = 0.4
     grip_force_arm: float = 30.0
     lift_duration: float = 5.0
     lift_height: float = 0.25
@@ -67,6 +71,9 @@ class Limits:
         if not self.cloth_load_slow < self.cloth_load_stop:
             raise CaretreeError(f"cloth_load_slow is {self.cloth_load_slow} N, but must be below "
                                 f"cloth_load_stop, {self.cloth_load_stop} N")
+        if not self.arm_load_stop <= self.arm_load_peak:
+            raise CaretreeError(f"arm_load_stop is {self.arm_load_stop} N, but must not be above "
+                                f"arm_load_peak, {self.arm_load_peak} N")
         if not self.cloth_load_rearm < self.cloth_load_stop:
             raise CaretreeError(f"cloth_load_rearm is {self.cloth_load_rearm} N, but must be below "
                                 f"cloth_load_stop, {self.cloth_load_stop} N")
@@ -86,6 +93,8 @@ SOURCES: dict[str, str] = {
     "cloth_load_stop": "design requirement: stop and back off at 18 N",
     "cloth_load_rearm": "choice: hysteresis, so that one excess counts once",
     "arm_load_stop": "choice: no more pull on a held arm than the grip itself may apply",
+    "arm_load_peak": "choice: the friction of the grip on the arm gives way soon after",
+    "arm_load_for": "choice: with dry friction in its joints a held arm shifts 10 N from one tick to the next",
     "grip_force_arm": "design requirement: at most 30 N of grip on an arm",
     "lift_duration": "design requirement: an arm is lifted for at least 5 s",
     "lift_height": "choice: wrist of a resting arm to the height at which a sleeve passes under it",

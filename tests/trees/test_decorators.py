@@ -55,6 +55,19 @@ def test_recoveries_are_chosen_by_reason(body, recovery, outcome, ran):
         assert "the recovery failed: It took longer than allowed. [shake]" in result.reason
 
 
+def test_reasons_with_the_same_function_share_a_recovery():
+    def build(context):
+        def shake():
+            return Plan("shake", context, outcomes=[True])
+
+        return RecoverBy("grasp", Plan("body", context, outcomes=[Reason.MULTI_LAYER, Reason.ARM_LOST, True]),
+                         dict.fromkeys((Reason.MULTI_LAYER, Reason.ARM_LOST), shake), attempts=3)
+
+    run = run_of(build)
+    assert run.run().outcome == "success"
+    assert [(leaf.name, leaf.rounds) for leaf in run.root.children[1:]] == [("shake", 2)]
+
+
 def test_timeout_uses_the_worlds_clock_and_stops_the_body():
     def build(context):
         return fallback("f", Timeout("in time", Plan("slow", context, outcomes=[True], ticks=100), seconds=1.0),

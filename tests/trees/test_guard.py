@@ -217,6 +217,17 @@ def test_an_arm_in_the_hand_has_its_own_load_limit():
     guard.check()
     assert guard.take_fault() is None
     world.load["left"] = np.array((0, 0, -31.0, 0, 0, 0))
+    assert speed(guard.send(twist(z=0.04))) == 0.0, "it goes no farther"
+    assert guard.take_fault() is None, "a held arm's load jumps"
+    world.clock.wait_until(0.5)
+    guard.check()
+    assert guard.take_fault().reason == Reason.FORCE_LIMIT
+
+
+def test_a_held_arm_that_pulls_very_hard_stops_everything_at_once():
+    world, guard = make(near=False)
+    guard.declare_grip("left", "arm")
+    world.load["left"] = np.array((0, 0, -46.0, 0, 0, 0))
     guard.check()
     assert guard.take_fault().reason == Reason.FORCE_LIMIT
 

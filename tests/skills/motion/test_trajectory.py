@@ -5,9 +5,9 @@ from caretree.sim.robot.collision import CollisionChecker
 from caretree.sim.robot.kinematics import Kinematics
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import MotionBlocked, Unreachable
-from caretree.skills.motion.ik import hand_pose
+from caretree.skills.motion.ik import hand_pose, solve_ik
 from caretree.skills.motion.reach import plan_arms, plan_hand_line, plan_reach
-from caretree.skills.motion.trajectory import plan_joint_motion
+from caretree.skills.motion.trajectory import free_postures, plan_joint_motion
 
 BASE = np.array((0.95, -0.2, np.pi))
 BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
@@ -152,3 +152,16 @@ def test_no_way_out_of_a_box_is_told(kinematics):
     inside = CollisionChecker(kinematics, np.array(((hand - 0.3, hand + 0.3),)))
     with pytest.raises(MotionBlocked, match="already touch"):
         plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, checker=inside)
+
+
+def test_an_arm_may_move_beside_another_that_touches_already(kinematics):
+    """Velocity control brings a lifting arm's elbow within the margin of the head; the other arm has to go on."""
+    base, checker = np.array((1.05, -0.38, np.pi)), CollisionChecker(kinematics, BED)
+    lifted = hand_pose(np.array((0.37, -0.33, 0.93)), np.array((0.0, 0.0, -1.0)), np.array((0.6, 0.8, 0.0)))
+    arms = model.READY.copy()
+    arms[0] = solve_ik(kinematics, "left", lifted, base, arms[0])
+    assert checker.collisions(base, arms), "the posture touches"
+    free = free_postures(checker, "right", base, arms)
+    assert free(arms[1])
+    inside = hand_pose(np.array((0.30, 0.05, 0.45)), np.array((0.0, 0.0, -1.0)))
+    assert not free(solve_ik(kinematics, "right", inside, base, arms[1], free="approach")), "the bed is in the way"
