@@ -13,14 +13,14 @@ import numpy as np
 from .measure import coverage, garment_error, median_interval, relative_errors
 from .methods import TITLES
 from .parameters import NAMES, SHOWN, to_values
-from .study import Study
+from .study import Study, predictions
 from .training import machine
 
 
 def rows_of(study: Study) -> list[dict[str, Any]]:
     """One row for each test, method and seed, from the predictions kept."""
     rows = []
-    for test, method, seed, kept in study.predictions():
+    for test, method, seed, kept in predictions(study.folder):
         true, estimated = to_values(kept["true"]), to_values(kept["unit"])
         median, low, high = median_interval(garment_error(true, estimated, list(SHOWN)))
         row: dict[str, Any] = {

@@ -62,6 +62,8 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("study", metavar="DIR", help="folder that `evaluate` wrote to")
     p.add_argument("data", metavar="DATA", help="the data set it was trained on")
     p.add_argument("--out", required=True, metavar="DIR", help="folder for the pictures")
+    p.add_argument("--also", action="append", default=[], metavar="DIR", help="another study, for the box plot")
+    p.add_argument("--weights", metavar="FILE", help="to identify the scene's gowns, instead of those in the package")
     p.add_argument("--partial", action="store_true", help="take what is there of an unfinished data set")
     return top
 
@@ -83,8 +85,10 @@ def main(argv: list[str]) -> int:
     torch.set_num_threads(1)  # clips are small: more threads only wait for each other
     if options.command == "pictures":
         from .pictures import draw
+        from .weights import PACKAGED
 
-        for path in draw(Path(options.study), Path(options.data), Path(options.out), partial=options.partial):
+        for path in draw(Path(options.study), Path(options.data), Path(options.out), partial=options.partial,
+                         also=[Path(one) for one in options.also], weights=Path(options.weights or PACKAGED)):
             print(path)
         return 0
     return _study(options)

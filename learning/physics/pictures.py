@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
+from ...sim.errors import CaretreeError
 from ...sim.gown import GOWNS, GownSpec
 from .backbone import embed
 from .clip import Clip
@@ -22,9 +23,9 @@ from .measure import garment_error
 from .methods import TITLES, Plan
 from .parameters import BASE, NAMES, SHOWN, to_spec, to_unit, to_values, values_to_unit
 from .strip import write_strip
-from .study import Study
+from .study import Study, predictions
 from .training import Budget
-from .weights import load_weights
+from .weights import PACKAGED, load_weights
 
 CLASSES = 50  # of the t-SNE, as in the paper's figure
 CLIPS = 1200
@@ -42,25 +43,47 @@ def scene_clips() -> dict[str, Clip]:
     return {name: film(spec, engine="bullet") for name, spec in scene_gowns().items()}
 
 
-def draw(study: Path, data: Path, out: Path, *, partial: bool = False) -> Iterator[Path]:
-    """Draw all pictures of a finished study; yields each path as it is written."""
+def draw(study: Path, data: Path, out: Path, *, also: Sequence[Path] = (), weights: Path = PACKAGED,
+         partial: bool = False) -> Iterator[Path]:  # fmt: skip
+    """Draw all pictures of a finished study; yields each path as it is written.
+
+    Args:
+        study: folder that `evaluate` wrote to.
+        data: what it was trained on.
+        out: folder for the pictures.
+        also: more studies, for the box plot.
+        weights: what the scene's gowns are identified with.
+        partial: take what is there of unfinished data.
+
+    Raises:
+        CaretreeError: a folder holds no study.
+    """
     out.mkdir(parents=True, exist_ok=True)
-    results = json.loads((study / "results.json").read_text(encoding="utf-8"))
-    loaded = load_examples(data, study, partial=partial)
-    yield box_plot(study, loaded, results, out / "garment-physics-errors.png")
-    yield map_of_clips(study, loaded, results, out / "garment-physics-map.png")
-    yield strips(study, out / "garment-physics-strips.png")
+    results = _results(study)
+    yield box_plot((study, *also), out / "garment-physics-errors.png")
+    yield map_of_clips(study, load_examples(data, study, partial=partial), results, out / "garment-physics-map.png")
+    yield strips(weights, out / "garment-physics-strips.png")
 
 
-def box_plot(study: Path, loaded: Loaded, results: dict, path: Path) -> Path:
-    """M_eg of every method on each test, on a logarithmic axis."""
+def _results(study: Path) -> dict:
+    path = study / "results.json"
+    if not path.is_file():
+        raise CaretreeError(f"{study}: there is no study here; `caretree learn physics evaluate DATA --out {study}` "
+                            "makes one")
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def box_plot(studies: Sequence[Path], path: Path) -> Path:
+    """M_eg of every method on each test of each study, on a logarithmic axis."""
     from matplotlib.figure import Figure
 
-    plan = Plan(steps=results["steps"], backbone=results["backbone"], folder=study, say=lambda _: None)
     errors: dict[str, dict[str, list[np.ndarray]]] = defaultdict(lambda: defaultdict(list))
-    for test, method, _, kept in Study(data=loaded, tests={}, plan=plan, seeds=(0,)).predictions():
-        errors[test][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
-    figure = Figure(figsize=(4.2 * len(errors), 3.6))
+    for study in studies:
+        kind = _results(study)["data"]["kind"]
+        for test, method, _, kept in predictions(study):
+            title = test if test == kind else f"{test}, trained on {kind}"
+            errors[title][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
+    figure = Figure(figsize=(3.4 * len(errors) + 0.6, 3.8))
     for axis, (test, methods) in zip(np.atleast_1d(figure.subplots(1, len(errors), sharey=True)), errors.items(),
                                      strict=True):  # fmt: skip
         names = [name for name in TITLES if name in methods]
@@ -109,9 +132,9 @@ def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path
     return path
 
 
-def strips(study: Path, path: Path) -> Path:
+def strips(weights: Path, path: Path) -> Path:
     """Clips of the scene's gowns, each above the clip simulated with what was identified from it."""
-    method, _ = load_weights(study / "ours.safetensors")
+    method, _ = load_weights(weights)
     rows = []
     for name, clip in scene_clips().items():
         found = identify(clip, method, name)

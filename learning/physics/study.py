@@ -72,16 +72,20 @@ class Study:
                 method, calibrated_on = kept, record["calibrated_on"]
         if method is None:
             method = fit_ours(self.data.part("train"), self.data.part("val"), seed=self.seeds[0], shown=SHOWN)
+            self._save(method, path, {})  # what follows takes much longer than the fit, and may be interrupted
         elif calibrated_on == wanted:
             return method
         for name, loaded, behind in (("val", self.data, ""), ("cuts", self.cuts, OTHER)):
             if loaded is not None:
                 self._calibrate(name, loaded, behind, method, say)
+        self._save(method, path, wanted)
+        return method
+
+    def _save(self, method: Ours, path: Path, calibrated_on: dict[str, object]) -> None:
         save_weights(method, path, {
             "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
-            "clips": int((self.data.split == "train").sum()), "calibrated_on": wanted, "machine": machine(),
+            "clips": int((self.data.split == "train").sum()), "calibrated_on": calibrated_on, "machine": machine(),
         })  # fmt: skip
-        return method
 
     def _calibrate(self, name: str, loaded: Loaded, behind: str, method: Ours, say: Callable[[str], None]) -> None:
         index = loaded.where("val")
@@ -192,10 +196,11 @@ class Study:
         np.savez(part, allow_pickle=False, **{"true": true, **arrays})
         os.replace(part, path)
 
-    def predictions(self) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
-        """Test, method, seed and arrays (`true`, `unit`, and of ours `lower`, `upper`) of all that is kept."""
-        for path in sorted((self.folder / "predictions").glob("*.npz")):
-            test, method, *_, seed = path.stem.split("-")
-            if method != "piece" and len(path.suffixes) == 1:  # no part of a file, and no file cut short
-                with np.load(path) as file:
-                    yield test, method, int(seed), dict(file)
+
+def predictions(folder: Path) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
+    """What a study's folder keeps: test, method, seed and arrays (`true`, `unit`, and of ours `lower`, `upper`)."""
+    for path in sorted((folder / "predictions").glob("*.npz")):
+        test, method, *_, seed = path.stem.split("-")
+        if method != "piece" and len(path.suffixes) == 1:  # no part of a file, and no file cut short
+            with np.load(path) as file:
+                yield test, method, int(seed), dict(file)

@@ -1,4 +1,5 @@
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,10 @@ from caretree.learning.physics.examples import Loaded  # noqa: E402
 from caretree.learning.physics.measure import coverage, garment_error, median_interval  # noqa: E402
 from caretree.learning.physics.methods import TITLES, Plan  # noqa: E402
 from caretree.learning.physics.parameters import NAMES  # noqa: E402
+from caretree.learning.physics.pictures import box_plot  # noqa: E402
 from caretree.learning.physics.study import Study  # noqa: E402
+from caretree.sim.errors import CaretreeError  # noqa: E402
+from matplotlib.image import imread  # noqa: E402
 
 from .moving_blobs import blob_frames, blobs  # noqa: E402
 
@@ -95,3 +99,28 @@ def test_predictions_from_other_data_are_forgotten(study):
     grown.run(lambda _: None, ("manual",))
     assert not kept.exists()
     assert len(before) == 12
+
+
+def test_an_interrupted_calibration_keeps_the_fit(study, monkeypatch):
+    def killed(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as before:
+        before.setattr(BlobSimulator, "__call__", killed)
+        with pytest.raises(KeyboardInterrupt):
+            study.run(lambda _: None, ("ours",))
+    monkeypatch.setattr(study_module, "fit_ours", killed)
+    study.run(lambda _: None, ("ours",))
+    assert (study.folder / "predictions" / "uniform-ours_simulated-0.npz").exists()
+
+
+def test_box_plot_shows_each_test_of_several_studies(study, tmp_path):
+    study.run(lambda _: None, ("random",))
+    path = write_results(study)
+    second = tmp_path / "second"
+    shutil.copytree(study.folder / "predictions", second / "predictions")
+    (second / "results.json").write_text(path.read_text().replace('"kind": "uniform"', '"kind": "mixed"'))
+    one, two = (imread(box_plot(some, tmp_path / "errors.png")) for some in ([study.folder], [study.folder, second]))
+    assert two.shape[1] > 1.8 * one.shape[1]
+    with pytest.raises(CaretreeError, match="there is no study"):
+        box_plot([tmp_path / "none"], tmp_path / "errors.png")
