@@ -21,7 +21,7 @@ class Compression:
 
     Attributes:
         mean: (D,) float32 of the flattened frames.
-        components: (D, K) float32, orthonormal.
+        components: (D, K) float32, orthogonal, each as whole numbers up to 127, which take one byte to keep.
         scale: (K,) what each score is multiplied by.
     """
 
@@ -58,6 +58,7 @@ def fit_compression(frames: np.ndarray, count: int, seed: int = 0) -> Compressio
     squares, mixes = squares[::-1], mixes[:, ::-1]
     real = squares > LEAST**2 * squares[0]
     length, mixes = np.sqrt(squares[real]), mixes[:, real]
-    components = (flat.T @ (mixes / length).astype(np.float32)).astype(np.float16).astype(np.float32)
+    components = flat.T @ (mixes / length).astype(np.float32)
+    step = np.abs(components).max(axis=0) / 127.0
     spread = length / len(flat) ** 0.5 + 1e-9
-    return Compression(mean=mean, components=components, scale=1.0 / np.sqrt(spread * spread.sum()))
+    return Compression(mean=mean, components=np.rint(components / step), scale=step / np.sqrt(spread * spread.sum()))

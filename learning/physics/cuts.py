@@ -1,7 +1,7 @@
 """Cuts of gowns other than the scene's usual one.
 
-A cut (sizes of the panels, armholes and sleeves) is known when a gown is hung up; its cloth is not.  So a method may be
-told the cut, and is tested on one that nothing was trained on.
+A cut (sizes of the panels, armholes and sleeves) is known when a gown is hung up; its cloth is not.  So a method may
+simulate the right cut.  It learns from many random ones, and is tested on more of them and on one that is kept.
 """
 
 from __future__ import annotations
@@ -13,8 +13,6 @@ import numpy as np
 from ...sim.gown import GownSpec
 
 FIELDS = ("spacing", "front", "back", "hole", "strap", "length", "sleeve")  # of a gown, all that its cut consists of
-FALLS_PER_CUT = 10  # of the dataset `cuts`
-
 
 def same_cut(one: GownSpec, other: GownSpec) -> bool:
     """Whether two gowns differ in their cloth at most."""

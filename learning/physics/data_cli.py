@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 SIZES = {"paper": (100, 60), "uniform": (1, 6000), "heldout_gown": (1, 300), "disturbed": (1, 300),
-         "mixed": (1, 24000), "cuts": (1, 400)}
+         "mixed": (1, 24000), "cuts": (1, 4000)}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("--kind", choices=tuple(SIZES), default="paper")
     data.add_argument("--classes", type=int, metavar="N", help="of kind paper (default 100)")
     data.add_argument("--per-class", type=int, metavar="N",
-                      help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 400, "
+                      help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 4000, "
                            "others 300)")
     data.add_argument("--seed", type=int, default=0, metavar="N")
     data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")

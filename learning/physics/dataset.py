@@ -16,7 +16,7 @@ import yaml
 from ...sim.errors import CaretreeError
 from ...sim.gown import GOWNS, GownSpec
 from .clip import FRAMES, SIZE, unpacked
-from .cuts import FALLS_PER_CUT, HELDOUT_GOWN, random_cut
+from .cuts import HELDOUT_GOWN, random_cut
 from .film_camera import misplacement
 from .parameters import HIGH, LOW, NAMES
 
@@ -72,7 +72,7 @@ class DatasetSpec:
         if self.kind == "heldout_gown":
             return HELDOUT_GOWN
         if self.kind == "cuts":
-            return random_cut(self.seed, index // self.views // FALLS_PER_CUT)
+            return random_cut(self.seed, index // self.views)
         return GOWNS["medium"]
 
     def class_of(self, index: int) -> int:
@@ -135,8 +135,7 @@ KINDS = {
     "heldout_gown": Kind(2, "uniform, one cut that nothing is trained on", split="test"),
     "disturbed": Kind(3, "uniform, noise, holes and a misplaced camera", split="test"),
     "mixed": Kind(1, "the falls of `uniform`, each filmed as it is and three times disturbed", views=4),
-    "cuts": Kind(5, "uniform, ten falls of each of many cuts, each filmed as it is and disturbed", views=2,
-                 split="val"),
+    "cuts": Kind(6, "uniform, each fall of another random cut, filmed as it is and disturbed", views=2),
 }
 
 

@@ -35,8 +35,8 @@ def rows_of(study: Study) -> list[dict[str, Any]]:
             row["coverage_shown"] = float(inside[list(SHOWN)].mean())
             width = np.median(to_values(kept["upper"]) / to_values(kept["lower"]), axis=0)
             row["interval_ratio"] = dict(zip(NAMES, width.tolist(), strict=True))
-        # the same clips as those that were simulated again, for a fair comparison
-        row["median_first"] = float(np.median(garment_error(true, estimated, list(SHOWN))[: study.simulate]))
+        if study.simulate:  # the same clips as those that were simulated again, for a fair comparison
+            row["median_first"] = float(np.median(garment_error(true, estimated, list(SHOWN))[: study.simulate]))
         rows.append(row)
     return rows
 
@@ -65,8 +65,8 @@ def table(results: dict[str, Any]) -> str:
         grouped[row["test"]][row["method"]].append(row)
     out = []
     for test, methods in grouped.items():
-        head = ["method", "M_eg, shown parameters", f"first {results['simulated']} clips", "all six", *NAMES,
-                "90 % intervals hold"]
+        first = [f"first {results['simulated']} clips"] if results["simulated"] else []
+        head = ["method", "M_eg, shown parameters", *first, "all six", *NAMES, "90 % intervals hold"]
         out += [f"### {test}", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
         for name, title in TITLES.items():
             if name in methods:
@@ -82,8 +82,8 @@ def _line(title: str, rows: list[dict[str, Any]]) -> str:
              else f" ({_percent(rows[0]['low'])} to {_percent(rows[0]['high'])})")
     each = [_percent(float(np.mean([row["parameters"][name] for row in rows]))) for name in NAMES]
     held = f"{100 * rows[0]['coverage_shown']:.0f} %" if "coverage_shown" in rows[0] else ""
-    first, everything = (_percent(float(np.mean([row[k] for row in rows]))) for k in ("median_first", "median_all"))
-    return f"| {' | '.join([title, text, first, everything, *each, held])} |"
+    means = [_percent(float(np.mean([row[k] for row in rows]))) for k in ("median_first", "median_all") if k in rows[0]]
+    return f"| {' | '.join([title, text, *means, *each, held])} |"
 
 
 def _percent(share: float) -> str:

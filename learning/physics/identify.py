@@ -14,9 +14,11 @@ from .clip import Clip
 from .cuts import same_cut
 from .film_camera import FilmCamera
 from .frames import look_at
-from .ours import OTHER, Ours
+from .ours import Ours
 from .parameters import NAMES, PARAMETERS, to_values
 from .simulator import Simulator
+
+HOPELESS = 1.0  # misfit, in scores, of clips of two gowns that have nothing in common; good ones stay below 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,25 +68,25 @@ def identify(clip: Clip, method: Ours, cut: str = "medium", *, simulate: bool = 
         method: fitted, see weights.py.
         cut: the gown's cut, a name in `GOWNS`: its size is seen before it is hung up, its cloth is not.
         simulate: whether to correct the answer by simulating it (unless the intervals are not calibrated).
-        trained: a gown of the cut that the method was trained on: others get wider intervals.
+        trained: a gown of the usual cut, that most clips trained on show.
 
     Raises:
-        CaretreeError: unknown cut.
+        CaretreeError: unknown cut, or a clip that no gown of this cut explains.
     """
     if cut not in GOWNS:
         raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
     camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
     seen = look_at(clip.depth[None])
-    inversion = method.sort(bool(seen.rough[0]))
-    ways = ("simulated", "alone") if simulate else ("alone",)
-    if not same_cut(GOWNS[cut], trained):
-        ways = (*(way + OTHER for way in ways), *ways)
-    way = next(way for way in ways if way in inversion.widths)  # whose intervals are calibrated
-    if way.startswith("simulated"):
+    inversion = method.sort(bool(seen.rough[0]), not same_cut(GOWNS[cut], trained))
+    way = "simulated" if simulate and "simulated" in inversion.widths else "alone"  # intervals must be calibrated
+    if way == "simulated":
         raw = inversion.simulated(seen.frames, Simulator(GOWNS[cut], camera))
     else:
         raw = inversion.alone(seen.frames)
     found = inversion.judged(way, *raw)
+    if way == "simulated" and found.misfit[0] > HOPELESS:
+        raise CaretreeError(f"no falling gown of the cut '{cut}' looks like this clip: even the nearest one is as far "
+                            "off as any gown is")
     usual = inversion.widths[way].after.usual_misfit
     values = to_values(found.unit[0])
     lower, upper = (np.where(end == found.unit[0], values, to_values(end)) for end in (found.lower[0], found.upper[0]))

@@ -69,7 +69,7 @@ class Inversion:
         compression: frames -> scores.
         process: scores -> parameters and, of rough clips, six camera errors in `CAMERA_UNIT`.
         prior: classes of the parameters, if any.
-        widths: calibrations by way: `alone`, `simulated`, and both with `_other` behind for cuts not trained on.
+        widths: calibrations by way: `alone`, `simulated`.
         shown: indices of the parameters that a clip shows; simulating again moves only these.
     """
 

@@ -42,7 +42,7 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("data", metavar="DATA", help="data set with parts train, val and test")
         p.add_argument("--out", required=True, metavar="DIR", help="weights, predictions and results; resumable")
         p.add_argument("--test", action="append", default=[], metavar="DATA", help="another test set; may be repeated")
-        p.add_argument("--cuts", metavar="DATA", help="clips of other cuts, which set the intervals' widths for these")
+        p.add_argument("--cuts", metavar="DATA", help="clips of other cuts, learned from and tested too")
         p.add_argument("--method", action="append", default=[], choices=METHODS, help="only this one; may be repeated")
         p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
         p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")

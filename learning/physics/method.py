@@ -41,9 +41,16 @@ class Examples:
     def part(self, chosen: np.ndarray) -> Examples:
         """The chosen clips (indices or a mask)."""
         index = np.flatnonzero(chosen) if chosen.dtype == bool else chosen
+        known = {name: getattr(self, name) for name in ("rough", "misplaced")}
+        some = {name: array[index] for name, array in known.items() if array is not None}
         return Examples(frames=self.frames[index], unit=self.unit[index], class_id=self.class_id[index],
-                        hash=self.hash, rough=None if self.rough is None else self.rough[index],
-                        misplaced=None if self.misplaced is None else self.misplaced[index])
+                        hash=self.hash, **some)
+
+    def joined(self, others: Examples) -> Examples:
+        """These clips and others; of what is known of them, what a network learns from."""
+        return Examples(frames=np.concatenate([self.frames, others.frames]), hash=f"{self.hash}+{others.hash}",
+                        unit=np.concatenate([self.unit, others.unit]),
+                        class_id=np.concatenate([self.class_id, others.class_id]))
 
 
 class Method(ABC):

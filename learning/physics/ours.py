@@ -1,7 +1,8 @@
-"""Ours: an inversion (inversion.py) for each sort of clips that was trained on, clean ones and rough ones.
+"""Ours: an inversion (inversion.py) for each sort of clips that was trained on.
 
 Rough clips have the gaps of a real camera, which is seen from the clip itself (mend.py).  They want another compression
 and another process than rendered clips: noise hides small motions, and the camera is not quite where the clip says.
+Gowns of other cuts than the usual one hang and fall differently: they want processes that learned from many cuts.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ import numpy as np
 from .inversion import Estimate, Film, Inversion, fit_inversion
 from .method import Examples, Method
 
-OTHER = "_other"  # behind the name of a way: the clip shows a cut that was not trained on
 LEAST = 20  # clips of a sort, below which nothing is fitted to it
+SORTS = {(False, False): "clean", (True, False): "rough", (False, True): "clean_other", (True, True): "rough_other"}
+"""Whether clips are rough, and of another cut -> what such clips are called."""
 
 Films = Callable[[np.ndarray], Film]
 """Indices of clips (M,) -> what simulates their gowns, in this order."""
@@ -25,26 +27,26 @@ class Ours(Method):
     """The fitted method.
 
     Args:
-        clean: for clips without gaps.
-        rough: for clips with gaps; None: nothing was trained on such.
+        inversions: for the sorts of clips in `SORTS` that were trained on; `clean` is one of them.
     """
 
     name = "ours"
 
-    def __init__(self, clean: Inversion, rough: Inversion | None = None) -> None:
-        self.clean, self.rough = clean, rough
+    def __init__(self, inversions: dict[str, Inversion]) -> None:
+        self.inversions = inversions
 
-    def sort(self, rough: bool) -> Inversion:
-        """The inversion that reads such clips."""
-        return self.rough if rough and self.rough is not None else self.clean
+    def sort(self, rough: bool, other: bool = False) -> Inversion:
+        """The inversion that reads clips that are rough or not, of another cut or not, or the next best one."""
+        wanted = ((rough, other), (rough, False), (False, other), (False, False))
+        return next(self.inversions[SORTS[sort]] for sort in wanted if SORTS[sort] in self.inversions)
 
-    def raw(self, clips: Examples, films: Films | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def raw(self, clips: Examples, films: Films | None = None, *, other: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Parameters (N, P) and misfits (N,) before the prior, corrected by simulation where `films` are given."""
         unit, misfit = np.empty_like(clips.unit), np.empty(len(clips))
         for rough in (False, True):
             index = np.flatnonzero(clips.gaps == rough)
             if len(index):
-                inversion = self.sort(rough)
+                inversion = self.sort(rough, other)
                 if films is None:
                     unit[index], misfit[index] = inversion.alone(clips.frames[index])
                     continue
@@ -52,18 +54,17 @@ class Ours(Method):
                     unit[one], misfit[one] = inversion.simulated(clips.frames[one], films(one))
         return unit, misfit
 
-    def judged(self, way: str, rough: np.ndarray, unit: np.ndarray, misfit: np.ndarray) -> Estimate:
+    def judged(self, way: str, rough: np.ndarray, unit: np.ndarray, misfit: np.ndarray, *,
+               other: bool = False) -> Estimate:  # fmt: skip
         """The prior and intervals added to what `raw` found of clips that are rough or not, (N,).
 
-        The way is `alone` or `simulated`, with `OTHER` behind it where that was calibrated.
+        The way is `alone` or `simulated`.
         """
         parts = {name: np.empty_like(unit) for name in ("unit", "lower", "upper")}
         for sort in (False, True):
             index = np.flatnonzero(rough == sort)
             if len(index):
-                inversion = self.sort(sort)
-                known = way if way in inversion.widths else way.removesuffix(OTHER)
-                found = inversion.judged(known, unit[index], misfit[index])
+                found = self.sort(sort, other).judged(way, unit[index], misfit[index])
                 for name, part in parts.items():
                     part[index] = getattr(found, name)
         return Estimate(misfit=misfit, **parts)
@@ -74,19 +75,33 @@ class Ours(Method):
         Args:
             clips: of which only the frames and the sort are looked at.
             films: make a simulator of the gowns of some of these clips; None: the processes alone.
-            other: whether these gowns have a cut that was not trained on.
+            other: whether these gowns have another cut than the usual one.
         """
-        way = ("alone" if films is None else "simulated") + (OTHER if other else "")
-        return self.judged(way, clips.gaps, *self.raw(clips, films))
+        found = self.raw(clips, films, other=other)
+        return self.judged("alone" if films is None else "simulated", clips.gaps, *found, other=other)
 
     def estimate(self, frames: Any) -> np.ndarray:
-        """Parameters of clean clips, by the process alone."""
-        return self.clean.judged("alone", *self.clean.alone(frames)).unit
+        """Parameters of clean clips of the usual cut, by the process alone."""
+        clean = self.sort(False)
+        return clean.judged("alone", *clean.alone(frames)).unit
 
 
-def fit_ours(train: Examples, valid: Examples, *, seed: int, shown: tuple[int, ...]) -> Ours:
-    """Fit everything; the intervals of the corrected estimates still want `set_widths`."""
-    def fit(rough: bool) -> Inversion:
-        return fit_inversion(train.part(train.gaps == rough), valid.part(valid.gaps == rough), seed=seed, shown=shown)
+def fit_ours(train: Examples, valid: Examples, others: tuple[Examples, Examples] | None = None, *, seed: int,
+             shown: tuple[int, ...]) -> Ours:  # fmt: skip
+    """Fit everything; the intervals of the corrected estimates still want `set_widths`.
 
-    return Ours(fit(False), fit(True) if min(train.gaps.sum(), valid.gaps.sum()) >= LEAST else None)
+    Args:
+        train: clips of the usual cut.
+        valid: more of them, for the intervals.
+        others: both of other cuts, if any.
+        seed: of what is drawn.
+        shown: indices of the parameters that a clip shows.
+    """
+    inversions = {}
+    for (rough, other), name in SORTS.items():
+        if other and others is None:
+            continue
+        learn, check = (part.part(part.gaps == rough) for part in (others if other and others else (train, valid)))
+        if name == "clean" or min(len(learn), len(check)) >= LEAST:
+            inversions[name] = fit_inversion(learn, check, seed=seed, shown=shown)
+    return Ours(inversions)

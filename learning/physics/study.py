@@ -17,7 +17,7 @@ from .examples import Loaded
 from .inversion import SCORES
 from .method import Examples
 from .methods import NETWORKS, Plan, fit_network
-from .ours import OTHER, Ours, fit_ours
+from .ours import SORTS, Ours, fit_ours
 from .parameters import SHOWN, values_to_unit
 from .simulator import Simulator
 from .training import machine
@@ -38,7 +38,7 @@ class Study:
         seeds: of the trainings.
         simulate: clips of each test that are corrected by simulation, which takes more than half a second each.
         calibrate: validation clips of each sort that set the intervals' widths for these.
-        cuts: clips of other cuts, which set the widths for gowns of a cut that was not trained on.
+        cuts: clips of many other cuts; all methods learn from their part `train` too, and the others are used likewise.
     """
 
     data: Loaded
@@ -58,49 +58,53 @@ class Study:
         """What the networks are given of clips: tensors of frames, or of scores where that is the backbone."""
         if self.plan.backbone != "scores":
             return lambda clips: replace(clips, frames=torch.from_numpy(clips.frames))
-        compression = fit_compression(self.data.part("train").frames, SCORES)
+        compression = fit_compression(self.train().frames, SCORES)
         return lambda clips: replace(clips, frames=torch.from_numpy(compression(clips.frames)).float())
+
+    def train(self) -> Examples:
+        """What the networks learn from."""
+        own = self.data.part("train")
+        return own.joined(self.cuts.part("train")) if self.cuts else own
+
+    @property
+    def hash(self) -> str:
+        """Of all data that is learned from."""
+        return self.data.examples.hash + (f"+{self.cuts.examples.hash}" if self.cuts else "")
 
     def ours(self, say: Callable[[str], None]) -> Ours:
         """Our method, fitted and calibrated, or as it was left in the folder."""
         path = self.folder / "ours.safetensors"
-        method, calibrated_on = None, {}
-        wanted = {"clips": self.calibrate, "cuts": self.cuts.examples.hash if self.cuts else None}
+        method, calibrated_on = None, 0
         if path.exists():
             kept, record = load_weights(path)
-            if record["data"] == self.data.examples.hash:
+            if record["data"] == self.hash:
                 method, calibrated_on = kept, record["calibrated_on"]
         if method is None:
-            method = fit_ours(self.data.part("train"), self.data.part("val"), seed=self.seeds[0], shown=SHOWN)
-            self._save(method, path, {})  # what follows takes much longer than the fit, and may be interrupted
-        elif calibrated_on == wanted:
-            return method
-        for name, loaded, behind in (("val", self.data, ""), ("cuts", self.cuts, OTHER)):
-            if loaded is not None:
-                self._calibrate(name, loaded, behind, method, say)
-        self._save(method, path, wanted)
+            others = (self.cuts.part("train"), self.cuts.part("val")) if self.cuts else None
+            method = fit_ours(self.data.part("train"), self.data.part("val"), others, seed=self.seeds[0], shown=SHOWN)
+            self._save(method, path, 0)  # what follows takes much longer than the fit, and may be interrupted
+        if self.calibrate and calibrated_on != self.calibrate:
+            self._calibrate(method, say)
+            self._save(method, path, self.calibrate)
         return method
 
-    def _save(self, method: Ours, path: Path, calibrated_on: dict[str, object]) -> None:
+    def _save(self, method: Ours, path: Path, calibrated_on: int) -> None:
+        clips = sum(int((one.split == "train").sum()) for one in (self.data, self.cuts) if one)
         save_weights(method, path, {
-            "method": "ours", "data": self.data.examples.hash, "kind": self.data.kind, "seed": self.seeds[0],
-            "clips": int((self.data.split == "train").sum()), "calibrated_on": calibrated_on, "machine": machine(),
+            "method": "ours", "data": self.hash, "kind": self.data.kind, "seed": self.seeds[0],
+            "clips": clips, "calibrated_on": calibrated_on, "machine": machine(),
         })  # fmt: skip
 
-    def _calibrate(self, name: str, loaded: Loaded, behind: str, method: Ours, say: Callable[[str], None]) -> None:
-        index = loaded.where("val")
-        for rough in (False, True):
-            sort = index[loaded.examples.gaps[index] == rough]
-            if not len(sort) or (rough and method.rough is None):
+    def _calibrate(self, method: Ours, say: Callable[[str], None]) -> None:
+        for (rough, other), name in SORTS.items():
+            loaded = self.cuts if other else self.data
+            if name not in method.inversions or loaded is None:
                 continue
-            inversion = method.sort(rough)
-            clips = loaded.examples.part(sort)
-            if behind:
-                inversion.set_widths("alone" + behind, clips.unit, *inversion.alone(clips.frames))
-            if self.calibrate:
-                some = np.random.default_rng(0).permutation(sort)[: self.calibrate]  # more later keep these
-                found = self._simulated(f"{name}_{'rough' if rough else 'clean'}", loaded, some, method, say)
-                inversion.set_widths("simulated" + behind, loaded.examples.unit[some], *found)
+            index = loaded.where("val")
+            sort = index[loaded.examples.gaps[index] == rough]
+            some = np.random.default_rng(0).permutation(sort)[: self.calibrate]  # more later keep these
+            found = self._simulated(f"widths_{name}", loaded, some, method, say)
+            method.inversions[name].set_widths("simulated", loaded.examples.unit[some], *found)
 
     def test_sets(self) -> Iterator[tuple[str, Loaded, np.ndarray]]:
         """Name, origin and indices of the clips of each test."""
@@ -110,6 +114,11 @@ class Study:
         yield "uniform" if self.data.kind == "mixed" else self.data.kind, self.data, index
         for name, loaded in self.tests.items():
             yield name, loaded, loaded.where("test")
+        if self.cuts:
+            index = self.cuts.where("test")
+            for name, rough in (("cuts", False), ("cuts_rough", True)):
+                if (self.cuts.examples.gaps[index] == rough).any():
+                    yield name, self.cuts, index[self.cuts.examples.gaps[index] == rough]
 
     def run(self, say: Callable[[str], None], only: tuple[str, ...] = ()) -> None:
         """Make all predictions that are missing, of all methods or of the named ones."""
@@ -120,7 +129,7 @@ class Study:
                 and any(not self._file(t, name, seed).exists() for t, _, _ in sets)]
         if todo:
             view = self.view()
-            train = view(self.data.part("train"))
+            train = view(self.train())
             seen = [(test, view(loaded.examples.part(index))) for test, loaded, index in sets]
             for seed, name in todo:
                 method = fit_network(name, train, self.plan, seed)
@@ -147,13 +156,12 @@ class Study:
             clips, other = loaded.examples.part(index), not same_cut(loaded.gowns[index[0]], self.data.gowns[0])
             found = method.infer(clips, other=other)
             self._keep(test, "ours", seed, clips.unit, unit=found.unit, lower=found.lower, upper=found.upper)
-            sorts = [method.sort(rough) for rough in np.unique(clips.gaps)]
+            sorts = [method.sort(rough, other) for rough in np.unique(clips.gaps)]
             if not self.simulate or not all("simulated" in sort.widths for sort in sorts):
                 continue
             some = index[: self.simulate]
             gaps = loaded.examples.gaps[some]
-            found = method.judged("simulated" + (OTHER if other else ""), gaps,
-                                  *self._simulated(test, loaded, some, method, say))
+            found = method.judged("simulated", gaps, *self._simulated(test, loaded, some, method, say), other=other)
             self._keep(test, "ours_simulated", seed, loaded.examples.unit[some], unit=found.unit, lower=found.lower,
                        upper=found.upper)
 
@@ -166,7 +174,8 @@ class Study:
             if not path.exists():
                 part = index[start : start + PIECE]
                 clips = loaded.examples.part(part)
-                unit, misfit = method.raw(clips, lambda k, part=part: Simulator([loaded.gowns[i] for i in part[k]]))
+                unit, misfit = method.raw(clips, lambda k, part=part: Simulator([loaded.gowns[i] for i in part[k]]),
+                                          other=not same_cut(loaded.gowns[part[0]], self.data.gowns[0]))
                 self._keep(name, f"piece-{start}", self.seeds[0], clips.unit, unit=unit, misfit=misfit)
                 say(f"{name}: {start + len(part)} of {len(index)} clips corrected by simulation")
             with np.load(path) as file:
@@ -175,8 +184,7 @@ class Study:
 
     def _forget_other_data(self) -> None:
         """Remove predictions of methods that learned from other data, and those of other clips than now."""
-        now = {"": self.data.examples.hash, **{name: one.examples.hash for name, one in self.tests.items()}}
-        now |= {"cuts": self.cuts.examples.hash} if self.cuts else {}
+        now = {"": self.hash, **{name: one.examples.hash for name, one in self.tests.items()}}
         folder = self.folder / "predictions"
         folder.mkdir(parents=True, exist_ok=True)
         known = folder / "data.json"

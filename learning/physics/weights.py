@@ -14,13 +14,13 @@ from .compression import Compression
 from .conformal import Calibration
 from .gaussian_process import GaussianProcess
 from .inversion import Inversion, Widths
-from .ours import Ours
+from .ours import SORTS, Ours
 from .parameters import HIGH, LOW, NAMES
 from .prior import Prior
 
-FORMAT = "caretree-garment-physics-2"
+FORMAT = "caretree-garment-physics-3"
 PACKAGED = Path(__file__).parent / "weights" / "ours.safetensors"
-_SMALL = {"compression.components": np.float16, "process.inputs": np.float32}  # kept in fewer bits
+_SMALL = {"compression.components": np.int8, "process.inputs": np.float32}  # kept in fewer bits
 
 
 def _ranges() -> str:
@@ -45,9 +45,9 @@ def save_weights(method: Ours, path: str | Path, record: dict[str, object]) -> P
     from safetensors.numpy import save_file  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
     path = Path(path)
-    sorts = {"clean": method.clean} | ({"rough": method.rough} if method.rough else {})
-    tensors = {f"{sort}/{name}": array for sort, one in sorts.items() for name, array in _inversion_arrays(one).items()}
-    about = {"format": FORMAT, "ranges": _ranges(), "shown": json.dumps(method.clean.shown),
+    tensors = {f"{sort}/{name}": array for sort, one in method.inversions.items()
+               for name, array in _inversion_arrays(one).items()}
+    about = {"format": FORMAT, "ranges": _ranges(), "shown": json.dumps(method.sort(False).shown),
              "record": json.dumps(record)}
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
@@ -57,12 +57,8 @@ def save_weights(method: Ours, path: str | Path, record: dict[str, object]) -> P
     return path
 
 
-def load_weights(path: str | Path = PACKAGED, sorts: tuple[str, ...] = ("clean", "rough")) -> tuple[Ours, dict]:
+def load_weights(path: str | Path = PACKAGED) -> tuple[Ours, dict]:
     """The method in a file, and its record.
-
-    Args:
-        path: of the file.
-        sorts: which inversions to read: `rough` alone then stands for `clean` too, to save time.
 
     Raises:
         CaretreeError: the file is missing, is none of ours, or was made for other parameter ranges; or the package
@@ -79,19 +75,16 @@ def load_weights(path: str | Path = PACKAGED, sorts: tuple[str, ...] = ("clean",
     try:
         with safe_open(path, "numpy") as file:
             about = file.metadata() or {}
-            tensors = {key: file.get_tensor(key) for key in file.keys()  # noqa: SIM118 (it is no dict)
-                       if key.split("/")[0] in sorts}
+            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 (it is no dict)
     except SafetensorError as error:
         raise CaretreeError(f"{path}: this is no file of weights (safetensors)") from error
     if about.get("format") != FORMAT or about.get("ranges") != _ranges():
         raise CaretreeError(f"{path}: the weights are not in format {FORMAT} or were made for other parameter ranges")
     shown = tuple(json.loads(about["shown"]))
-    read = [_inversion({name.removeprefix(f"{sort}/"): array for name, array in tensors.items()
-                        if name.startswith(f"{sort}/")}, shown)
-            for sort in sorts if f"{sort}/process.inputs" in tensors]
-    if not read:
-        return load_weights(path, ("clean",))
-    return Ours(read[0], read[-1] if len(read) > 1 or "clean" not in sorts else None), json.loads(about["record"])
+    read = {sort: _inversion({name.removeprefix(f"{sort}/"): array for name, array in tensors.items()
+                              if name.startswith(f"{sort}/")}, shown)
+            for sort in SORTS.values() if f"{sort}/process.inputs" in tensors}
+    return Ours(read), json.loads(about["record"])
 
 
 def _inversion(tensors: dict[str, np.ndarray], shown: tuple[int, ...]) -> Inversion:

@@ -14,6 +14,7 @@ from caretree.learning.physics.methods import TITLES, Plan  # noqa: E402
 from caretree.learning.physics.parameters import NAMES  # noqa: E402
 from caretree.learning.physics.pictures import box_plot  # noqa: E402
 from caretree.learning.physics.study import Study  # noqa: E402
+from caretree.learning.physics.weights import load_weights  # noqa: E402
 from caretree.sim.errors import CaretreeError  # noqa: E402
 from matplotlib.image import imread  # noqa: E402
 
@@ -87,6 +88,22 @@ def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
     monkeypatch.setattr(BlobSimulator, "__call__", again)
     study.run(lambda _: None, ("ours",))
     assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
+
+
+def test_other_cuts_are_learned_from_and_tested_apart(study, small_gown):
+    falls = np.resize(["train", "train", "train", "val", "test"], 100)
+    longer = replace(small_gown, length=small_gown.length + 1)
+    some = replace(blobs(200, 6, seed=8), rough=np.arange(200) % 2 == 1)
+    cuts = Loaded(kind="cuts", gowns=[longer] * 200, examples=some, split=np.repeat(falls, 2))
+    wider = replace(study, cuts=cuts, seeds=(0,))
+    wider.run(lambda _: None, ("ours", "supervised"))
+    rows = {(row["test"], row["method"]): row for row in json.loads(write_results(wider).read_text())["rows"]}
+    assert {test for test, _ in rows} == {"uniform", "cuts", "cuts_rough", "heldout_gown"}
+    assert rows["cuts", "ours"]["clips"] == rows["cuts_rough", "supervised"]["clips"] == 20
+    assert rows["cuts", "ours_simulated"]["clips"] == 11
+    _, record = load_weights(wider.folder / "ours.safetensors")
+    assert record["clips"] == 36 + 120
+    assert set(load_weights(wider.folder / "ours.safetensors")[0].inversions) == {"clean", "clean_other", "rough_other"}
 
 
 def test_predictions_from_other_data_are_forgotten(study):

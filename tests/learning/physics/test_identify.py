@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.learning.physics import identify as identify_module
@@ -8,7 +10,7 @@ from caretree.learning.physics.frames import frames_of
 from caretree.learning.physics.identify import identify, write
 from caretree.learning.physics.method import Examples
 from caretree.learning.physics.ours import fit_ours
-from caretree.learning.physics.parameters import NAMES, SHOWN, to_spec, values_of
+from caretree.learning.physics.parameters import HIGH, NAMES, SHOWN, to_spec, values_of
 from caretree.learning.physics.simulator import Simulator
 from caretree.learning.physics.weights import load_weights, save_weights
 from caretree.sim.errors import CaretreeError
@@ -27,7 +29,7 @@ def fitted(small_gown):
     valid = make(small_gown, 24, 1)
     method = fit_ours(make(small_gown, 60, 0), valid, seed=0, shown=SHOWN)
     some = valid.part(np.arange(12))
-    method.clean.set_widths("simulated", some.unit, *method.raw(some, lambda _: Simulator(small_gown)))
+    method.sort(False).set_widths("simulated", some.unit, *method.raw(some, lambda _: Simulator(small_gown)))
     return method
 
 
@@ -54,7 +56,7 @@ def test_weights_come_back_as_they_were_saved(fitted, small_gown, tmp_path):
     before, after = fitted.infer(clips), again.infer(clips)
     np.testing.assert_allclose(after.unit, before.unit, atol=1e-6)
     np.testing.assert_allclose(after.lower, before.lower, atol=1e-6)
-    assert set(again.clean.widths) == {"alone", "simulated"}
+    assert set(again.sort(False).widths) == {"alone", "simulated"}
 
 
 def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_path):
@@ -75,6 +77,14 @@ def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_p
     gown_file = read_gown(write(found, tmp_path / "gown.yaml"))
     assert gown_file.values["mass"] == pytest.approx(found.values[0])
     assert gown_file.spec.mass == pytest.approx(found.values[0])
+
+
+def test_a_clip_that_shows_no_falling_gown_is_refused(fitted, small_gown, small_cut):
+    clip = film(to_spec(np.full(6, 0.5), small_gown))
+    wall = replace(clip, depth=np.full_like(clip.depth, 2.6))
+    with pytest.raises(CaretreeError, match="no falling gown of the cut 'medium' looks like this clip"):
+        identify(wall, fitted)
+    assert (identify(wall, fitted, simulate=False).upper == HIGH).any()  # without a simulation: wide intervals
 
 
 def test_command_prints_the_table_and_writes_the_gown(fitted, small_gown, small_cut, tmp_path, capsys):
