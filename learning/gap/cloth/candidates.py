@@ -28,6 +28,7 @@ class Candidate:
         push: the same at a size that should show.
         steps: finite-difference step of each free parameter.
         recalibration: one of the model's own numbers.
+        power: with which the force grows with the size; screening scales forces.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Candidate:
     push: ClothModel
     steps: dict[Free, float]
     recalibration: bool = False
+    power: float = 1.0
 
 
 def _effect(name: str, target: str, zero: dict[str, float], push: dict[str, float], free: tuple[str, ...]) -> Candidate:
@@ -76,7 +78,7 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
             {"towards_x": 0.03, "towards_y": 0.03},
             ("towards_x", "towards_y"),
         ),
-        _effect("wind", "cloth", {"x": 0.0, "y": 0.0}, {"x": 1.0, "y": 1.0}, ("x", "y")),
+        replace(_effect("wind", "cloth", {"x": 0.0, "y": 0.0}, {"x": 1.0, "y": 1.0}, ("x", "y")), power=2.0),
     ]
     ph = scene.physics
     for key in ("elastic_stiffness", "damping_stiffness", "bending_stiffness", "mass"):

@@ -25,6 +25,7 @@ MATERIAL = 0.015  # a step must lower the mean square by this part of what it le
 SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
 NUMBER = 10.0  # what a fitted number has to keep gaining to stay
+SPACING = 0.1  # between the instants a slip is screened at, over a recording's length
 SAME = 12.0  # criterion within which two explanations fit alike
 
 
@@ -120,16 +121,17 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         explained = start.rss * count / rows - top.fit.rss
         if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
             break
-        if drop < SHARE * explained and _shares(coherence(top.fit.residuals, pairs, m)):
+        polished = _polish(fitter, top.fit, [*chosen, top.added], scene)
+        left_over = coherence(polished.residuals, pairs, m)
+        if drop < SHARE * explained and _shares(left_over):
             break  # a large effect that is not quite right leaves something to mop up for any other
+        fit, after = polished, left_over
         chosen.append(top.added)
         rivals[top.added.name] = tuple(
             dict.fromkeys(
                 t.added.name for t in scored[1:] if t.score - top.score < SAME and t.added.name != top.added.name
             )
         )
-        fit = _polish(fitter, top.fit, chosen, scene)
-        after = coherence(fit.residuals, pairs, m)
     fit, chosen = _prune(fitter, fit, chosen, worth, rows)
     after = coherence(fit.residuals, pairs, m)
     return ClothSearch(
@@ -196,6 +198,7 @@ def _screen(
         X = np.concatenate(columns, axis=1)
         theta = np.linalg.lstsq(X, flat, rcond=1e-8)[0]
         mine = theta[-len(c.start.free) :]
+        mine = mine * (float(np.linalg.norm(mine)) + 1e-12) ** (1.0 / c.power - 1.0)
         for f, k in zip(c.start.free, mine, strict=True):
             sizes[f] = c.start.value(f) + float(np.clip(k, -30.0, 30.0)) * (c.push.value(f) - c.start.value(f))
         left = float(np.sum((flat - X @ theta) ** 2))
@@ -227,6 +230,20 @@ def _begun(fitter: ClothFitter, model: ClothModel, c: Candidate, limit: float) -
     return tried
 
 
+def _slipped(fitter: ClothFitter, fit: ClothFit, away: float) -> ClothFit:
+    """Move the instant of a slip, from steps of `away` (over a recording's length) down to a few time steps."""
+    away *= float(max(e.t[-1] for e in fitter.episodes))
+    while away > 0.002:
+        here = fit.model.value(("grip_slip", "time"))
+        for t in (here - away, here + away):
+            model = fit.model.moved({("grip_slip", "time"): t})
+            residuals = fitter.residuals(model)
+            if fitter.rss(residuals) < fit.rss:
+                fit = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
+        away *= 0.6
+    return fit
+
+
 def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
     """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
     last = chosen[-1]
@@ -236,16 +253,8 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
         fit = best_patch(fitter, fit, scene, _steps(chosen))
     if last.name == "snag":
         fit = best_catch(fitter, fit, scene, _steps(chosen))
-    if last.name == "grip_slip":  # from the screened instants' spacing down to a few time steps
-        away = 0.1 * float(max(e.t[-1] for e in fitter.episodes))
-        while away > 0.002:
-            here = fit.model.value(("grip_slip", "time"))
-            for t in (here - away, here + away):
-                model = fit.model.moved({("grip_slip", "time"): t})
-                residuals = fitter.residuals(model)
-                if fitter.rss(residuals) < fit.rss:
-                    fit = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
-            away *= 0.6
+    if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
+        fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
     if last.name == "strain_stiffening":  # from which stretch on
         free = (*fit.model.free, ("strain_stiffening", "onset"))
         bent = fitter.fit(replace(fit.model, free=free), {**_steps(chosen), ("strain_stiffening", "onset"): 0.02}, 4)
