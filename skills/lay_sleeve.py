@@ -20,17 +20,16 @@ from .skill import Skill
 from .strap_grip import StrapGrip
 from .tracking import Hold, careful
 
-# Where the strap is let go: outwards of the bed's middle, feetward of it, above the mattress [m].  The bed ends at 0.5.
-DROPPED = np.array((0.50, 0.14, 0.25))
-ABOVE = 0.08  # on the way there, higher by this [m]
+LAID = np.array((0.36, 0.14, 0.06))  # of the strap: outwards of and feetward from the bed's middle, above it [m]
+ABOVE, ASIDE, BEFORE = 0.30, 0.16, 0.12  # where the way down begins: higher, farther out, farther towards the feet [m]
 SPEED = 0.25  # [m/s]
-TAUT = 3.5  # load from which the sleeve goes no farther: the other one is on its arm already [N]
+TAUT = 3.5  # load from which the sleeve goes no farther: the other one may be on its arm already [N]
 
 
 class LaySleeve(Skill):
-    """Brings the strap over the edge of the bed and lets it fall from there.
+    """Hangs the sleeve out over the edge of the bed, then lowers it inwards and headward, and lets go.
 
-    The back panel, which hangs from the strap's outer end, falls outside the edge and draws the strap straight.
+    What hangs below the strap touches the bed first, outwards of where the strap then comes to lie.
 
     Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None.
     """
@@ -47,8 +46,8 @@ class LaySleeve(Skill):
     def _lay(self) -> Iterator[None]:
         hand, out, bed = self.grip.hand, outwards(self.grip.arm), self.world.room.bed
         middle = np.array((*bed[:, :2].mean(axis=0), bed[1, 2]))
-        dropped = middle + DROPPED[0] * out - DROPPED[1] * HEADWARD + DROPPED[2] * UP
-        for place in (dropped + ABOVE * UP, dropped):
+        laid = middle + LAID[0] * out - LAID[1] * HEADWARD + LAID[2] * UP
+        for place in (laid + ABOVE * UP + ASIDE * out - BEFORE * HEADWARD, laid):
             pose = hand_now(self, hand)
             pose[:3, 3] = place
             motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")
