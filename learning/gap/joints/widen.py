@@ -19,6 +19,7 @@ from .search import Search
 from .thresholds import ALPHA, CROSS, MATERIAL
 
 START = 0.1  # of the usual speed
+WIDEST = 0.5  # of the usual speed
 
 
 def widened(search: Search, chosen: tuple[int, ...], model: RigidModel, logs: list[JointLog]) -> Search:
@@ -30,8 +31,8 @@ def widened(search: Search, chosen: tuple[int, ...], model: RigidModel, logs: li
         start = max(START * reach.speed, 2.0 * reach.slow)
         begun = joint_block(JOINT_EFFECTS[old.name], model, c, {"width": start}, 1)
         wide = fit_shape(begun, [search.blocks[j] for j in chosen if j != i], model, logs)
-        if wide.shape["width"] < 2.0 * reach.slow:
-            continue
+        if not 2.0 * reach.slow <= wide.shape["width"] <= WIDEST * reach.speed:
+            continue  # narrower than the log resolves, or so wide that it is viscous friction
         before, held = search.rss(chosen), search.held(chosen)
         tried = Search(gram=exchange(search.gram, {i: wide}, logs), noise=search.noise, strict=search.strict)
         after = tried.rss(chosen)

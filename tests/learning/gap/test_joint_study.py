@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from caretree.learning.gap.joints.widen import widened
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.study import open_study
 
@@ -122,3 +123,10 @@ def test_dry_friction_is_as_wide_as_the_log_shows(axis_set):
 def test_dry_friction_that_jumps_gets_no_width(axis_set):
     _, _, effects, _, _ = solved(axis_set(lambda q, v, a: 0.8 * np.sign(v)))
     assert [p.name for p in effects[0].parameters] == ["level"]
+
+
+def test_friction_that_grows_with_speed_is_not_wide_dry_friction(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: 8.0 * v)))
+    search = study.named.search
+    dry = next(i for i, b in enumerate(search.blocks) if b.name == "coulomb_friction")
+    assert "width" not in widened(search, (dry,), study.model, study.fitted).blocks[dry].shape
