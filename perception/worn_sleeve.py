@@ -9,6 +9,7 @@ from .cloud import points_in_map, unit
 from .colours import Surface, surfaces
 from .errors import PerceptionFailure, Problem
 from .estimates import WornSleeve
+from .sleeve_side import inside_share
 
 _ASIDE = 0.20  # from the upper arm's axis, what is farther off belongs to the other sleeve [m]
 _POINTS = 15
@@ -30,12 +31,11 @@ def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
     length = float(np.linalg.norm(along))
     found: list[np.ndarray] = []
     for binding in (Surface.ARMHOLE, Surface.CUFF):
-        offset = cloud[(colours == binding) & (frame.depth > 0)].reshape(-1, 3) - shoulder
-        way = offset @ unit(along)
-        aside = np.linalg.norm(offset - way[:, None] * unit(along), axis=1)
-        found.append(way[aside < _ASIDE] / length)
+        points = cloud[(colours == binding) & (frame.depth > 0)].reshape(-1, 3)
+        aside = np.linalg.norm(np.cross(points - shoulder, unit(along)), axis=1)
+        found.append(points[aside < _ASIDE])
     if min(map(len, found)) < _POINTS:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the worn {side} sleeve")
-    armhole, cuff = (float(np.median(places)) for places in found)
+    armhole, cuff = (float(np.median((points - shoulder) @ along)) / length**2 for points in found)
     return WornSleeve(stamp=frame.stamp, confidence=min(1.0, min(map(len, found)) / 100), side=side,
-                      armhole_at=armhole, cuff_at=cuff)
+                      armhole_at=armhole, cuff_at=cuff, inside=inside_share(frame, *found))

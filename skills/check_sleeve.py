@@ -17,6 +17,9 @@ from .tracking import watch_arm
 # The cuff of a sleeve with the arm inside shows at least so far down the upper arm.  In recorded runs on seeds 0-8 it
 # showed at 0.40 to 0.66 of the upper arm where the arm was inside, at 0.01 and 0.05 where the sleeve had missed it.
 CUFF_AT = 0.25
+# More of the inside than this shows between the bindings of a sleeve that the arm went through the wrong way: in the
+# same runs 0.0 to 0.37 where it is right, 0.49 and 0.56 where the sleeve is inside out.
+INSIDE = 0.43
 
 
 class CheckSleeve(Skill):
@@ -40,9 +43,12 @@ class CheckSleeve(Skill):
             self.note(f"cannot see the {self.side} sleeve's bindings")
             return
         assert isinstance(seen, WornSleeve)
-        self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}")
+        self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
+                  f"{seen.inside:.0%} inside out")
         if seen.cuff_at < CUFF_AT:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
+        if seen.inside > INSIDE:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"the sleeve is inside out: {seen.inside:.0%} of it")
         yield
 
     @classmethod
