@@ -9,7 +9,7 @@ from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .arm_path import UP, ArmPath
 from .context import Context
-from .hands import hand_now, move_hands, open_gripper
+from .hands import hand_now, look_towards, move_hands, open_gripper
 from .holding import holding
 from .motion.errors import MotionError
 from .pinch import back_off, pinch
@@ -48,6 +48,8 @@ class GraspSleeve(Skill):
     def _grasp(self) -> Iterator[None]:
         """Look from afar, look from close by, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
+        hand = watch_arm(self, self.side, hold=self.hold).points_in_map[3]
+        yield from look_towards(self, hand)
         far = self._find()
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")

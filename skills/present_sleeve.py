@@ -12,7 +12,7 @@ from ..perception.estimates import SleeveHeading
 from .arm_path import UP, ArmPath
 from .bedside import outwards
 from .context import Context
-from .hands import cloth_load, hand_now, move_hands, until_taut
+from .hands import cloth_load, hand_now, look_towards, move_hands, until_taut
 from .holding import holding
 from .motion.errors import MotionError
 from .ports import Input
@@ -27,6 +27,7 @@ RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
 INSIDE_OUT = 0.95  # a sleeve of which only the inside shows; of others up to 0.88 did, through the opening and below it
+LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
 
@@ -58,6 +59,7 @@ class PresentSleeve(Skill):
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
+        yield from holding(self, self.hold, look_towards(self, path.point(LOOK)))
         yield from holding(self, self.hold, self._carry_out(path))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:

@@ -10,7 +10,8 @@ import numpy as np
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .arm_path import ArmPath
 from .context import Context
-from .holding import ease_hold
+from .hands import hand_now, look_towards
+from .holding import ease_hold, holding
 from .motion.drive import PathFollower
 from .ports import Input
 from .pull_law import PullLaw
@@ -52,12 +53,15 @@ class PullAlongArm(Skill):
     taut = Input(float, default=3.7)
     law = Input(PullLaw, default=PullLaw())
     reasons = (Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.ARM_SLIPPED,
-               Reason.SLEEVE_MISSED, Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT)
+               Reason.SLEEVE_MISSED, Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Steer anew on every tick."""
         self.note(f"pulls the {self.grip.arm} sleeve up")
         n = SIDES.index(self.grip.hand)
+        arm = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
+        ahead = 0.5 * (arm.place_of(hand_now(self, self.grip.hand)[:3, 3]) + self.upto)
+        yield from holding(self, self.hold, look_towards(self, arm.point(ahead)))
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
