@@ -1,0 +1,38 @@
+"""Whether an arm is inside its sleeve, as far as it shows."""
+
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import WornSleeve
+from caretree.sim.scripted import ScriptedWorld
+from caretree.skills.check_sleeve import CheckSleeve
+from caretree.skills.context import Context
+from caretree.skills.reasons import Reason
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.skills.scripted_person import lying_posture
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+
+def worn(cuff_at=0.5, inside=0.2):
+    return WornSleeve(stamp=0.0, confidence=0.9, side="left", armhole_at=0.2, cuff_at=cuff_at, inside=inside)
+
+
+@pytest.mark.parametrize(("seen", "status", "reason"), [
+    (worn(), Status.SUCCESS, None),
+    (worn(cuff_at=0.03), Status.FAILURE, Reason.SLEEVE_MISSED),
+    (worn(inside=0.55), Status.FAILURE, Reason.SLEEVE_MISSED),
+    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), Status.SUCCESS, None),
+])
+def test_a_heap_at_the_shoulder_and_a_sleeve_inside_out_are_misses(seen, status, reason):
+    world = ScriptedWorld()
+    guard = GuardedWorld(world)
+    context = Context(world=guard, guard=guard,
+                      perception=scripted_perception({"worn_sleeve": seen, "arm": lying_posture("left")}))
+    skill = CheckSleeve("inside", context, side="left")
+    for _ in range(10):
+        skill.tick_once()
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+        if skill.status != Status.RUNNING:
+            break
+    assert skill.status == status
+    assert (skill.failure and skill.failure.reason) == reason
