@@ -64,6 +64,8 @@ def test_the_grip_shifts_until_the_outer_edge_is_in_its_place(outer, wanted):
 def test_a_bare_hand_is_a_miss():
     assert make(share=0.1)[0].missed(PATH)
     assert not make(share=0.9)[0].missed(PATH)
+    assert make(share=0.1)[0].bare(PATH)
+    assert not make(share=0.9)[0].bare(PATH)
 
 
 def test_the_armhole_is_followed_and_forgotten_when_hidden():
