@@ -18,6 +18,7 @@ from ..cloth.simulate import simulate
 from ..measurement import Episode, MeasurementSet
 from .case import Truth, coloured, draw_kind
 
+STILL = EffectEntry(name="wind", target="cloth", parameters={"x": 1e-6, "y": 0.0})
 LEAST = 0.5  # size over the noise below which nothing is hidden: another effect is drawn instead
 CARRIERS = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 INSIDE = (
@@ -193,6 +194,7 @@ def _sized(rng, name, size, vertices, duration, noise, scene, parsed):
         "offset": lambda s: {"x": 0.002 * s * float(direction[0]), "y": 0.002 * s * float(direction[1]), "z": 0.0},
     }[name]
     idle = (CARRIERS,) if CLOTH_EFFECTS[name].carried else ()  # what carriers do alone is not the effect's size
+    idle = (STILL,) if name == "wind" else idle  # nor what still air does: a wind of nothing is air drag
     base = [simulate(scene, e, idle, {}) for e in parsed[:2]]
     s, got = 1.0, 0.0
     entry = EffectEntry(name=name, target=_target(name), parameters=make(s))

@@ -198,7 +198,7 @@ def _screen(
         X = np.concatenate(columns, axis=1)
         theta = np.linalg.lstsq(X, flat, rcond=1e-8)[0]
         mine = theta[-len(c.start.free) :]
-        mine = mine * (float(np.linalg.norm(mine)) + 1e-12) ** (1.0 / c.power - 1.0)
+        mine = mine * max(float(np.linalg.norm(mine)), 1.0) ** (1.0 / c.power - 1.0)
         for f, k in zip(c.start.free, mine, strict=True):
             sizes[f] = c.start.value(f) + float(np.clip(k, -30.0, 30.0)) * (c.push.value(f) - c.start.value(f))
         left = float(np.sum((flat - X @ theta) ** 2))
