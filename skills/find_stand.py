@@ -25,7 +25,7 @@ from .ports import Input, Output
 from .reasons import Reason
 from .scripted_person import offer_person
 from .skill import Skill
-from .strap_view import TO_STRAP, strap_views
+from .strap_view import TO_STRAP, find_sleeve, strap_views
 from .tracking import watch_arm
 
 # Steps off the usual stance that are tried, farther from the bed and towards its head [m].
@@ -53,9 +53,8 @@ class FindStand(Skill):
         """Look once, then try stances."""
         posture = watch_arm(self, self.side)
         usual = self.stand = stance(self.side, "lift")
-        near = posture.points_in_map[3] * (1.0, 1.0, 0.0) + self.world.room.bed[1, 2] * UP
         try:
-            sleeve = self.context.perceive("sleeve_opening", self.world.look("head"), side=self.side, near_in_map=near)
+            sleeve = find_sleeve(self, self.side, posture.points_in_map)
         except PerceptionFailure:
             return
         steps = [out * outwards(self.side) + head * HEADWARD for out in _OUT for head in _HEADWARD]

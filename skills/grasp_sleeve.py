@@ -7,7 +7,7 @@ from collections.abc import Generator, Iterator
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
-from .arm_path import UP, ArmPath
+from .arm_path import ArmPath
 from .context import Context
 from .hands import hand_now, look_towards, move_hands, open_gripper
 from .holding import holding
@@ -19,7 +19,7 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .strap_approach import way_in
 from .strap_grip import StrapGrip, strap_grip
-from .strap_view import strap_views
+from .strap_view import find_sleeve, strap_views
 from .tracking import Hold, careful, watch_arm
 
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
@@ -48,9 +48,8 @@ class GraspSleeve(Skill):
     def _grasp(self) -> Iterator[None]:
         """Look from afar, look from close by, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
-        hand = watch_arm(self, self.side, hold=self.hold).points_in_map[3]
-        yield from look_towards(self, hand)
-        far = self._find()
+        yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[3])
+        far = find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
@@ -67,18 +66,6 @@ class GraspSleeve(Skill):
                 yield from back_off(self, self.hand)
             raise
         self.grip = strap_grip(self.side, self.hand, strap, pose)
-
-    def _find(self) -> SleeveOpening:
-        """From afar: below the hand, where it was laid, or by the elbow, where it may be after a miss."""
-        frame, arm = self.world.look("head"), watch_arm(self, self.side, hold=self.hold).points_in_map
-        lost: PerceptionFailure | None = None
-        for near in (arm[3] * (1.0, 1.0, 0.0) + self.world.room.bed[1, 2] * UP, arm[1]):
-            try:
-                return self.context.perceive("sleeve_opening", frame, side=self.side, near_in_map=near)
-            except PerceptionFailure as stop:
-                lost = lost or stop
-        assert lost is not None
-        raise lost
 
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""

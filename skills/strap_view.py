@@ -1,4 +1,4 @@
-"""From where the hand's camera looks at the strap of a sleeve before the hand takes it."""
+"""Where a sleeve is seen from afar, and from where the hand's camera then looks at its strap."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
@@ -13,6 +14,7 @@ from ..sim.world import SIDES, Side
 from .arm_path import UP
 from .bedside import outwards
 from .motion.ik import hand_pose
+from .skill import Skill
 
 DISTANCE = 0.29  # from the hand's camera to the strap it looks at [m]
 TO_STRAP = np.array((0.0, -0.05, 0.0))  # from an armhole to its strap, in a gown laid with its collar headward [m]
@@ -20,6 +22,32 @@ TO_STRAP = np.array((0.0, -0.05, 0.0))  # from an armhole to its strap, in a gow
 # the bed, and at one that hangs over its edge.
 _LYING, _HANGING = np.deg2rad((97.0, 80.0, 65.0)), np.deg2rad((52.0, 68.0, 40.0))
 _HANGS = 0.03  # a sleeve this far below the mattress hangs over the edge [m]
+
+
+def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpening:
+    """The sleeve from afar: below the hand, where it was laid, or by the elbow, where it may be after a miss.
+
+    Args:
+        skill: that asks.
+        side: of the person.
+        arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+
+    Raises:
+        PerceptionFailure: it is at neither place.
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    frame, lost = skill.world.look("head"), None
+    for near in (arm_in_map[3] * (1.0, 1.0, 0.0) + skill.world.room.bed[1, 2] * UP, arm_in_map[1]):
+        try:
+            seen = skill.context.perceive("sleeve_opening", frame, side=side, near_in_map=near)
+        except PerceptionFailure as stop:
+            lost = lost or stop
+            continue
+        assert isinstance(seen, SleeveOpening)
+        return seen
+    assert lost is not None
+    raise lost
 
 
 def strap_views(far: SleeveOpening, side: Side, hand: Side, bed: np.ndarray) -> Iterator[np.ndarray]:
