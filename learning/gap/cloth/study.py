@@ -112,6 +112,8 @@ class ClothStudy(Study):
         floor = self.found.after.floor
         phases = {e.name: e.phases for e in self.measured.episodes}
         m = len(self.scene.markers)
+        named = [c.name for c in self.found.chosen if c.name != "snag"]  # a snag has places of its own
+        only = named[0] if len(named) == len(self.found.chosen) == 1 and self.verdict != "unknown" else ""
         for e, r in zip(self.fitted, self.found.plain.residuals, strict=True):
             energy = (r[:, : 3 * m] ** 2).reshape(len(r), m, 3).mean(axis=2)
             worst = int(np.argmax(energy.mean(axis=0)))
@@ -127,6 +129,7 @@ class ClothStudy(Study):
                         state_region=self._state(e, whole),
                         phase=phase_of(phases[e.name], a, b),
                         p_value=self.found.before.p_value,
+                        effect=only,
                         size=float(np.sqrt(whole[(e.t >= a) & (e.t <= b)].mean()) / floor),
                     )
                 )
