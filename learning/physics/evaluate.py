@@ -20,6 +20,8 @@ from .training import machine
 def rows_of(study: Study) -> list[dict[str, Any]]:
     """One row for each test, method and seed, from the predictions kept."""
     rows = []
+    simulated = {test: len(kept["true"]) for test, method, _, kept in predictions(study.folder)
+                 if method == "ours_simulated"}
     for test, method, seed, kept in predictions(study.folder):
         true, estimated = to_values(kept["true"]), to_values(kept["unit"])
         median, low, high = median_interval(garment_error(true, estimated, list(SHOWN)))
@@ -35,8 +37,9 @@ def rows_of(study: Study) -> list[dict[str, Any]]:
             row["coverage_shown"] = float(inside[list(SHOWN)].mean())
             width = np.median(to_values(kept["upper"]) / to_values(kept["lower"]), axis=0)
             row["interval_ratio"] = dict(zip(NAMES, width.tolist(), strict=True))
-        if study.simulate:  # the same clips as those that were simulated again, for a fair comparison
-            row["median_first"] = float(np.median(garment_error(true, estimated, list(SHOWN))[: study.simulate]))
+        if test in simulated:  # the same clips as those that were simulated again, for a fair comparison
+            row["first"] = simulated[test]
+            row["median_first"] = float(np.median(garment_error(true, estimated, list(SHOWN))[: simulated[test]]))
         rows.append(row)
     return rows
 
@@ -65,7 +68,7 @@ def table(results: dict[str, Any]) -> str:
         grouped[row["test"]][row["method"]].append(row)
     out = []
     for test, methods in grouped.items():
-        first = [f"first {results['simulated']} clips"] if results["simulated"] else []
+        first = sorted({f"first {row['first']} clips" for rows in methods.values() for row in rows if "first" in row})
         head = ["method", "M_eg, shown parameters", *first, "all six", *NAMES, "90 % intervals hold"]
         out += [f"### {test}", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
         for name, title in TITLES.items():

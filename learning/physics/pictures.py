@@ -83,9 +83,13 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
         for test, method, _, kept in predictions(study):
             title = test if test == kind else f"{test}, trained on {kind}"
             errors[title][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
-    figure = Figure(figsize=(3.4 * len(errors) + 0.6, 3.8))
-    for axis, (test, methods) in zip(np.atleast_1d(figure.subplots(1, len(errors), sharey=True)), errors.items(),
-                                     strict=True):  # fmt: skip
+    columns = min(3, len(errors))
+    rows = -(-len(errors) // columns)
+    figure = Figure(figsize=(3.4 * columns + 0.6, 3.8 * rows))
+    axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
+    for axis in axes[len(errors) :]:
+        axis.axis("off")
+    for axis, (test, methods) in zip(axes, errors.items(), strict=False):
         names = [name for name in TITLES if name in methods]
         axis.boxplot([100 * np.concatenate(methods[name]) for name in names], showfliers=False)
         axis.set_xticks(range(1, len(names) + 1), [TITLES[name].replace(", ", ",\n") for name in names], rotation=60,
@@ -93,7 +97,8 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
         axis.set_yscale("log")
         axis.set_title(test, fontsize=9)
         axis.grid(axis="y", alpha=0.3)
-    figure.axes[0].set_ylabel("$M_{eg}$, shown parameters [%]", fontsize=8)
+    for axis in axes[::columns]:
+        axis.set_ylabel("$M_{eg}$, shown parameters [%]", fontsize=8)
     figure.tight_layout()
     figure.savefig(path, dpi=90)
     return path
@@ -123,8 +128,8 @@ def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path
         colour = some.class_id % 10 if (some.class_id >= 0).all() else some.unit[:, 0]
         axis.scatter(*flat[: len(some)].T, c=colour, cmap="tab10" if (some.class_id >= 0).all() else "viridis", s=5)
         axis.scatter(*flat[len(some) :].T, marker="*", s=110, c="black", edgecolors="white")
-        for name, where in zip(GOWNS, flat[len(some) :], strict=True):
-            axis.annotate(name, where, fontsize=7)
+        for k, (name, where) in enumerate(zip(GOWNS, flat[len(some) :], strict=True)):  # stars may lie close together
+            axis.annotate(name, where, (8, 9 * (1 - k)), textcoords="offset points", fontsize=7, va="center")
         axis.set_title(title, fontsize=9)
         axis.axis("off")
     figure.tight_layout()
