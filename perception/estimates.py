@@ -121,12 +121,10 @@ class SleeveHeading(Estimate):
     Attributes:
         side: the wearer's sleeve.
         cuff_from_armhole_in_map: (3,) from the middle of what shows of the armhole's binding to that of the cuff's [m].
-        inside: share of the fabric between them that shows its inside.
     """
 
     side: Side
     cuff_from_armhole_in_map: np.ndarray
-    inside: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,13 +135,11 @@ class WornSleeve(Estimate):
         side: of the person.
         armhole_at: middle of what shows of the armhole's binding, 0 shoulder, 1 elbow.
         cuff_at: the same of the cuff's.
-        inside: share of the fabric between them that shows its inside.
     """
 
     side: Side
     armhole_at: float
     cuff_at: float
-    inside: float
 
 
 Primitive = Literal["move_left", "direct", "move_right"]

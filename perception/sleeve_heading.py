@@ -9,7 +9,6 @@ from .colours import Surface
 from .errors import PerceptionFailure, Problem
 from .estimates import SleeveHeading
 from .held_armhole import POINTS, held_binding
-from .sleeve_side import inside_share
 
 
 def sleeve_heading(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveHeading:
@@ -29,4 +28,4 @@ def sleeve_heading(frame: Frame, side: Side, near_in_map: np.ndarray) -> SleeveH
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the {side} sleeve")
     middles = [np.percentile(points, (5, 95), axis=0).mean(axis=0) for points in (armhole, cuff)]
     return SleeveHeading(stamp=frame.stamp, confidence=min(1.0, fewest / 60), side=side,
-                         cuff_from_armhole_in_map=middles[1] - middles[0], inside=inside_share(frame, armhole, cuff))
+                         cuff_from_armhole_in_map=middles[1] - middles[0])

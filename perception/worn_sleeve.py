@@ -9,7 +9,6 @@ from .cloud import points_in_map, unit
 from .colours import Surface, surfaces
 from .errors import PerceptionFailure, Problem
 from .estimates import WornSleeve
-from .sleeve_side import inside_share
 
 _ASIDE = 0.20  # from the upper arm's axis, what is farther off belongs to the other sleeve [m]
 _POINTS = 15
@@ -38,4 +37,4 @@ def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the worn {side} sleeve")
     armhole, cuff = (float(np.median((points - shoulder) @ along)) / length**2 for points in found)
     return WornSleeve(stamp=frame.stamp, confidence=min(1.0, min(map(len, found)) / 100), side=side,
-                      armhole_at=armhole, cuff_at=cuff, inside=inside_share(frame, *found))
+                      armhole_at=armhole, cuff_at=cuff)

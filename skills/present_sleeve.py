@@ -26,7 +26,6 @@ from .tracking import Hold, careful, watch_arm
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
-INSIDE_OUT = 0.95  # a sleeve of which only the inside shows; of others up to 0.88 did, through the opening and below it
 LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
@@ -89,8 +88,6 @@ class PresentSleeve(Skill):
         if beyond < self.opens:
             raise SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
                                                      f"{self.opens * 100:.0f} cm are asked for")
-        if seen.inside > INSIDE_OUT:
-            raise SkillFailure(Reason.SLEEVE_FOLDED, f"it is inside out: {seen.inside:.0%} of it")
 
     def _carry_out(self, path: ArmPath) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""

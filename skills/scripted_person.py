@@ -68,8 +68,7 @@ def offer_person(context: Context) -> None:
                           approach_in_map=np.array((0.0, 0.0, -1.0)), closing_in_map=np.array((0.0, 1.0, 0.0)))
 
     def worn(frame: Frame, side: Side, **_: Any) -> Estimate:
-        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6,
-                          inside=0.1)
+        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6)
 
     for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
                             ("held_armhole", sleeve), ("hand_cover", cover), ("head", head),
