@@ -22,6 +22,7 @@ from .strap_grip import StrapGrip, strap_grip
 from .strap_view import find_sleeve, strap_views
 from .tracking import Hold, careful, watch_arm
 
+ELBOW, FINGERTIP = 1, 3  # joints of the arm
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
 
 
@@ -48,8 +49,7 @@ class GraspSleeve(Skill):
     def _grasp(self) -> Iterator[None]:
         """Look from afar, look from close by, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
-        yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[3])
-        far = find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
+        far = yield from self._find()
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
@@ -66,6 +66,18 @@ class GraspSleeve(Skill):
                 yield from back_off(self, self.hand)
             raise
         self.grip = strap_grip(self.side, self.hand, strap, pose)
+
+    def _find(self) -> Generator[None, None, SleeveOpening]:
+        """Turn the head to the hand, then to the elbow, whichever the sleeve is at."""
+        lost: PerceptionFailure | None = None
+        for place in (ELBOW,) if self.worn else (FINGERTIP, ELBOW):
+            yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[place])
+            try:
+                return find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
+            except PerceptionFailure as stop:
+                lost = lost or stop
+        assert lost is not None
+        raise lost
 
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""
