@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -21,7 +22,7 @@ class Compression:
 
     Attributes:
         mean: (D,) float32 of the flattened frames.
-        components: (D, K) float32, orthogonal, each as whole numbers up to 127, which take one byte to keep.
+        components: (D, K) float32 or int8, orthogonal, each as whole numbers up to 127, which take one byte to keep.
         scale: (K,) what each score is multiplied by.
     """
 
@@ -31,8 +32,13 @@ class Compression:
 
     def __call__(self, frames: np.ndarray) -> np.ndarray:
         """Scores: (N, T, 2, S, S) -> (N, K) float64, whose mean square length is one over the training clips."""
-        parts = [(_flat(frames[i : i + CHUNK]) - self.mean) @ self.components for i in range(0, len(frames), CHUNK)]
+        parts = [(_flat(frames[i : i + CHUNK]) - self.mean) @ self._directions for i in range(0, len(frames), CHUNK)]
         return np.concatenate(parts).astype(float) * self.scale
+
+    @cached_property
+    def _directions(self) -> np.ndarray:
+        """The components as float32; of the sorts of clips in a file of weights, most are not needed."""
+        return self.components.astype(np.float32)
 
 
 def _flat(frames: np.ndarray) -> np.ndarray:

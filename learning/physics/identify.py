@@ -77,10 +77,11 @@ def identify(clip: Clip, method: Ours, cut: str = "medium", *, simulate: bool = 
         raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
     camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
     seen = look_at(clip.depth[None])
-    inversion = method.sort(bool(seen.rough[0]), not same_cut(GOWNS[cut], trained))
+    other = not same_cut(GOWNS[cut], trained)
+    inversion = method.sort(bool(seen.rough[0]), other)
     way = "simulated" if simulate and "simulated" in inversion.widths else "alone"  # intervals must be calibrated
     if way == "simulated":
-        raw = inversion.simulated(seen.frames, Simulator(GOWNS[cut], camera))
+        raw = inversion.simulated(seen.frames, Simulator(GOWNS[cut], camera), blunt=other)
     else:
         raw = inversion.alone(seen.frames)
     found = inversion.judged(way, *raw)

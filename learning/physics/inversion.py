@@ -2,8 +2,9 @@
 
 Fitting takes seconds: compression.py, gaussian_process.py, prior.py and, from the validation clips, conformal.py.
 Identifying a clip reads the parameters off the process; given a simulator of the gown, indirect.py then looks for the
-parameters whose simulated clip gets the same answer.  A process fitted to rough clips also says how far the camera was
-from where the clip says, and the simulated camera is moved along with the parameters.
+parameters whose simulated clip gets the same answer, or, where the process is blunt, deviation.py learns how it errs
+for this gown.  A process fitted to rough clips also says how far the camera was from where the clip says, and the
+simulated camera is moved along with the parameters.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from .compression import Compression, fit_compression
 from .conformal import Calibration, calibrate
+from .deviation import follow
 from .film_camera import MISPLACED
 from .gaussian_process import GaussianProcess, fit_gaussian_process
 from .indirect import match
@@ -24,6 +26,7 @@ from .prior import Prior, fit_prior
 
 SCORES = 128
 ROUNDS = 9  # steps of the correction
+SIMULATIONS = 20  # of a clip that a blunt process reads: what two seconds allow
 CAMERA_UNIT = 10.0 * MISPLACED  # in which the process says how far the camera is misplaced
 CAMERA_UNSURE = 0.03  # of these, in the process's word
 FAR = 0.4  # the most that is looked for
@@ -84,10 +87,19 @@ class Inversion:
         scores = self.compression(frames)
         return self.process(scores)[:, : self.parameters], self.process.distance(scores)
 
-    def simulated(self, frames: np.ndarray, film: Film, rounds: int = ROUNDS) -> tuple[np.ndarray, np.ndarray]:
-        """The same after correction: (N, P) parameters, (N,) distance to the simulated clip."""
+    def simulated(self, frames: np.ndarray, film: Film, *, blunt: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """The same after correction: (N, P) parameters, (N,) distance to the simulated clip.
+
+        Args:
+            frames: of the clips.
+            film: simulates them.
+            blunt: whether these gowns have a cut that the process knows little of; without effect where the camera is
+                looked for too.
+        """
         seen, p = self.compression(frames), self.parameters
         said, novelty = self.process(seen), self.process.distance(seen)
+        if blunt and said.shape[1] == p:
+            return self._followed(seen, said, film)
         camera = list(range(p, said.shape[1]))
         moved = self.shown + camera  # what simulating again moves
 
@@ -103,9 +115,20 @@ class Inversion:
         # the camera's slopes are cheap to measure: the gown's fall stays the same
         low, high = (np.array([gown] * len(self.shown) + [far] * len(camera)) for gown, far in ((0, -FAR), (1, FAR)))
         found = said[:, :p].copy()
-        matched, misfit = match(answers, said[:, moved], unsure, rounds, low=low, high=high,
+        matched, misfit = match(answers, said[:, moved], unsure, ROUNDS, low=low, high=high,
                                 measure=range(len(self.shown), len(moved)))
         found[:, self.shown] = matched[:, : len(self.shown)]
+        return found, misfit
+
+    def _followed(self, seen: np.ndarray, said: np.ndarray, film: Film) -> tuple[np.ndarray, np.ndarray]:
+        def scores(values: np.ndarray) -> np.ndarray:
+            unit = np.clip(said, 0.0, 1.0)
+            unit[:, self.shown] = values
+            return self.compression(film(unit))
+
+        found = said.copy()
+        found[:, self.shown], misfit = follow(scores, lambda some: self.process(some)[:, self.shown],
+                                              self.process.lengths[self.shown], seen, SIMULATIONS)
         return found, misfit
 
     def judged(self, way: str, unit: np.ndarray, misfit: np.ndarray) -> Estimate:

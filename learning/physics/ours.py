@@ -51,7 +51,7 @@ class Ours(Method):
                     unit[index], misfit[index] = inversion.alone(clips.frames[index])
                     continue
                 for one in index[:, None]:  # each for itself: some need few rounds
-                    unit[one], misfit[one] = inversion.simulated(clips.frames[one], films(one))
+                    unit[one], misfit[one] = inversion.simulated(clips.frames[one], films(one), blunt=other)
         return unit, misfit
 
     def judged(self, way: str, rough: np.ndarray, unit: np.ndarray, misfit: np.ndarray, *,

@@ -91,8 +91,7 @@ def _inversion(tensors: dict[str, np.ndarray], shown: tuple[int, ...]) -> Invers
     def part(prefix: str) -> dict[str, np.ndarray]:
         return {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
 
-    squeeze, process = part("compression."), part("process.")
-    compression = Compression(**{**squeeze, "components": squeeze["components"].astype(np.float32)})
+    compression, process = Compression(**part("compression.")), part("process.")
     process["inputs"] = process["inputs"].astype(float)
     widths = {way: Widths(**{stage: _calibration(part(f"{way}.{stage}.")) for stage in ("before", "after")})
               for way in sorted({key.split(".")[0] for key in tensors if key.endswith(".after.factor")})}
