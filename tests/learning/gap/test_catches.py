@@ -3,12 +3,13 @@
 import numpy as np
 from caretree.learning.gap.cloth.catches import best_catch
 from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
-from caretree.learning.gap.cloth.scene import ClothEpisode, ClothScene, Physics
+from caretree.learning.gap.cloth.scene import ClothEpisode
 from caretree.sim.effects.carriers import spread_vertices
 from caretree.sim.effects.model_file import EffectEntry
 
+from .sheet import VERTICES, plain_sheet
+
 STEPS = {("snag", "stiffness"): 0.1}
-VERTICES = np.array([(0.07 * i, 0.0, -0.07 * j) for j in range(7) for i in range(7)])
 T = np.linspace(0.0, 1.0, 50)
 
 
@@ -38,18 +39,7 @@ def snag(place, stiffness, t0, t1):
 
 def test_a_snag_is_moved_to_where_and_when_it_caught():
     sim = Straight()
-    physics = Physics(
-        mass=0.1,
-        elastic_stiffness=40.0,
-        damping_stiffness=0.005,
-        bending_stiffness=0.1,
-        friction=0.4,
-        gravity=(0.0, 0.0, -9.81),
-        time_step=0.002,
-    )
-    scene = ClothScene(
-        vertices=VERTICES, faces=np.zeros((0, 3), int), physics=physics, capsules=np.zeros((0, 7)), markers=(0, 6)
-    )
+    scene = plain_sheet()
     episode = ClothEpisode(name="e", role="fit", t=T, markers=np.zeros((len(T), 2, 3)), load=None, pins=())
     near = np.argsort(np.linalg.norm(sim.parts - sim.parts[3], axis=1))
     fitter = ClothFitter(sim, [episode], np.ones(6))

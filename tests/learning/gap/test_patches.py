@@ -3,10 +3,12 @@
 import numpy as np
 from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
 from caretree.learning.gap.cloth.patches import best_patch
-from caretree.learning.gap.cloth.scene import ClothEpisode, ClothScene, Physics, Pin
+from caretree.learning.gap.cloth.scene import ClothEpisode, Pin
 from caretree.sim.effects.added_mass import AddedMass
 from caretree.sim.effects.carriers import spread_vertices
 from caretree.sim.effects.model_file import EffectEntry
+
+from .sheet import VERTICES, plain_sheet
 
 STEPS = {("added_mass", "mass"): 0.01}
 
@@ -31,21 +33,9 @@ def entry(x, z, mass, radius):
 
 
 def test_a_mass_is_moved_to_the_patch_it_sits_on():
-    vertices = np.array([(0.07 * i, 0.0, -0.07 * j) for j in range(7) for i in range(7)])
     pins = (Pin(vertices=(0, 1), release_t=float("inf"), path=None),)
-    carriers = vertices[spread_vertices(vertices, 12, {0, 1})]
-    physics = Physics(
-        mass=0.1,
-        elastic_stiffness=40.0,
-        damping_stiffness=0.005,
-        bending_stiffness=0.1,
-        friction=0.4,
-        gravity=(0.0, 0.0, -9.81),
-        time_step=0.002,
-    )
-    scene = ClothScene(
-        vertices=vertices, faces=np.zeros((0, 3), int), physics=physics, capsules=np.zeros((0, 7)), markers=(0, 6)
-    )
+    carriers = VERTICES[spread_vertices(VERTICES, 12, {0, 1})]
+    scene = plain_sheet()
     sim = Straight(carriers)
     episode = ClothEpisode(
         name="e", role="fit", t=np.arange(20) / 20, markers=np.zeros((20, 2, 3)), load=None, pins=pins

@@ -7,10 +7,8 @@ from caretree.sim.robot.model import READY
 from caretree.sim.robot.servo import Servo
 from caretree.sim.world import RoomMap
 from caretree.skills.motion.drive import PathFollower
-from caretree.skills.motion.errors import PathBlocked, Unreachable
-from caretree.skills.motion.ik import hand_pose
+from caretree.skills.motion.errors import PathBlocked
 from caretree.skills.motion.path import is_free, path_length, plan_path
-from caretree.skills.motion.stance import best_base_pose, reach_score
 
 BED = np.array(((-0.45, -1.0, 0.0), (0.45, 1.0, 0.6)))
 
@@ -87,22 +85,3 @@ def test_the_follower_is_done_only_with_the_right_heading():
     assert follower.done(np.array((0.99, 0.01, -np.pi + 0.01)))
     turning = follower.command(np.array((1.0, 0.0, 0.0)))
     assert abs(turning.velocity[2]) > 0.3
-
-
-def test_best_stance_reaches_what_the_waypoint_does_not():
-    kinematics = Kinematics()
-    targets = [("right", hand_pose((-0.1, -0.1, 0.9), (-1, 0, -1))),
-               ("left", hand_pose((-0.1, -0.7, 0.9), (-1, 0, -1)))]
-    near = np.array((1.4, 0.1, np.pi))
-    assert min(reach_score(kinematics, side, pose, near) for side, pose in targets) == 0.0
-    stance = best_base_pose(kinematics, targets, room(), near, radius=0.5, step=0.25)
-    assert stance.reached == 2
-    assert is_free(room(), stance.pose_base_in_map[:2])
-    assert stance.pose_base_in_map[0] < 1.1
-    assert all(reach_score(kinematics, side, pose, stance.pose_base_in_map) > 0 for side, pose in targets)
-
-
-def test_no_stance_is_told():
-    far = hand_pose((-2, 0, 0.9), (-1, 0, 0))
-    with pytest.raises(Unreachable, match="no free base pose"):
-        best_base_pose(Kinematics(), [("left", far)], room(), (1.2, 0, np.pi), radius=0.1)
