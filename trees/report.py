@@ -22,6 +22,7 @@ from .timeline import read_trace, spans_of
 
 TEMPLATE = Path(__file__).with_name("report_template.html")
 FRAMES_MAX = 12
+LONG, APART = 60.0, 1.0  # a stage that is shown half way, and pictures that are not alike [s]
 SENTENCES = {"success": "success", "failure": "failure", "safe_stop": "safe stop"}
 CLASSES = {"success": "good", "failure": "bad", "safe_stop": "warn"}
 BOUNDS: tuple[tuple[str, str, str, str, float], ...] = (
@@ -168,16 +169,25 @@ def _timeline(directory: Path, stages: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
-    """The first picture, the end of each stage, the last picture, and the video itself."""
+    """The first picture, the middle of long stages, the end of each one, the last picture, and the video itself."""
     start, end = run.get("video_start_s"), run.get("sim_time_s")
     path = directory / VIDEO_FILE
     if not path.exists():
         return '<p class="soft">No video was recorded.</p>'
     start = float(start) if isinstance(start, (int, float)) else 0.0
     moments = [(start, "at the start")]
-    moments += [(float(stage["t_end"]), f"end of {stage.get('name')}") for stage in stages
-                if isinstance(stage.get("t_end"), (int, float))][:FRAMES_MAX - 2]
-    moments.append((float(end) if isinstance(end, (int, float)) else float("inf"), "at the end"))
+    for stage in stages:
+        first, last, name = stage.get("t_start"), stage.get("t_end"), stage.get("name")
+        if not isinstance(last, (int, float)):
+            continue
+        if isinstance(first, (int, float)) and last - first > LONG:
+            moments.append((0.5 * (first + last), f"half way through {name}"))
+        if last - moments[-1][0] > APART:  # a stage that found nothing to do shows what the one before it left
+            moments.append((float(last), f"end of {name}"))
+    moments = moments[:FRAMES_MAX - 1]
+    last = float(end) if isinstance(end, (int, float)) else float("inf")
+    if last - moments[-1][0] > APART:
+        moments.append((last, "at the end"))
     pictures = read_pictures(path, [max(0.0, t - start) for t, _ in moments])
     figures = "".join(
         f"<figure>{_image(report_figures.jpeg(picture), caption, 'jpeg')}<figcaption>{_text(caption)}"

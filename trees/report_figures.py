@@ -23,7 +23,7 @@ WIDTH = 9.6  # [in] of every figure, so that their time axes line up
 COLOURS = {"left": "#1f6fb2", "right": "#c8641b"}
 STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "running": "#d9a53a"}
 LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
-ROWS_MAX = 24  # skills drawn in the timeline
+ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 40
 
 
 def _figure(rows: int, height: float) -> tuple[Figure, list[Axes]]:
