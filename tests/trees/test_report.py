@@ -48,7 +48,7 @@ def test_whole_page(make_record, tmp_path):
     assert "real-time factor" in page
     assert re.search(r"<b>\d+ MB</b><span>peak memory", page)
     assert [source[:14] for source in sources].count("data:image/png") == 2
-    assert [source[:15] for source in sources].count("data:image/jpeg") == 5  # start, four stages; the last of them ends the run
+    assert [source[:15] for source in sources].count("data:image/jpeg") == 5  # start, four stages, the last one the end
     assert "video.mp4" in sources
     assert "Not available" not in page
     assert not re.search(r'(src|href)="(https?:)?//', page)  # nothing is fetched from elsewhere
