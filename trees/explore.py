@@ -110,6 +110,7 @@ class Explorer:
             if isinstance(node, (Retry, RecoverBy)):
                 node.attempts = min(node.attempts, ATTEMPTS)
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
+        self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._seen: set[Any] = set()
         self._met: set[Any] = set()  # situations of the present execution
@@ -204,7 +205,7 @@ class Explorer:
         """All that decides what can happen from here on."""
         active = {leaf, *(above for above, _ in _ancestors(leaf))}
         moved = any(each.commands and each not in self._in_safe for each, _ in self._way)
-        return leaf.id, frozenset(self.board), moved, self._state(self._root, active)
+        return leaf.id, self._read & self.board, moved, self._state(self._root, active)
 
     def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
