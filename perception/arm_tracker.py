@@ -7,12 +7,24 @@ by the lengths of the limb, by its last motion, which dies out, and by the gripp
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 
 from ..sim.world import Frame, Side
-from .chain import LENGTHS, ChainFit, SkinView, Trunk, fit_chain
+from .chain import (
+    LENGTHS,
+    SPAN_SIGMA,
+    ChainFit,
+    Limb,
+    SkinView,
+    Trunk,
+    fit_chain,
+    point_along,
+    span_row,
+    turned_about_shoulder,
+)
 from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture
 from .skin import (
@@ -31,14 +43,24 @@ _GATE = 40.0  # squared Mahalanobis distance of a whole fit, 12 degrees of freed
 _FADE = 0.4  # time after which a motion has died out [s]
 _RECENT = 0.5  # what was seen or held that lately may be moving [s]
 # Speed of the joints, standard deviation [m/s]: in view anything goes; held by the robot it may be moving where it
-# is not seen; an arm that its owner cannot move, unseen and not held, stays where it is but for small slips.
-_SPEED_SEEN, _SPEED_HELD, _SPEED_HIDDEN = 0.10, 0.03, 0.003
+# is not seen; let go of it may sink for a while; an arm that its owner cannot move, unseen and not held, stays where it
+# is but for small slips.
+_SPEED_SEEN, _SPEED_HELD, _SPEED_SINKING, _SPEED_HIDDEN = 0.10, 0.03, 0.06, 0.003
+_SINKING = 15.0  # after it was let go [s]
 _SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard deviation [m]
 _EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
 _WORST = 6.0  # mean squared residual of a fit that is believed
 _SIZES = (0.85, 1.15)  # of bodies, relative to 174 cm
 _PITCHES = np.deg2rad((-6.0, 30.0))  # at which an arm is looked for: at rest on the bed, and as a robot leaves it
+_ABDUCTIONS, _BENDS = np.deg2rad((15.0, 40.0, 65.0)), np.deg2rad((0.0, 45.0))
+# How far joints may be from where a search starts: from one posture of many, and from where they were last [m].
+_ANYWHERE, _NEARBY = np.array((0.03, 0.20, 0.30, 0.40)), np.array((0.03, 0.08, 0.10, 0.12))
+_BETTER = 0.3  # by which another start must explain a picture better than those tried before it
 _OFF = 0.10  # from where the head says that it is, a shoulder is not believed [m]
+_FAR = 0.05  # a held point that far from where it is expected turns the whole arm at once [m]
+_TWIST = 0.2  # share of the way of a turned arm's joints that is not known: it may twist about its axis
+_WELL = 0.04  # deviation of every joint at which the first look has seen a whole arm [m]
+_KNOWN_SIGMA = 0.03  # relative, of lengths that were seen once
 _LOST = 0.10  # standard deviation at which a joint counts as lost [m]
 
 
@@ -67,6 +89,7 @@ class ArmTracker:
         self.middle = float(self.bed[:, 0].mean())
         self.shoulder_y = -np.inf
         self._sign = 1.0 if side == "right" else -1.0  # the person's right is +x
+        self._limb: Limb | None = None  # of an arm that was seen whole once
         self._filter: Any = None
         self._rejected = 0
         self._wrong = 0
@@ -100,10 +123,10 @@ class ArmTracker:
             return 0
         home = self._joints()
         home[0] = self._shoulder  # the trunk stays on the bed, and clothes hide the shoulder most of the time
-        anchor = np.maximum(3 * self._deviation(), 0.05)
+        anchor = np.clip(3 * self._deviation(), 0.05, _NEARBY.max())
         anchor[0] = _SHOULDER_PLAY
-        fit = fit_chain(view, self._joints(), anchor=anchor, home=home, scale=self.scale, iterations=5,
-                        gate=float(np.clip(3 * self._deviation().max(), 0.05, 0.12)))
+        fit = fit_chain(view, self._joints(), anchor=anchor, home=home, scale=self.scale, limb=self._limb,
+                        iterations=5, gate=float(np.clip(3 * self._deviation().max(), 0.05, 0.12)))
         self._wrong = self._wrong + 1 if fit.used < _EXPLAINED * len(view.points) or fit.cost > _WORST else 0
         if self._wrong >= 5:
             return self._find_again(frame, view)
@@ -135,6 +158,7 @@ class ArmTracker:
         if self._filter is None:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
         self._predict(time)
+        self._turn_to(np.asarray(point_in_map, dtype=float), fraction)
         self.held = time
         segment = min(int(fraction), 2)
         share = float(np.clip(fraction - segment, 0.0, 1.0))
@@ -159,6 +183,19 @@ class ArmTracker:
         return ArmPosture(stamp=self.time, confidence=float(np.exp(-deviation.max() / 0.05)), side=self.side,
                           points_in_map=self._joints(), deviation=deviation)
 
+    def _turn_to(self, point: np.ndarray, fraction: float) -> None:
+        """Turn the arm about its shoulder as one piece until `fraction` of it points at where the robot holds it.
+
+        A filter that is told of an elbow far from where it was leaves the hand behind.
+        """
+        joints = self._joints()
+        if np.linalg.norm(point - point_along(joints, fraction)) < _FAR:
+            return
+        turned = turned_about_shoulder(joints, fraction, point)
+        moved = np.linalg.norm(turned - joints, axis=1)
+        self._filter.x[:12] = turned.ravel()
+        self._filter.P[:12, :12] += np.diag(np.repeat((_TWIST * moved) ** 2, 3))
+
     def _joints(self) -> np.ndarray:
         return self._filter.x[:12].reshape(4, 3).copy()
 
@@ -177,7 +214,7 @@ class ArmTracker:
     def _view(self, frame: Frame) -> SkinView:
         import cv2
 
-        points, skin = skin_on_bed(frame, self.bed)
+        points, skin = skin_on_bed(frame, self.bed, inner=True)
         side = (points[:, 0] - self.middle) * self._sign
         below_head = points[:, 1] > (self.shoulder_y - 0.10)
         mine = points[(side > TRUNK_HALF_WIDTH * self.scale + _MARGIN) & below_head]
@@ -203,21 +240,23 @@ class ArmTracker:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
         shoulder = np.array((self.middle + self._sign * SHOULDER_HALF_WIDTH * self.scale, self.shoulder_y,
                              self.bed[1, 2] + SHOULDER_ABOVE_BED))
-        anchor = np.array((0.03, 0.20, 0.30, 0.40))
-        best: tuple[float, ChainFit] | None = None
-        for pitch in _PITCHES:
-            for abduction in np.deg2rad((15.0, 40.0, 65.0)):
-                for bend in np.deg2rad((0.0, 45.0)):
-                    start = self._posture(shoulder, pitch, abduction, bend)
-                    fit = fit_chain(view, start, scale=self.scale, gate=0.15, anchor=anchor, iterations=15)
-                    missed = 1 - fit.used / len(view.points)
-                    score = fit.cost + 20 * missed
-                    if best is None or score < best[0]:
-                        best = (score, fit)
+        bends = _BENDS if self._limb is None else _BENDS[:1]
+        starts = [(self._posture(shoulder, *angles), _ANYWHERE)
+                  for angles in itertools.product(_PITCHES, _ABDUCTIONS, bends)]
+        if self.started:
+            starts.insert(0, (self._joints(), _NEARBY))
+        best: tuple[float, ChainFit, np.ndarray] | None = None
+        for start, anchor in starts:
+            fit = fit_chain(view, start, scale=self.scale, limb=self._limb, gate=0.15, anchor=anchor, iterations=15)
+            missed = 1 - fit.used / len(view.points)
+            score = fit.cost + 20 * missed
+            if best is None or score < best[0] - _BETTER:
+                best = score, fit, anchor
         assert best is not None
         home = best[1].joints.copy()
         home[0] = shoulder  # which lies on the bed however the arm is raised
-        fit = fit_chain(view, best[1].joints, scale=self.scale, gate=0.06, home=home, anchor=anchor, iterations=10)
+        fit = fit_chain(view, best[1].joints, scale=self.scale, limb=self._limb, gate=0.06, home=home, anchor=best[2],
+                        iterations=10)
         if fit.used < 0.7 * len(view.points) or np.linalg.norm(fit.joints[0] - shoulder) > _OFF:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
         self._make_filter(fit, frame.stamp)
@@ -249,8 +288,11 @@ class ArmTracker:
         self._filter.P[:12, :12] = fit.covariance + np.eye(12) * 0.004**2
         self._filter.P[12:, 12:] = np.eye(12) * 0.02**2
         # lengths as they are seen, between the fit and the prior, stay fixed from now on
-        self._lengths = np.linalg.norm(np.diff(fit.joints, axis=0), axis=1)
-        self._shoulder = fit.joints[0].copy()
+        if self._limb is None:
+            self._lengths = np.linalg.norm(np.diff(fit.joints, axis=0), axis=1)
+            self._shoulder = fit.joints[0].copy()
+            if self._deviation().max() < _WELL:
+                self._limb = Limb(lengths=self._lengths, sigma=_KNOWN_SIGMA, span=span_row(fit.joints)[1])
         self._rejected = self._wrong = 0
         self.time = self.seen = self._frame_stamp = stamp
 
@@ -266,7 +308,9 @@ class ArmTracker:
         transition[12:, 12:] = fade * np.eye(12)
         noise = np.zeros((24, 24))
         recently_seen, recently_held = time - self.seen < _RECENT, time - self.held < _RECENT
-        speed = _SPEED_SEEN if recently_seen else _SPEED_HELD if recently_held else _SPEED_HIDDEN
+        may_sink = time - self.held < _SINKING
+        speed = (_SPEED_SEEN if recently_seen else _SPEED_HELD if recently_held else
+                 _SPEED_SINKING if may_sink else _SPEED_HIDDEN)
         noise[12:, 12:] = np.eye(12) * speed**2 * (1 - fade**2)
         noise[:12, :12] = np.eye(12) * 2 * speed**2 * _FADE * step * (1 - (1 - fade) * _FADE / step)
         self._filter.F, self._filter.Q = transition, noise
@@ -294,3 +338,6 @@ class ArmTracker:
             rows[k, k] = -rows[k, k + 1]
         rows = rows.reshape(3, 12)
         self._measure(self._lengths - size + rows @ self._filter.x[:12], rows, np.eye(3) * 0.006**2)
+        if self._limb is not None and self._limb.span is not None:
+            row, reach = span_row(self._joints())
+            self._measure(self._limb.span - reach + row @ self._filter.x[:12], row, np.eye(1) * SPAN_SIGMA**2)

@@ -13,12 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .cloud import unit
+
 LENGTHS = np.array((0.28, 0.25, 0.175))  # upper arm, forearm, hand of an adult of 174 cm [m]
 RADII = np.array((0.041, 0.036, 0.030))  # of the same [m]
 _POINT_SIGMA = 0.012  # one point to the surface: sensor noise and limbs that are no capsules [m]
 _EFFECTIVE = 30  # that many of the points are independent: neighbours share their error
 _EMPTY_SIGMA = 0.010  # an axis sample beside the skin: two pixels [m]
 _BODY_SIGMA = 0.02  # how firmly the trunk and the elbow's limit hold [m]
+# Friction holds an elbow that its owner cannot move: what lies between shoulder and wrist stays, in an arm that was
+# straight to an angle of 30 degrees [m].
+SPAN_SIGMA = 0.015
 _NEAREST_WRIST = 0.30  # from the shoulder: an elbow at 111 degrees, more than an arm at rest bends [m]
 _SEGMENT = np.repeat(np.arange(3), 6)  # samples along each capsule's axis, and the very end of the fingers
 _SHARE = np.tile(np.linspace(0.1, 1.0, 6), 3)
@@ -74,6 +79,21 @@ class SkinView:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Limb:
+    """What is known of one arm before a look at it.
+
+    Attributes:
+        lengths: (3,) of upper arm, forearm and hand [m].
+        sigma: relative standard deviation of the lengths.
+        span: from shoulder to wrist, which says how far the elbow is bent; None where that is not known [m].
+    """
+
+    lengths: np.ndarray
+    sigma: float = 0.06
+    span: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChainFit:
     """Result of a fit.
 
@@ -88,6 +108,24 @@ class ChainFit:
     covariance: np.ndarray
     cost: float
     used: int
+
+
+def point_along(joints: np.ndarray, fraction: float) -> np.ndarray:
+    """Point (3,) on the axis of an arm (4, 3), `fraction` 0 at the shoulder to 3 at the fingertip [m]."""
+    segment = min(int(fraction), 2)
+    return joints[segment] + (fraction - segment) * (joints[segment + 1] - joints[segment])
+
+
+def turned_about_shoulder(joints: np.ndarray, fraction: float, point: np.ndarray) -> np.ndarray:
+    """An arm (4, 3) turned about its shoulder until `fraction` of it (0 shoulder, 3 fingertip) points at (3,) [m]."""
+    from scipy.spatial.transform import Rotation
+
+    before, after = unit(point_along(joints, fraction) - joints[0]), unit(point - joints[0])
+    axis = np.cross(before, after)
+    if not axis.any():
+        return joints.copy()
+    turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), before @ after))
+    return joints[0] + turn.apply(joints - joints[0])
 
 
 def nearest_on_chain(points: np.ndarray, joints: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -105,7 +143,7 @@ def nearest_on_chain(points: np.ndarray, joints: np.ndarray, radii: np.ndarray) 
 
 
 def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np.ndarray | None = None,
-              scale: float = 1.0, gate: float = 0.08, length_sigma: float = 0.06, iterations: int = 8) -> ChainFit:
+              scale: float = 1.0, limb: Limb | None = None, gate: float = 0.08, iterations: int = 8) -> ChainFit:
     """Fit the chain to one view.
 
     Args:
@@ -114,12 +152,12 @@ def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np
         anchor: (4,) standard deviation of the pull of each joint towards `home` [m].
         home: (4, 3), `start` if not given [m].
         scale: body size relative to 174 cm.
+        limb: what is known of this arm; an adult's lengths times `scale` and any bend if not given.
         gate: points farther than this from the surface belong to something else [m].
-        length_sigma: relative standard deviation of the lengths.
         iterations: Gauss-Newton steps.
     """
     q = start.astype(float).copy()
-    lengths, radii = LENGTHS * scale, RADII * scale
+    limb, radii = limb or Limb(lengths=LENGTHS * scale), RADII * scale
     matrix, cost, used = np.eye(12), np.inf, 0
     for _ in range(iterations):
         matrix, vector, total, weight = np.zeros((12, 12)), np.zeros(12), 0.0, 0.0
@@ -135,7 +173,7 @@ def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np
                 total += float((w * signed[mine] ** 2).sum())
                 weight += float(w.sum()) * _POINT_SIGMA**2
         total += _add_empty(matrix, vector, view, q) + _add_body(matrix, vector, view.trunk, q, scale)
-        _add_priors(matrix, vector, q, start if home is None else home, lengths, length_sigma, anchor)
+        _add_priors(matrix, vector, q, start if home is None else home, limb, anchor)
         step = np.linalg.solve(matrix + 1e-6 * np.eye(12), -vector)
         longest = np.linalg.norm(step.reshape(4, 3), axis=1).max()
         q += (step * min(1.0, 0.06 / max(longest, 1e-9))).reshape(4, 3)
@@ -202,27 +240,28 @@ def _add_body(matrix: np.ndarray, vector: np.ndarray, trunk: Trunk | None, q: np
             w = np.full(len(outward), 1 / _BODY_SIGMA**2)
             _add(matrix, vector, _rows(segment[deep], share[deep], outward), depth[deep], w)
             total += float((w * depth[deep] ** 2).sum())
-    reach = q[2] - q[0]
-    size = float(np.linalg.norm(reach))
-    lacking = _NEAREST_WRIST * scale - size
+    row, reach = span_row(q)
+    lacking = _NEAREST_WRIST * scale - reach
     if lacking > 0:
-        rows = np.zeros((1, 4, 3))
-        rows[0, 2], rows[0, 0] = -reach / max(size, 1e-6), reach / max(size, 1e-6)
-        _add(matrix, vector, rows.reshape(1, 12), np.array([lacking]), np.array([1 / _BODY_SIGMA**2]))
+        _add(matrix, vector, -row, np.array([lacking]), np.array([1 / _BODY_SIGMA**2]))
         total += (lacking / _BODY_SIGMA) ** 2
     return total
 
 
-def _add_priors(matrix: np.ndarray, vector: np.ndarray, q: np.ndarray, home: np.ndarray, lengths: np.ndarray,
-                length_sigma: float, anchor: np.ndarray) -> None:
-    """Add lengths, straightness of the hand and the pull towards home."""
+def _add_priors(matrix: np.ndarray, vector: np.ndarray, q: np.ndarray, home: np.ndarray, limb: Limb,
+                anchor: np.ndarray) -> None:
+    """Add lengths, the elbow's bend, straightness of the hand and the pull towards home."""
     along = np.diff(q, axis=0)
     size = np.linalg.norm(along, axis=1)
     rows = np.zeros((3, 4, 3))
     for k in range(3):
         rows[k, k + 1] = along[k] / size[k]
         rows[k, k] = -rows[k, k + 1]
-    _add(matrix, vector, rows.reshape(3, 12), size - lengths, 1 / (length_sigma * lengths) ** 2)
+    lengths = limb.lengths
+    _add(matrix, vector, rows.reshape(3, 12), size - lengths, 1 / (limb.sigma * lengths) ** 2)
+    if limb.span is not None:
+        row, reach = span_row(q)
+        _add(matrix, vector, row, np.array([reach - limb.span]), np.array([1 / SPAN_SIGMA**2]))
     # fingertip = wrist + hand length along the forearm, within about 12 degrees
     k = lengths[2] / lengths[1]
     bend = np.zeros((3, 4, 3))
@@ -232,3 +271,13 @@ def _add_priors(matrix: np.ndarray, vector: np.ndarray, q: np.ndarray, home: np.
     pull = np.repeat(1 / anchor**2, 3)
     matrix += np.diag(pull)
     vector += pull * (q - home).ravel()
+
+
+def span_row(q: np.ndarray) -> tuple[np.ndarray, float]:
+    """Jacobian row (1, 12) of the distance from shoulder to wrist, and that distance [m]."""
+    reach = q[2] - q[0]
+    size = float(np.linalg.norm(reach))
+    row = np.zeros((1, 4, 3))
+    row[0, 2] = reach / max(size, 1e-6)
+    row[0, 0] = -row[0, 2]
+    return row.reshape(1, 12), size

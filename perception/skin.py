@@ -18,12 +18,13 @@ SHOULDER_ABOVE_BED = 0.10
 TRUNK_HALF_WIDTH = 0.20
 
 
-def skin_on_bed(frame: Frame, bed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def skin_on_bed(frame: Frame, bed: np.ndarray, *, inner: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Skin on and above the bed.
 
     Args:
         frame: any view.
         bed: (2, 3) lower and upper corner of the bed in the map [m].
+        inner: leave out points at the edge of the skin, whose pixels mix two depths.
 
     Returns:
         Points (n, 3) in the map [m] and the mask (H, W) of all skin.
@@ -32,7 +33,8 @@ def skin_on_bed(frame: Frame, bed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     skin = (surfaces(frame.rgb) == Surface.SKIN).astype(np.uint8)
     skin = cv2.morphologyEx(skin, cv2.MORPH_OPEN, np.ones((2, 2), np.uint8)) > 0
-    cloud = points_in_map(frame)[skin]
+    taken = cv2.erode(skin.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0 if inner else skin
+    cloud = points_in_map(frame)[taken]
     margin = np.array((0.45, 0.15, 0.0))  # an arm may reach over the edge of the bed
     low, high = bed[0] - margin, bed[1] + margin
     inside = np.isfinite(cloud[:, 2]) & (cloud[:, :2] > low[:2]).all(axis=1) & (cloud[:, :2] < high[:2]).all(axis=1)

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..perception.cloud import project, unit
+from ..perception.chain import turned_about_shoulder
+from ..perception.cloud import project
 from ..perception.colours import Surface, surfaces
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture, Head
@@ -82,7 +83,9 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
         watch.looked = now
         frame = skill.world.look("head")
         if hold is not None and side in watch.arms:
-            watch.arms[side] = turned_with(watch.arms[side], hold.place, _held_at(skill, hold))
+            # looked for where it was, a moving arm has something in front of it, and is never found again
+            points = turned_about_shoulder(watch.arms[side].points_in_map, hold.place, _held_at(skill, hold))
+            watch.arms[side] = replace(watch.arms[side], points_in_map=points)
         try:
             if side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
@@ -91,21 +94,6 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
-
-
-def turned_with(posture: ArmPosture, place: float, point_in_map: np.ndarray) -> ArmPosture:
-    """The posture turned about its shoulder so that `place` on it points at where the robot holds it (3,) [m].
-
-    A camera that looks for a moving arm where it was finds something in front of it, and never finds it again.
-    """
-    from scipy.spatial.transform import Rotation
-
-    shoulder = posture.points_in_map[0]
-    before, after = unit(ArmPath.of(posture).point(place) - shoulder), unit(point_in_map - shoulder)
-    axis = np.cross(before, after)
-    turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), before @ after)) if axis.any() else None
-    points = posture.points_in_map if turn is None else shoulder + turn.apply(posture.points_in_map - shoulder)
-    return replace(posture, points_in_map=points)
 
 
 def visible_share(frame: Frame, posture: ArmPosture) -> float:

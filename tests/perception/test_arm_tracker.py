@@ -85,7 +85,7 @@ def test_hidden_arm_is_remembered_then_lost(scenes, bed):
     with pytest.raises(PerceptionFailure) as lost:
         tracker.estimate(2000.0)
     assert lost.value.kind == "arm_lost"
-    again = scenes.person(2)
+    again = scenes.person(1, lift=0.35)
     assert tracker.update(again.frame(0, stamp=2001.0)) > 0  # seen again, elsewhere
     assert errors_of(tracker, again, 2001.0).max() < 0.06
 
@@ -113,6 +113,33 @@ def test_grip_moves_what_is_not_seen(scenes, bed):
     assert after[1, 2] - before[1, 2] == pytest.approx(0.1, abs=0.02)
     lengths = [np.linalg.norm(np.diff(p, axis=0), axis=1) for p in (before, after)]
     np.testing.assert_allclose(lengths[0], lengths[1], atol=0.02)
+
+
+def test_a_forearm_under_cloth_is_not_taken_for_a_folded_one(scenes, bed):
+    """Lifted out of sight by the elbow, then seen again with a sleeve over the forearm and the hand."""
+    for seed in range(4):
+        before, after = scenes.person(seed), scenes.person(seed, lift=0.5)
+        tracker = ArmTracker("right", bed)
+        for k in range(5):
+            tracker.update(before.frame(k, stamp=0.1 * k))
+        arm = after.arms["right"]
+        tracker.update_grip(12.0, arm[1], 1.0)
+        along = (arm[3] - arm[1]) / np.linalg.norm(arm[3] - arm[1])
+        sleeve = cylinder_mesh(arm[1] + 0.06 * along, arm[3] + 0.05 * along, 0.07)
+        after.renderer.add_rigid("sleeve", *sleeve, after.look.colours["gown_outside"])
+        for k in range(5):
+            tracker.update(after.frame(k, stamp=12.0 + 0.25 * k))
+        assert errors_of(tracker, after, 13.0).max() < 0.07
+
+
+def test_an_arm_let_go_of_is_found_where_it_sank_to(scenes, bed):
+    raised, sunk = scenes.person(2, lift=0.6), scenes.person(2, lift=0.2)
+    tracker = ArmTracker("right", bed)
+    for k in range(5):
+        tracker.update(raised.frame(k, stamp=0.1 * k))
+        tracker.update_grip(0.1 * k, raised.arms["right"][1], 1.0)
+    tracker.update(sunk.frame(9, stamp=12.0))
+    assert errors_of(tracker, sunk, 12.0).max() < 0.06
 
 
 def test_a_stale_frame_is_no_evidence(scenes, bed):

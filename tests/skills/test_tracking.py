@@ -6,7 +6,7 @@ from caretree.sim.world import Frame
 from caretree.skills.context import Context, Perception
 from caretree.skills.scripted_person import lying_posture
 from caretree.skills.skill import Skill
-from caretree.skills.tracking import NEAR_SPEED, careful, turned_with, visible_share, watch_arm, watch_of
+from caretree.skills.tracking import NEAR_SPEED, careful, visible_share, watch_arm, watch_of
 from caretree.trees.guard import GuardedWorld
 
 DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
@@ -83,15 +83,3 @@ def test_hands_are_slow_near_what_was_seen_and_fast_elsewhere():
     limit = careful(skill, 0.5)
     assert limit(np.array((0.5, -0.2, 0.9))) == NEAR_SPEED
     assert limit(np.array((1.2, 0.6, 1.2))) == 0.5
-
-
-def test_a_held_arm_is_looked_for_where_the_hand_holds_it():
-    posture = lying_posture("right")
-    shoulder, elbow = posture.points_in_map[:2]
-    raised = shoulder + np.linalg.norm(elbow - shoulder) * np.array((0.6, 0.0, 0.8))
-    turned = turned_with(posture, 1.0, raised)
-    np.testing.assert_allclose(turned.points_in_map[0], shoulder)
-    np.testing.assert_allclose(turned.points_in_map[1], raised, atol=1e-9)
-    lengths = [np.linalg.norm(np.diff(p.points_in_map, axis=0), axis=1) for p in (posture, turned)]
-    np.testing.assert_allclose(*lengths)
-    np.testing.assert_allclose(turned_with(posture, 1.0, elbow).points_in_map, posture.points_in_map, atol=1e-9)
