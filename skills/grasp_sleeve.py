@@ -22,6 +22,8 @@ from .strap_grip import StrapGrip, strap_grip
 from .strap_view import find_sleeve, strap_views
 from .tracking import Hold, careful, watch_arm
 
+ELBOW, FINGERTIP = 1, 3  # joints of the arm
+WELL = 0.4  # confidence of a sleeve whose strap shows; where it is hidden it has 0.2
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
 
 
@@ -48,8 +50,7 @@ class GraspSleeve(Skill):
     def _grasp(self) -> Iterator[None]:
         """Look from afar, look from close by, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
-        yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[3])
-        far = find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
+        far = yield from self._find()
         strap = yield from self._look_closely(far)
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
@@ -66,6 +67,29 @@ class GraspSleeve(Skill):
                 yield from back_off(self, self.hand)
             raise
         self.grip = strap_grip(self.side, self.hand, strap, pose)
+
+    def _find(self) -> Generator[None, None, SleeveOpening]:
+        """As the head stands, then turned to the hand and to the elbow, until the sleeve shows well; the best of these.
+
+        The robot's own arms hide it from some of these sides.
+        """
+        best: SleeveOpening | None = None
+        lost: PerceptionFailure | None = None
+        for place in (ELBOW,) if self.worn else (None, FINGERTIP, ELBOW):
+            if place is not None:
+                yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[place])
+            try:
+                seen = find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
+            except PerceptionFailure as stop:
+                lost = lost or stop
+                continue
+            best = seen if best is None or seen.confidence > best.confidence else best
+            if best.confidence > WELL:
+                break
+        if best is None:
+            assert lost is not None
+            raise lost
+        return best
 
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""

@@ -22,8 +22,9 @@ from .skill import Skill
 from .strap_grip import StrapGrip, presenting
 from .tracking import Hold, watch_arm
 
-SPEED_AT_HAND, SPEED = 0.08, 0.11  # over the person's hand, and further up the arm [m/s]
-BASE_SPEED = 0.10  # of the base that comes along [m/s]
+SPEED = 0.08  # along the arm; the guard lets the base come along with what is left of a hand's speed [m/s]
+BASE_SPEED = 0.10  # of the base at most [m/s]
+_WAIT = 1.0  # how long a hand that cannot go on lets the base come along alone [s]
 CAUGHT = 5.0  # a sleeve that pulls harder than this and does not come on is caught [N]
 STUCK_FOR = 1.6  # ... for this long [s]
 ADVANCE = 0.01  # the way that counts as coming on [m]
@@ -65,6 +66,7 @@ class PullAlongArm(Skill):
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
+        waits_until = -np.inf
         ring, travelled, begun = RingWatch(self, self.grip.arm, self.grip.hand), 0.0, self.now()
         while True:
             path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
@@ -85,16 +87,21 @@ class PullAlongArm(Skill):
             if place < _ON and self._stands(window):
                 break  # as far as the arm, or the cloth, goes
             if follower is not None and not follower.done(seen.pose_base_in_map) and self._stands(window):
-                window.clear()  # an arm at its end waits for the base, which still comes
+                window.clear()
+                waits_until = seen.time + _WAIT  # its arm is at its end, and the base still comes
             else:
                 self._judge(window)
+            if follower is not None and seen.time < waits_until:
+                ease_hold(self, self.hold)
+                self._drive(follower, seen)
+                yield
+                continue
             if place > _THROUGH:
                 ring.look(path, place, hand[:3, 3])
             if before is not None and before > _SURE >= place and ring.missed(path):
                 raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
             ease_hold(self, self.hold)
-            speed = SPEED_AT_HAND if place > 1.9 else SPEED
-            linear = self.law.velocity(path, place, hand[:3, 3], ring.aside, speed, load)
+            linear = self.law.velocity(path, place, hand[:3, 3], ring.aside, SPEED, load)
             if place > 3.0 and abs(ring.off) > CENTRED and seen.time < begun + _PATIENCE:
                 along = path.direction(place)  # centre the armhole before the hand enters it
                 linear = linear - (1.0 if place < _BEFORE else 0.8) * (linear @ along) * along
