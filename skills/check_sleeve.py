@@ -1,8 +1,10 @@
-"""Stage C: whether the arm is inside its sleeve, now that nothing stands before it."""
+"""Stages C and D: whether the arm is inside its sleeve, and how far up, now that nothing stands before it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+
+import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import WornSleeve
@@ -24,12 +26,13 @@ class CheckSleeve(Skill):
 
     A sleeve of which too little shows is let pass.
 
-    Inputs: `side` of the person.
+    Inputs: `side` of the person; `upto`, how far down the upper arm the cuff of a sleeve that sits well shows at most.
     """
 
     commands = False
     side = Input(Side)
-    reasons = (Reason.SLEEVE_MISSED, Reason.ARM_LOST)
+    upto = Input(float, default=np.inf)
+    reasons = (Reason.SLEEVE_MISSED, Reason.SLEEVE_LOW, Reason.ARM_LOST)
 
     def steps(self) -> Iterator[None]:
         """One look."""
@@ -43,6 +46,8 @@ class CheckSleeve(Skill):
         self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}")
         if seen.cuff_at < CUFF_AT:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
+        if seen.cuff_at > self.upto:
+            raise SkillFailure(Reason.SLEEVE_LOW, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
         yield
 
     @classmethod

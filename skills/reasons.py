@@ -18,6 +18,7 @@ class Reason(enum.Enum):
     CLOTH_SLIPPED = "The cloth slipped out of the fingers."
     SLEEVE_MISSED = "The sleeve went past the person's hand."
     SLEEVE_FOLDED = "The sleeve does not open towards the person's hand."
+    SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
     SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."
     ARM_LOST = "The person's arm is no longer tracked."
     ARM_SLIPPED = "The person's arm slipped out of the grip."

@@ -37,7 +37,7 @@ HEAD_END, SEAT = -0.45, -0.30
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
-TAUT_ON: dict[Side, float] = {"right": 5.6, "left": 3.4}
+TAUT_ON: dict[Side, float] = {"right": 5.6, "left": 5.2}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
@@ -65,8 +65,7 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
         return sequence(
             f"take the {arm} sleeve on", back_off(context, f"let the {arm} strap go", 0.0),
             Navigate(f"stand by the {arm} arm again", context, goal=stance(arm, "lift")), look("look from there at"),
-            GraspSleeve(f"grasp the worn {arm} sleeve", context, side=arm, hand=PULLING[arm], worn=True,
-                        grip=Key(f"{arm}_grip")))
+            grasp_worn(context, arm, f"grasp the worn {arm} sleeve"))
 
     once = sequence(
         f"dress the {arm} arm once", over_hand(context, arm, look),
@@ -113,14 +112,19 @@ def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> 
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)))
 
 
-def up_arm(context: Context, arm: Side) -> Behaviour:
-    """From past the wrist to the shoulder."""
+def grasp_worn(context: Context, arm: Side, name: str) -> GraspSleeve:
+    """Take hold of a sleeve that is over the hand, or up the arm."""
+    return GraspSleeve(name, context, side=arm, hand=PULLING[arm], worn=True, grip=Key(f"{arm}_grip"))
+
+
+def up_arm(context: Context, arm: Side, again: str = "") -> Behaviour:
+    """From past the wrist to the shoulder; names of the nodes begin with `again`."""
     grip = Key(f"{arm}_grip")
     return sequence(
-        f"pull up and seat, {arm}",
-        PullAlongArm(f"pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END, seat=SEAT,
+        f"{again}pull up and seat, {arm}",
+        PullAlongArm(f"{again}pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END, seat=SEAT,
                      stand=stance(arm, "shoulder"), taut=TAUT_ON[arm]),
-        SeatSleeve(f"seat the {arm} sleeve", context, grip=grip))
+        SeatSleeve(f"{again}seat the {arm} sleeve", context, grip=grip))
 
 
 def back_off(context: Context, name: str, distance: float) -> Behaviour:

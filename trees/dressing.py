@@ -1,7 +1,7 @@
 """Stages C and D of the dressing tree, and what is owed whenever a stage fails.
 
 C  dress the right arm, drive round the foot of the bed, dress the left arm
-D  draw the collar to the neck on both sides
+D  draw the collar to the neck where the chest shows, and the first sleeve up again where the second has pulled it down
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from ..skills.spread import Spread
 from .composers import fallback, sequence
 from .decorators import Condition, Retry, Stage, Timeout
 from .dress_arm import dress_arm
+from .settle_sleeve import settle_sleeve
 
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
 COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
@@ -56,9 +57,11 @@ def spread(context: Context) -> Behaviour:
     def covered(name: str) -> Behaviour:
         return Condition(name, _chest_covered, Reason.NOTHING_SEEN)
 
-    return Stage("D spread", None, Timeout("D in time", fallback(
-        "spread the gown", covered("it lies spread already"),
-        sequence("draw it straight", *sides, covered("the chest is covered"))), seconds=200.0))
+    return Stage("D spread", None, Timeout("D in time", sequence(
+        "spread and settle", fallback(
+            "spread the gown", covered("it lies spread already"),
+            sequence("draw it straight", *sides, covered("the chest is covered"))),
+        settle_sleeve(context, "right")), seconds=300.0))
 
 
 def make_safe(context: Context) -> Behaviour:

@@ -17,17 +17,20 @@ def worn(cuff_at=0.5):
     return WornSleeve(stamp=0.0, confidence=0.9, side="left", armhole_at=0.2, cuff_at=cuff_at)
 
 
-@pytest.mark.parametrize(("seen", "status", "reason"), [
-    (worn(), Status.SUCCESS, None),
-    (worn(cuff_at=0.03), Status.FAILURE, Reason.SLEEVE_MISSED),
-    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), Status.SUCCESS, None),
+@pytest.mark.parametrize(("seen", "upto", "status", "reason"), [
+    (worn(), None, Status.SUCCESS, None),
+    (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
+    (worn(cuff_at=0.9), None, Status.SUCCESS, None),
+    (worn(cuff_at=0.59), 0.60, Status.SUCCESS, None),
+    (worn(cuff_at=0.61), 0.60, Status.FAILURE, Reason.SLEEVE_LOW),
+    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60, Status.SUCCESS, None),
 ])
-def test_a_heap_at_the_shoulder_is_a_miss(seen, status, reason):
+def test_a_heap_at_the_shoulder_is_a_miss_and_a_cuff_far_down_is_low(seen, upto, status, reason):
     world = ScriptedWorld()
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard,
                       perception=scripted_perception({"worn_sleeve": seen, "arm": lying_posture("left")}))
-    skill = CheckSleeve("inside", context, side="left")
+    skill = CheckSleeve("inside", context, side="left", **({} if upto is None else {"upto": upto}))
     for _ in range(10):
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)
