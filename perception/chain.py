@@ -20,6 +20,7 @@ RADII = np.array((0.041, 0.036, 0.030))  # of the same [m]
 _POINT_SIGMA = 0.012  # one point to the surface: sensor noise and limbs that are no capsules [m]
 _EFFECTIVE = 30  # that many of the points are independent: neighbours share their error
 _EMPTY_SIGMA = 0.010  # an axis sample beside the skin: two pixels [m]
+_BEHIND = -0.5  # cosine towards the camera at which a point is on the far side of the axis
 _BODY_SIGMA = 0.02  # how firmly the trunk and the elbow's limit hold [m]
 # Friction holds an elbow that its owner cannot move: what lies between shoulder and wrist stays, in an arm that was
 # straight to an angle of 30 degrees [m].
@@ -163,6 +164,7 @@ def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np
         matrix, vector, total, weight = np.zeros((12, 12)), np.zeros(12), 0.0, 0.0
         if len(view.points):
             segment, share, signed, outward = nearest_on_chain(view.points, q, radii)
+            signed, outward = _facing_camera(view, radii[segment], signed, outward)
             mine = np.abs(signed) < gate
             used = int(mine.sum())
             if used:
@@ -181,6 +183,15 @@ def fit_chain(view: SkinView, start: np.ndarray, *, anchor: np.ndarray, home: np
         if longest < 5e-4:
             break
     return ChainFit(joints=q, covariance=np.linalg.inv(matrix), cost=cost, used=used)
+
+
+def _facing_camera(view: SkinView, radii: np.ndarray, signed: np.ndarray,
+                   outward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Skin that is seen faces the camera: what lies behind an axis is as far inside as if it had to come through."""
+    to_camera = view.pose_camera_in_map[:3, 3] - view.points
+    facing = np.einsum("ij,ij->i", outward, to_camera) / np.linalg.norm(to_camera, axis=1)
+    behind = facing < _BEHIND
+    return np.where(behind, -signed - 2 * radii, signed), np.where(behind[:, None], -outward, outward)
 
 
 def _rows(segment: np.ndarray, share: np.ndarray, direction: np.ndarray) -> np.ndarray:
