@@ -1,4 +1,4 @@
-"""Stage C: once the strap is over the shoulder, draw it headward, hold it until the arm rests, and slacken it."""
+"""Stage C: once the strap is over the shoulder, draw it headward, tuck it down behind the shoulder, and slacken it."""
 
 from __future__ import annotations
 
@@ -24,15 +24,18 @@ from .tracking import watch_arm
 FARTHEST, TAUT = 0.12, 4.8  # the strap is drawn at most this far [m] and this hard [N]
 SPEED = 0.11  # [m/s]
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
+ABOVE_BED, TUCKED = 0.04, 7.0  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
+DOWN, TUCKING = 0.06, 3.0  # [m/s], for so long at most [s]
 SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]
 SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
 
 
 class SeatSleeve(Skill):
-    """Draws the strap on towards the head of the bed, keeps it there while the arm sinks, and slackens it.
+    """Draws the strap on towards the head of the bed, keeps it there while the arm sinks, tucks it down, slackens it.
 
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
-    was let go draws the sleeve back by a tenth of its length.  It ends with the hand still closed.
+    was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
+    over it, one that is let go of behind it stays.  It ends with the hand still closed.
 
     Inputs: `grip`, how the strap is held; `law`, constants of the pull.
     """
@@ -42,10 +45,12 @@ class SeatSleeve(Skill):
     reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
 
     def steps(self) -> Iterator[None]:
-        """Draw, hold, slacken."""
+        """Draw, hold, tuck, slacken."""
         yield from self._draw()
         self.note(f"holds the {self.grip.arm} sleeve until the arm rests")
         yield from self._hold()
+        self.note(f"tucks the {self.grip.arm} sleeve behind the shoulder")
+        yield from self._tuck()
         self.note(f"slackens the {self.grip.arm} sleeve")
         yield from self._slacken()
 
@@ -81,6 +86,17 @@ class SeatSleeve(Skill):
             sunk = float(np.linalg.norm(window[-1][1] - window[0][1], axis=1).max())
             if self.now() - window[0][0] > 0.9 * WINDOW and sunk < RESTS:
                 return
+            yield
+
+    def _tuck(self) -> Iterator[None]:
+        """Down beside the shoulder, almost to the mattress, until it pulls too hard or nothing gives."""
+        n, end = SIDES.index(self.grip.hand), self.now() + TUCKING
+        floor = float(self.world.room.bed[1, 2]) + ABOVE_BED
+        while self.now() < end:
+            height = float(self.world.observe().pose_hand_in_map[n, 2, 3])
+            if height < floor or np.linalg.norm(cloth_load(self, self.grip.hand)) > TUCKED:
+                return
+            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.array((0.0, 0.0, -DOWN, 0.0, 0.0, 0.0))))
             yield
 
     def _slacken(self) -> Iterator[None]:
