@@ -68,9 +68,7 @@ class EffectBody:
             p.applyExternalForce(self.body, -1, list(force), position, p.WORLD_FRAME)
         for name, joint, parent, axis, prismatic, values in self._joints:
             q, dq = p.getJointState(self.body, joint)[:2]
-            one = lambda x: np.array([x])  # noqa: E731
-            motion = JointMotion(t=one(0.0), q=one(q), dq=one(dq), ddq=one(0.0), load=one(0.0), measured=one(0.0))
-            load = float(JOINT_EFFECTS[name].load(motion, values)[0])
+            load = float(JOINT_EFFECTS[name].load(JointMotion.instant(q=q, dq=dq), values)[0])
             self._push(joint, parent, axis, prismatic, -load)
 
     def _push(self, joint: int, parent: int, axis: np.ndarray, prismatic: bool, load: float) -> None:

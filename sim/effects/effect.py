@@ -64,6 +64,14 @@ class JointMotion:
     measured: np.ndarray
     slow: float = 1e-3
 
+    @classmethod
+    def instant(
+        cls, *, q: float, dq: float, load: float = 0.0, measured: float = 0.0, slow: float = 1e-3
+    ) -> JointMotion:
+        """One instant as a motion of one sample, at no acceleration."""
+        t, at, speed, given, seen = (np.array([x]) for x in (0.0, q, dq, load, measured))
+        return cls(t=t, q=at, dq=speed, ddq=np.zeros(1), load=given, measured=seen, slow=slow)
+
     @property
     def direction(self) -> np.ndarray:
         """Sign of the velocity, passing smoothly through zero within `slow`, (T,)."""

@@ -75,6 +75,5 @@ class EffectArm:
 
 
 def _instant(name: str, values: dict[str, float], q: float, dq: float, rigid: float, load: float, slow: float) -> float:
-    one = lambda x: np.array([x])  # noqa: E731
-    motion = JointMotion(t=one(0.0), q=one(q), dq=one(dq), ddq=one(0.0), load=one(rigid), measured=one(load), slow=slow)
+    motion = JointMotion.instant(q=q, dq=dq, load=rigid, measured=load, slow=slow)
     return float(JOINT_EFFECTS[name].load(motion, values)[0])

@@ -11,6 +11,14 @@ from .case import Truth, coloured, draw_kind, draw_size, moves, multisine
 from .joint_loads import INSIDE, OUTSIDE, Trace, shape_of
 
 ROBOTS = ("ur5", "ur10", "panda", "z1", "xarm7")
+MOST = {"backlash": 1.0, "wrong_tool": 1.9}  # a gap or a missing tool (1: half the link) takes away what there is
+LEAST = 0.49  # size over the noise below which nothing is hidden: another effect is drawn instead
+DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction"}
+ALIKE = {
+    **{n: DRY for n in DRY},
+    **{n: {"payload", "wrong_tool"} for n in ("payload", "wrong_tool")},
+    **{n: {"offset", "spring"} for n in ("offset", "spring")},
+}  # of which one set holds at most one
 AXIS_EFFECTS = tuple(n for n in INSIDE if n not in ("gain_error", "armature"))  # both are a mass on an axis
 
 
@@ -136,50 +144,16 @@ def _rnea(pin, model, motion):
 
 
 def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
+    """What each hidden effect adds to the loads; an effect too small at its largest gives way to another draw."""
     added = [np.zeros_like(u) for u in loads]
-    count = {"none": 0, "recalibration": 0, "single": 1, "two": 2, "outside": 1}[kind]
     used = set()
-    for _ in range(count):
-        size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
-        bank = (
-            OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
-        )
-        name = str(rng.choice([n for n in bank if n not in used]))
-        dry = {"coulomb_friction", "asymmetric_friction", "stribeck_friction"}
-        used |= dry if name in dry else {name}
-        used |= {"offset", "spring"} if name in ("offset", "spring") else set()
-        if name in ("payload", "wrong_tool"):
-            used |= {"payload", "wrong_tool"}
-            load = _body(rng, name, arm, motions)
-            j = int(np.argmax(np.sqrt(np.mean(np.concatenate(load) ** 2, axis=0)) / noise))
-            target = names[-1]
-        else:
-            j = int(rng.integers(len(names)))
-            trace = [
-                Trace(t=t, q=q[:, j], v=v[:, j], a=a[:, j], u=u[:, j])
-                for (q, v, a), u in zip(motions, loads, strict=True)
-            ]
-            one = shape_of(name, trace, rng)
-            load = [np.zeros_like(u) for u in loads]
-            for x, y in zip(load, one, strict=True):
-                x[:, j] = y
-            target = names[j]
-        rms = np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2))
-        scale = size * noise[j] / max(rms, 1e-12)
-        if name == "backlash" and scale > 1.0:  # a gap cannot take away more than the whole load
-            scale = 1.0
-        if name == "delay":
-            shift = min(scale * 1e-3, 0.04)
-            load = [
-                np.stack(
-                    [np.interp(t - shift, t, u[:, k]) - u[:, k] if k == j else 0 * t for k in range(u.shape[1])], axis=1
-                )
-                for u in loads
-            ]
-            scale = 1.0
-        size = float(scale * np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2)) / noise[j])
+    for _ in range({"none": 0, "recalibration": 0, "single": 1, "two": 2, "outside": 1}[kind]):
+        name, target, j, load, size = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+        while size < LEAST:
+            name, target, j, load, size = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+        used |= ALIKE.get(name, {name})
         for e, x in enumerate(load):
-            added[e] += scale * x
+            added[e] += x
             if name == "contact":
                 active = np.abs(x[:, j]) > 0
                 edges = np.diff(np.concatenate([[0], active.astype(int), [0]]))
@@ -189,6 +163,40 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
                 ]
         truth.effects.append({"name": name, "target": target, "size": size})
     return added
+
+
+def _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm):
+    """Draw one effect: its name, target, the joint it loads most, its loads (T, n) per episode, and its size there."""
+    size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
+    bank = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
+    name = str(rng.choice([n for n in bank if n not in used]))
+    if name in ("payload", "wrong_tool"):
+        load = _body(rng, name, arm, motions)
+        j = int(np.argmax(np.sqrt(np.mean(np.concatenate(load) ** 2, axis=0)) / noise))
+        target = names[-1]
+    else:
+        j = int(rng.integers(len(names)))
+        trace = [
+            Trace(t=t, q=q[:, j], v=v[:, j], a=a[:, j], u=u[:, j]) for (q, v, a), u in zip(motions, loads, strict=True)
+        ]
+        one = shape_of(name, trace, rng)
+        load = [np.zeros_like(u) for u in loads]
+        for x, y in zip(load, one, strict=True):
+            x[:, j] = y
+        target = names[j]
+    rms = np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2))
+    scale = min(size * noise[j] / max(rms, 1e-12), MOST.get(name, np.inf))
+    if name == "delay":
+        shift = min(scale * 1e-3, 0.04)
+        load = [
+            np.stack(
+                [np.interp(t - shift, t, u[:, k]) - u[:, k] if k == j else 0 * t for k in range(u.shape[1])], axis=1
+            )
+            for u in loads
+        ]
+        scale = 1.0
+    size = float(scale * np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2)) / noise[j])
+    return name, target, j, [scale * x for x in load], size
 
 
 def _body(rng, name, arm, motions):

@@ -254,8 +254,7 @@ class ClothStudy(Study):
         m = len(self.scene.markers)
         floor = min(coherence(after, self._pairs, m).floor, self.found.after.floor)
         groups = {f"m{k}": slice(3 * k, 3 * k + 3) for k in range(m)}
-        rms = lambda x, s: float(np.sqrt(np.mean(np.concatenate([r[:, s] for r in x]) ** 2)))  # noqa: E731
-        channels = {n: {"floor": floor, "before": rms(before, s), "after": rms(after, s)} for n, s in groups.items()}
+        channels = {n: {"floor": floor, "before": _rms(before, s), "after": _rms(after, s)} for n, s in groups.items()}
         every = slice(0, 3 * m)
         sums = np.array(
             [
@@ -273,8 +272,8 @@ class ClothStudy(Study):
         gap = Gap(
             unit="m",
             floor=floor,
-            before=rms(before, every),
-            after=rms(after, every),
+            before=_rms(before, every),
+            after=_rms(after, every),
             low=float(low),
             high=float(high),
             channels=channels,
@@ -326,6 +325,10 @@ class ClothStudy(Study):
             )
             for i in picked
         ]
+
+
+def _rms(residuals: list[np.ndarray], columns: slice) -> float:
+    return float(np.sqrt(np.mean(np.concatenate([r[:, columns] for r in residuals]) ** 2)))
 
 
 def _mean2(residuals: list[np.ndarray], study: ClothStudy) -> float:

@@ -29,15 +29,23 @@ FORESEEN = 6.0  # what it is worth that a value was known before the drops were 
 CLOSE = 30.0  # criterion beyond the best from which on a set's own noise is not worked out
 SAME = 6.0  # criterion within which two sets fit alike
 MOST_EQUAL = 4
+DRAUGHT = 1.0  # [m/s] of air that still air cannot be told from quadratic drag in, below which it is that
 MATERIAL = 0.05  # an effect's own part over the noise, root mean square, both whitened
 
 
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
-    """A set of effects, fitted and priced.  score: the criterion, smaller is better."""
+    """A set of effects, fitted and priced.
+
+    Attributes:
+        fit: the set.
+        score: the criterion, smaller is better.
+        misfit: the same without the price of the set.
+    """
 
     fit: DropFit
     score: float
+    misfit: float
 
     @property
     def effects(self) -> frozenset[str]:
@@ -112,11 +120,12 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
             other = fit_drops(_coloured(drops, c), fit.names, fit.mode, near=fit)
             deviance = rows * float(np.log(max(other.rss, 1e-12) / rows)) + c.volume
             # what a fit takes up itself does not count
-            options.append(Candidate(fit=other, score=worth / rows * deviance + price(other)))
+            misfit = worth / rows * deviance
+            options.append(Candidate(fit=other, score=misfit + price(other), misfit=misfit))
         candidates.append(min(options, key=lambda o: o.score))
     behind = max(c.score for c in candidates) - min(rough)
     far = [(f, x) for f, x in zip(fits, rough, strict=True) if x - min(rough) >= CLOSE]
-    candidates += [Candidate(fit=f, score=behind + x) for f, x in far]
+    candidates += [Candidate(fit=f, score=behind + x, misfit=behind + x - price(f)) for f, x in far]
     candidates.sort(key=lambda c: c.score)
     best = candidates[0].fit
     return DropSearch(
@@ -159,17 +168,23 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
 
 
 def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:
-    """What could stand in for one effect of a fit, the others unchanged, and fit as well: (replacement, fit)."""
+    """What could stand in for one effect of a fit, the others unchanged, and fit as well: (replacement, fit).
+
+    What a set costs is not counted: the price says which explanation is likelier, not which the drops rule out.
+    """
     mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
     rest = mine.effects - {name}
     out = []
     for c in found.candidates:
         other = c.effects - rest
-        if not rest <= c.effects or name in c.effects or not other or c.score - mine.score >= SAME:
+        if not rest <= c.effects or name in c.effects or not other or len(c.effects) > max(2, len(mine.effects)):
+            continue
+        if c.misfit - mine.misfit >= SAME or c.score - mine.score >= CLOSE:
             continue
         if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
             continue
         new = " + ".join(sorted(other))
-        if not any(name in BODY_EFFECTS[n].contains for n in other) and new not in [n for n, _ in out]:
+        still = "wind" in other and abs(c.fit.values["wind"]["speed"]) < DRAUGHT
+        if not (name == "quadratic_drag" and still) and new not in [n for n, _ in out]:
             out.append((new, c.fit))
     return out[:MOST_EQUAL]

@@ -323,16 +323,15 @@ class FallStudy(Study):
             for s in (table[rng.integers(len(table), size=len(table))].sum(axis=0) for _ in range(300))
         ]
         low, high = np.quantile(ratio, [0.025, 0.975])
-        rms = lambda x: float(np.sqrt(np.mean(x**2)))  # noqa: E731
-        floor = float(min(self.found.floor, rms(a)))
+        floor = float(min(self.found.floor, _rms(a)))
         gap = Gap(
             unit="m",
             floor=floor,
-            before=rms(b),
-            after=rms(a),
+            before=_rms(b),
+            after=_rms(a),
             low=float(low),
             high=float(high),
-            channels={"h": {"floor": floor, "before": rms(b), "after": rms(a)}},
+            channels={"h": {"floor": floor, "before": _rms(b), "after": _rms(a)}},
         )
         controls = []
         if self.chosen.names:
@@ -343,7 +342,7 @@ class FallStudy(Study):
             controls.append(
                 Placebo(
                     what=f"{' + '.join(self.chosen.names)} half the size, wrong sign, against the model as given",
-                    ratio=rms(np.concatenate(turned.residuals)) / max(rms(b), 1e-12),
+                    ratio=_rms(np.concatenate(turned.residuals)) / max(_rms(b), 1e-12),
                 )
             )
         return gap, None, tuple(controls), detectable(self.found, self.chosen)
@@ -373,6 +372,10 @@ class FallStudy(Study):
             )
             for d, x, y in list(zip(self.heldout, before.residuals, after.residuals, strict=True))[:3]
         ]
+
+
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(x**2)))
 
 
 def _squares(fit: DropFit) -> float:

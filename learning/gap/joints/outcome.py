@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..findings import EffectFinding, Value, VerdictName
+from .block import Block
 from .events import Burst, burst_share, bursts
 from .log import JointLog
 from .remainder import Remainder, leftover
@@ -40,6 +41,7 @@ class Outcome:
     guess: str
 
 
+OTHERWISE = 0.2  # part of what is left on held-out logs that other numbers for the same effects have to remove
 SURE = 0.01  # level of the test on leftovers, all channels together
 
 
@@ -115,19 +117,52 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
 def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) -> float:
     """Part of the explainable held-out energy that is left there beyond what the fit left on the worst of its own logs.
 
+    It counts where other numbers for the same effects would remove a good part of it, or where the state, the way or
+    the clock foretell it; the rest is a louder log.
+
     Args:
         named: the effects.
         heldout: logs nothing was fitted to.
         fitted: (T, C) residual left on each log it was fitted to.
     """
+    blocks = list(named.blocks)
     before = [log.residual[log.inner] for log in heldout]
-    after = [y - explained(list(named.blocks), named.theta, log) for y, log in zip(before, heldout, strict=True)]
+    after = [y - explained(blocks, named.theta, log) for y, log in zip(before, heldout, strict=True)]
     given = np.mean(np.concatenate(before) ** 2, axis=0)
     left = np.mean(np.concatenate(after) ** 2, axis=0)
-    rest = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)  # noise differs from log to log
-    excess = np.where(left > TRANSFER * rest, left - rest, 0.0)
+    rest = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)
+    loud = np.flatnonzero(left > TRANSFER * rest)
+    if not len(loud):
+        return 0.0
+    broad = [log.wide() for log in heldout]
+    wide = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad]
+    again = np.mean(np.concatenate(_refitted(blocks, heldout, after, rest)) ** 2, axis=0)
+    excess = np.zeros(len(rest))
+    for c in loud:
+        if again[c] < (1.0 - OTHERWISE) * left[c]:
+            excess[c] = left[c] - rest[c]
+            continue
+        found = leftover(heldout, after, wide, int(c))
+        if found.p_value < SURE / len(rest):
+            excess[c] = min(found.energy, left[c] - rest[c])
     weight = 1.0 / (rest + 1e-30)
     return float(weight @ excess / (weight @ (excess + np.maximum(given - left, 0.0)) + 1e-30))
+
+
+def _refitted(blocks: list[Block], logs: list[JointLog], left: list[np.ndarray], noise: np.ndarray) -> list[np.ndarray]:
+    """What remains of `left` (T, C) per log where the effects take the values that suit these logs best."""
+    columns = []
+    for log, y in zip(logs, left, strict=True):
+        X = np.zeros((*y.shape, sum(len(b.parameters) for b in blocks)))
+        at = 0
+        for b in blocks:
+            X[:, list(b.channels), at : at + len(b.parameters)] = b.build(log)
+            at += len(b.parameters)
+        columns.append(X)
+    scale = 1.0 / np.sqrt(noise + 1e-30)
+    rows = np.concatenate([(X * scale[:, None]).reshape(-1, X.shape[2]) for X in columns])
+    theta = np.linalg.lstsq(rows, np.concatenate([(y * scale).ravel() for y in left]), rcond=None)[0]
+    return [y - X @ theta for X, y in zip(columns, left, strict=True)]
 
 
 def _without(logs: list[JointLog], left: list[np.ndarray], found: list[Burst]) -> list[np.ndarray]:

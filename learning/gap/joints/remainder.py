@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import f as fisher
 from scipy.stats import t as student
 
 from .generic import clock_columns, generic_columns, past_columns, place_columns, scales
@@ -23,6 +23,8 @@ WAVES = 60
 FOLDS = 6
 SHIFTS = 40
 STRETCHES = 24
+REPEATS = 0.05  # p-value of the gain over stretches above which it does not repeat
+ALIKE = 3  # neighbouring stretches that may be alike
 TRIED = {"position wave": 100, "time wave": 20}  # the period was picked from the same data
 
 
@@ -121,10 +123,12 @@ def _wald(X: np.ndarray, y: np.ndarray, lengths: list[int]) -> tuple[float, floa
     noise = estimate_noise(parts, "residual")
     acf = autocorrelation(np.split(u, ends), noise.acf.shape[1])
     widening = float(noise.widening(acf, 0).max())
-    before = float(y @ y)
-    gain = len(y) * np.log(before / max(float(after @ after), 1e-30)) / widening
-    removed = (before - float(after @ after) * (1.0 + u.shape[1] * widening / len(y))) / len(y)
-    return removed, float(chi2.sf(gain, u.shape[1]))
+    before, rest, k = float(y @ y), float(after @ after), u.shape[1]
+    removed = (before - rest * (1.0 + k * widening / len(y))) / len(y)
+    free = len(y) / widening - k  # coloured rows are worth fewer, and a short log's noise is itself not well known
+    if free < 1.0:
+        return removed, 1.0
+    return removed, float(fisher.sf((before - rest) / k / (rest / free + 1e-30), k, free))
 
 
 def _interleaved(fold: np.ndarray, edges) -> np.ndarray:
@@ -184,8 +188,10 @@ def _predict(X: np.ndarray, y: np.ndarray, fold: np.ndarray, within: bool) -> tu
     shifts = rng.integers(len(y) // 12, len(y) - len(y) // 12, size=SHIFTS)
     null = np.array([_gain(parts, rows, kept, np.roll(y, int(s))) for s in shifts])
     z = (best[0] - null.mean()) / (null.std(ddof=1) + 1e-30)
-    shifted = 1.0 if within else float(student.sf(z, SHIFTS - 1))
-    return best[0], min(1.0, len(RIDGES) * min(shifted, _steady(parts, rows, kept, y) * (1.0 if within else 2.0)))
+    shifted, steady = 1.0 if within else float(student.sf(z, SHIFTS - 1)), _steady(parts, rows, kept, y)
+    if steady > REPEATS:  # one lucky stretch, however lucky
+        return best[0], 1.0
+    return best[0], min(1.0, len(RIDGES) * min(shifted, steady * (1.0 if within else 2.0)))
 
 
 def _steady(parts: list[np.ndarray], rows: list[np.ndarray], inverse: list[np.ndarray], y: np.ndarray) -> float:
@@ -196,7 +202,13 @@ def _steady(parts: list[np.ndarray], rows: list[np.ndarray], inverse: list[np.nd
     for x, r, w, v in zip(parts, rows, inverse, b, strict=True):
         gain[r] = y[r] ** 2 - (y[r] - x @ (w @ (whole - v))) ** 2
     blocks = np.array([g.mean() for g in np.array_split(gain, STRETCHES)])
-    return float(student.sf(blocks.mean() / (blocks.std(ddof=1) / np.sqrt(STRETCHES) + 1e-30), STRETCHES - 1))
+    # noise that remembers longer than a stretch makes neighbours alike, and the mean less sure than it looks
+    away = blocks - blocks.mean()
+    alike = [
+        (1.0 - k / (ALIKE + 1)) * float(away[k:] @ away[:-k]) / float(away @ away + 1e-30) for k in range(1, ALIKE + 1)
+    ]
+    wide = max(1.0, 1.0 + 2.0 * sum(alike))
+    return float(student.sf(blocks.mean() / (np.sqrt(wide / STRETCHES) * blocks.std(ddof=1) + 1e-30), STRETCHES - 1))
 
 
 def _gain(parts: list[np.ndarray], rows: list[np.ndarray], inverse: list[np.ndarray], y: np.ndarray) -> float:

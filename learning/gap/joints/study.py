@@ -362,7 +362,6 @@ def gap_of(
 ) -> Gap:
     """The gap over all held-out rows, with an interval of after / before from resampled stretches."""
     b, a = np.concatenate(before), np.concatenate(after)
-    rms = lambda x: np.sqrt(np.mean(x**2, axis=0))  # noqa: E731
     rows = np.array_split(np.arange(len(b)), 20)
     sums = np.array([[np.sum(b[r] ** 2), np.sum(a[r] ** 2)] for r in rows])
     rng = np.random.default_rng(0)
@@ -370,7 +369,7 @@ def gap_of(
         np.sqrt(s[1] / max(s[0], 1e-30)) for s in (sums[rng.integers(20, size=20)].sum(axis=0) for _ in range(400))
     ]
     low, high = np.quantile(ratios, [0.025, 0.975])
-    rb, ra = rms(b), rms(a)
+    rb, ra = (np.sqrt(np.mean(x**2, axis=0)) for x in (b, a))
     return Gap(
         unit=unit,
         floor=float(np.sqrt(np.mean(floor**2))),
