@@ -77,6 +77,19 @@ class EffectFinding:
     confidence: float = float("nan")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Rival:
+    """Another set of effects that explains the data as well as the named one.
+
+    Attributes:
+        effects: name and target of each.
+        experiment: what would tell it from the named set, computed.
+    """
+
+    effects: tuple[tuple[str, str], ...]
+    experiment: str
+
+
 def told_apart(experiment: str, name: str, other: str, apart: float) -> str:
     """Sentence on the experiment in which two explanations part most.
 
@@ -145,6 +158,7 @@ class Verdict:
     floor_source: str
     guess: str = ""
     placebos: tuple[Placebo, ...] = ()
+    rivals: tuple[Rival, ...] = ()
     forward: Gap | None = None
     detectable: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()

@@ -113,6 +113,9 @@ def _what(v: Verdict) -> str:
         out.append(_effects(v.recalibration, "change of " if v.system in ("arm", "axis") else ""))
     if v.effects:
         out.append(_effects(v.effects))
+    if v.rivals:
+        sets = "; ".join(_words(" + ".join(n for n, _ in r.effects)) for r in v.rivals)
+        out.append(f"<p>This data is explained as well by: {sets}.  The set above is the likelier one.</p>")
     added = [f"{f.name.replace('_', ' ')} on {escape(f.target)}" for f in v.effects]
     added += [f"{f.name.replace('_', ' ')} of {escape(f.target)} changed" for f in v.recalibration]
     if added:
@@ -163,7 +166,8 @@ def _gap_table(gap: Gap) -> str:
 
 
 def _next(v: Verdict) -> str:
-    items = [f"<li>{_words(f.experiment)}</li>" for f in (*v.effects, *v.recalibration) if f.experiment]
+    wanted = [f.experiment for f in (*v.effects, *v.recalibration)] + [r.experiment for r in v.rivals]
+    items = [f"<li>{_words(x)}</li>" for x in dict.fromkeys(wanted) if x]
     small = [
         f"<li>{escape(f.name.replace('_', ' '))} on {escape(f.target)} would have been seen down to "
         f"{100 * f.smallest:.0f} % of the size found</li>"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from typing import Any
 
-from .findings import EffectFinding, Gap, Placebo, Verdict, VerdictName, Where
+from .findings import EffectFinding, Gap, Placebo, Rival, Verdict, VerdictName, Where
 from .measurement import MeasurementSet
 from .pictures import Curve
 
@@ -38,6 +38,10 @@ class Study(abc.ABC):
     def curves(self) -> list[Curve]:
         """What to draw."""
 
+    def rivals(self) -> tuple[Rival, ...]:
+        """Other whole sets of effects this data cannot rule out, likeliest first."""
+        return ()
+
     def conclude(self, seconds: float = 0.0) -> Verdict:
         """All four steps as one verdict."""
         p_value, source, where = self.find()
@@ -56,6 +60,7 @@ class Study(abc.ABC):
             floor_source=source,
             guess=guess,
             placebos=placebos,
+            rivals=self.rivals(),
             forward=forward,
             detectable=detectable,
             notes=tuple(dict.fromkeys(self.notes)),

@@ -33,6 +33,9 @@ def judge_case(truth: Row, verdict: Row) -> Row:
         "size": min(sizes) if sizes else 0.0,
         "exact": verdict["verdict"] != "unknown" and said == hidden,
         "up_to_equivalents": verdict["verdict"] != "unknown" and _equivalent(hidden, verdict["effects"]),
+        "together": verdict["verdict"] != "unknown"
+        and (said == hidden or any({tuple(x) for x in r["effects"]} == hidden for r in verdict.get("rivals", ()))),
+        "rivals": len(verdict.get("rivals", ())),
         "joint": hidden <= said or {t for _, t in hidden} == {t for _, t in said},
         "false_alarm": truth["kind"] in ("none", "recalibration") and bool(said or verdict["verdict"] == "unknown"),
         "overlap": _overlap(truth, verdict),
@@ -106,6 +109,7 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
             ("single effect, size < 2, exact set", small, "exact"),
             ("two effects, exact set", two, "exact"),
             ("two effects, up to stated equivalents", two, "up_to_equivalents"),
+            ("two effects, exact or listed among the sets that fit as well", two, "together"),
             ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
             (f"two effects, apart >= {APART:g} sd, exact set", [r for r in two if _apart(r) >= APART], "exact"),
             (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),

@@ -30,7 +30,7 @@ def separating(drops: list[Drop], fit: DropFit, other: tuple[str, DropFit], floo
         pair = []
         for f in (fit, other[1]):
             table, scale = table_of(f.values, duration + 1.0)
-            h, _ = height(t, table, 0.0, 0.0)
+            h, _ = height(t, table, 0.0, lateness(f))
             pair.append(scale * h)
         inside = np.minimum(*pair) > -top * factor
         if inside.sum() > 10:
@@ -38,7 +38,12 @@ def separating(drops: list[Drop], fit: DropFit, other: tuple[str, DropFit], floo
             apart = float(np.sqrt(np.mean((gap - gap.mean()) ** 2)) / floor)
             if apart > best[1]:
                 best = (f"drop from {top * factor:.3g} m", apart)
-    return told_apart(best[0], " + ".join(fit.names), other[0], best[1])
+    return told_apart(best[0], " + ".join([*fit.names, *(["delay"] if fit.mode == "late" else [])]), other[0], best[1])
+
+
+def lateness(fit: DropFit) -> float:
+    """How long after its first sample every drop is released [s], 0 where the drops do not share it."""
+    return float(fit.releases[:, 1].mean()) if fit.mode == "late" else 0.0
 
 
 def detectable(found: DropSearch, base: DropFit) -> dict[str, str]:

@@ -29,6 +29,8 @@ FORESEEN = 6.0  # what it is worth that a value was known before the drops were 
 CLOSE = 30.0  # criterion beyond the best from which on a set's own noise is not worked out
 SAME = 6.0  # criterion within which two sets fit alike
 MOST_EQUAL = 4
+MOST_RIVALS = 6
+LARGEST = 2  # effects of a set that is named: with a third, five or six numbers follow any smooth force
 DRAUGHT = 1.0  # [m/s] of air that still air cannot be told from quadratic drag in, below which it is that
 MATERIAL = 0.05  # an effect's own part over the noise, root mean square, both whitened
 
@@ -167,24 +169,33 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
     return total
 
 
-def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:
-    """What could stand in for one effect of a fit, the others unchanged, and fit as well: (replacement, fit).
+def rivals(found: DropSearch, fit: DropFit) -> list[Candidate]:
+    """Other sets of up to two effects that fit as well, likeliest first; those that only add to the set are left out.
 
     What a set costs is not counted: the price says which explanation is likelier, not which the drops rule out.
     """
     mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
-    rest = mine.effects - {name}
-    out = []
+    out: dict[frozenset[str], Candidate] = {}
     for c in found.candidates:
-        other = c.effects - rest
-        if not rest <= c.effects or name in c.effects or not other or len(c.effects) > max(2, len(mine.effects)):
+        if not c.effects or len(c.effects) > LARGEST or c.effects >= mine.effects:
             continue
         if c.misfit - mine.misfit >= SAME or c.score - mine.score >= CLOSE:
             continue
         if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
             continue
-        new = " + ".join(sorted(other))
-        still = "wind" in other and abs(c.fit.values["wind"]["speed"]) < DRAUGHT
-        if not (name == "quadratic_drag" and still) and new not in [n for n, _ in out]:
-            out.append((new, c.fit))
+        out.setdefault(c.effects, c)
+    return list(out.values())[:MOST_RIVALS]
+
+
+def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:
+    """What could stand in for one effect of a fit, the others unchanged, and fit as well: (replacement, fit)."""
+    mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
+    rest = mine.effects - {name}
+    out = []
+    for c in rivals(found, fit):
+        if not rest <= c.effects or name in c.effects or not c.effects - rest:
+            continue
+        still = "wind" in c.effects - rest and abs(c.fit.values["wind"]["speed"]) < DRAUGHT
+        if not (name == "quadratic_drag" and still):
+            out.append((" + ".join(sorted(c.effects - rest)), c.fit))
     return out[:MOST_EQUAL]

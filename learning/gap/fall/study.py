@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from ....sim.effects.body_bank import BODY_EFFECTS
 from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
+from ..findings import EffectFinding, Gap, Placebo, Rival, Value, VerdictName, Where
 from ..measurement import Episode, require_columns
 from ..pictures import Curve
 from ..regions import phase_of
@@ -18,7 +18,7 @@ from ..study import Study
 from .experiment import detectable, separating
 from .fit import Drop, DropFit, fit_drops
 from .leftover import Leftover, repeating
-from .search import EFFECT, DropSearch, equals, foreseen, price_of, search
+from .search import EFFECT, LARGEST, DropSearch, equals, foreseen, price_of, rivals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 SURE = 2e-3  # `unknown` below this p-value of what repeats
@@ -27,7 +27,6 @@ NEAR = 12.0  # criterion within which another set is asked before `unknown` is s
 TRANSFER = 3.0  # held-out energy over the worst fitted drop's from which on an explanation is asked if it holds there
 TRANSFERRED = 0.06  # `unknown` above this part of the explainable held-out energy
 CONFIDENCE = 0.8
-MOST_EFFECTS = 2  # with a third, five or six numbers follow any smooth force, which is no evidence for three effects
 MOST_ROWS = 500  # of one drop
 
 
@@ -96,13 +95,13 @@ class FallStudy(Study):
             kept = self._kept(fit)
             names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
             fit = fit if names == best.names else self.found.refit(names, best.mode)
-        many = len(fit.names) + (fit.mode == "late") > MOST_EFFECTS
+        many = len(fit.names) + (fit.mode == "late") > LARGEST
         if not many and self._repeats(fit).p_value >= SURE:
             return fit
         for c in self.found.candidates:
             if c.score - self.found.candidates[0].score > NEAR:
                 break
-            if not 0 < len(c.effects) <= MOST_EFFECTS:
+            if not 0 < len(c.effects) <= LARGEST:
                 continue
             if (many or c.fit.names != fit.names) and self._repeats(c.fit).p_value >= CLEAN:
                 return self.found.refit(c.fit.names, c.fit.mode)
@@ -176,7 +175,7 @@ class FallStudy(Study):
     @property
     def _many(self) -> bool:
         """Whether it would take more effects at once than drops can tell from any other smooth force."""
-        return len(self.chosen.names) + (self.late is not None) > MOST_EFFECTS
+        return len(self.chosen.names) + (self.late is not None) > LARGEST
 
     @cached_property
     def _strange(self) -> float:
@@ -300,6 +299,20 @@ class FallStudy(Study):
         if self.verdict == "unknown" and self.leftover.p_value < SURE:
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
         return self.verdict, tuple(out), (), guess
+
+    def rivals(self) -> tuple[Rival, ...]:
+        """See `Study.rivals`."""
+        if self.verdict != "effects":
+            return ()
+        return tuple(
+            Rival(
+                effects=tuple((n, "body") for n in sorted(c.effects)),
+                experiment=separating(
+                    self.fitted, self.chosen, (" + ".join(sorted(c.effects)), c.fit), self.found.floor
+                ),
+            )
+            for c in rivals(self.found, self.chosen)
+        )
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""
