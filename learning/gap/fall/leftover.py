@@ -51,9 +51,9 @@ def repeating(fit: DropFit, times: list[np.ndarray]) -> Leftover:
         return none  # one drop cannot tell a repeating force from slow noise
     since = [np.maximum(t - r, 0.0) for t, r in zip(times, fit.releases[:, 1], strict=True)]
     colours = grid(times)
-    found = [_force(fit, since, pieces, colours) for pieces in FORCES]
+    found = [_push(fit, since, colours), _swing(fit, since, colours)]  # fewest numbers first: they win ties
+    found += [_force(fit, since, pieces, colours) for pieces in FORCES]
     found.append(_reading(fit, _paths(fit, times), colours))
-    found += [_push(fit, since, colours), _swing(fit, since, colours)]
     best = min(found, key=lambda x: x.p_value)
     return Leftover(energy=best.energy, p_value=min(len(found) * best.p_value, 1.0), what=best.what)
 

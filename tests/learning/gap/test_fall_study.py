@@ -28,3 +28,15 @@ def test_drag_that_does_not_hold_on_the_held_out_drop_is_not_believed(drop_set):
     verdict, _, _, guess = open_study(load_set(folder)).name()
     assert verdict == "unknown"
     assert "held-out" in guess
+
+
+def test_sets_that_fit_as_well_are_listed_with_the_drop_that_tells_them_apart(drop_set):
+    study = open_study(load_set(drop_set(0.003)))
+    verdict = study.conclude()
+    named = {(f.name, f.target) for f in verdict.effects}
+    assert named
+    assert verdict.rivals
+    for rival in verdict.rivals:
+        assert not set(rival.effects) >= named
+        assert len(rival.effects) <= 2
+        assert rival.experiment

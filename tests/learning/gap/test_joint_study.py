@@ -111,6 +111,17 @@ def test_effects_that_do_not_hold_on_the_held_out_recording_are_not_believed(axi
     assert "do not hold on the held-out" in guess
 
 
+def test_a_louder_held_out_recording_does_not_make_an_effect_unknown(axis_set):
+    folder = axis_set(lambda q, v, a: 6.0 * v, episodes=4)
+    file = folder / "e3.csv"  # held out, and five times as noisy
+    data = np.loadtxt(file, delimiter=",", skiprows=1)
+    data[:, 3] += 2.0 * np.random.default_rng(1).normal(size=len(data))
+    np.savetxt(file, data, delimiter=",", header="t,q,dq,force", comments="")
+    _, verdict, effects, _, _ = solved(folder)
+    assert verdict == "effects"
+    assert [f.name for f in effects] == ["viscous_friction"]
+
+
 def test_dry_friction_is_as_wide_as_the_log_shows(axis_set):
     _, verdict, effects, _, _ = solved(axis_set(lambda q, v, a: 3.0 * np.tanh(2.0 * v / 0.1)))
     assert verdict == "effects"

@@ -21,6 +21,10 @@ def case(hidden, said, kind="single", verdict="effects", equivalent=()):
     )
 
 
+def two(name):
+    return {"name": name, "target": "body", "size": 3.0}
+
+
 def test_exact_set_counts_neither_more_nor_less():
     assert case(["offset"], ["offset"])["exact"]
     assert not case(["offset"], ["offset", "spring"])["exact"]
@@ -32,6 +36,21 @@ def test_stated_equivalents_count_apart():
     row = case(["asymmetric_friction"], ["coulomb_friction"], equivalent=["asymmetric_friction"])
     assert not row["exact"]
     assert row["up_to_equivalents"]
+
+
+def test_a_set_listed_beside_the_one_named_counts_apart():
+    truth = {"system": "fall", "seed": 1, "kind": "two", "intervals": [], "effects": [two("wind"), two("delay")]}
+    said = {
+        "verdict": "effects",
+        "where": [],
+        "gap": {"closed": 0.9},
+        "effects": [two("linear_drag")],
+        "rivals": [{"effects": [["delay", "body"], ["wind", "body"]], "experiment": ""}],
+    }
+    assert judge_case(truth, said)["together"]
+    assert not judge_case(truth, said)["exact"]
+    assert not judge_case(truth, {**said, "rivals": []})["together"]
+    assert not judge_case(truth, {**said, "verdict": "unknown"})["together"]
 
 
 def test_anything_said_where_nothing_is_hidden_is_a_false_alarm():

@@ -1,0 +1,16 @@
+import numpy as np
+from caretree.learning.gap.bench.joint_case import LEAST, write_joint_case
+from caretree.learning.gap.bench.joint_loads import OUTSIDE
+
+
+def test_nothing_is_hidden_that_is_too_small_to_matter(tmp_path):
+    for seed in (255, 267, 305):
+        truth = write_joint_case("axis", seed, tmp_path)
+        assert all(e["size"] >= LEAST or e["name"] in ("mass", *OUTSIDE) for e in truth.effects)
+
+
+def test_no_more_tool_is_missing_than_there_is(tmp_path):
+    truth = write_joint_case("arm", 606, tmp_path)  # wanted is seven times the noise, the whole tool weighs less
+    tool = next(e for e in truth.effects if e["name"] == "wrong_tool")
+    assert LEAST <= tool["size"] < 3.0
+    assert np.isfinite(tool["size"])
