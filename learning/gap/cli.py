@@ -58,6 +58,9 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--ablations", action="store_true", help="also score one-shot least squares, STLSQ and the all-terms fit"
     )
+    p.add_argument(
+        "--observer", action="store_true", help="also say what an observer who knows the noise would name from drops"
+    )
     p.add_argument("--jobs", type=int, default=1, help="processes")
     return top
 
@@ -100,7 +103,16 @@ def _dispatch(args: argparse.Namespace) -> int:
     if args.command == "bench":
         from .bench.run import run
 
-        return run(args.system.split(","), args.seeds, args.half, Path(args.out), args.ablations, args.jobs, print)
+        return run(
+            args.system.split(","),
+            args.seeds,
+            args.half,
+            Path(args.out),
+            args.ablations,
+            args.jobs,
+            print,
+            args.observer,
+        )
     from . import steps
 
     if args.command in ("find", "run") and not 0.0 < args.alpha < 0.5:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,66 @@ from .fall_oracle import apart, precision
 
 INSIDE = ("linear_drag", "quadratic_drag", "buoyancy", "wind", "gain_error", "delay")
 OUTSIDE = ("gust", "cubic_drag", "swing")
+ALIKE = ({"buoyancy", "gain_error"}, {"quadratic_drag", "wind"})  # one is the other by construction
+UPDRAFT = (2.0, 6.0)  # [m/s] up or down
+LARGEST = {
+    "linear_drag": 3.0,
+    "quadratic_drag": 1.0,
+    "buoyancy": 0.9,
+    "wind": 1.0,
+    "gain_error": 0.5,
+    "delay": 0.5,
+    "gust": 60.0,
+    "cubic_drag": 0.2,
+    "swing": 30.0,
+}  # values tried
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """The fitted drops of a case and what an observer who drew it knows.
+
+    Attributes:
+        names: hidden effects.
+        drops: time [s], measured height [m], and the matrix (T, T) that makes the noise white and of unit size.
+        clean: heights without noise [m].
+        lift: buoyancy a stated size and mass imply, or None.
+        until: longest time since release that is needed [s].
+    """
+
+    names: tuple[str, ...]
+    drops: tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]
+    clean: tuple[np.ndarray, ...]
+    lift: float | None
+    until: float
 
 
 def write_fall_case(seed: int, folder: Path) -> Truth:
     """Write one set for `fall` into `folder` and return what it hides."""
+    truth, drawn = draw_fall(seed, folder)
+    if drawn.names:
+        seen = [(t, clean, white) for (t, _, white), clean in zip(drawn.drops, drawn.clean, strict=True)]
+        truth.apart = apart(drawn.names, seen, lambda v: way_of(v, drawn.until), drawn.lift)
+    return truth
+
+
+def sizes_of(kind: str) -> tuple[float, float]:
+    """Range the sizes of a kind of case are drawn from, over the noise.
+
+    Two effects of a few times the noise are mostly one smooth curve, so pairs are drawn up to where they part, and what
+    the bank lacks mostly looks like a set of it, so it is drawn as far.
+    """
+    return (2.0, 100.0) if kind in ("two", "outside") else (0.5, 8.0)
+
+
+def way_of(values: dict[str, float], until: float) -> tuple[np.ndarray, np.ndarray]:
+    """Time since release [s] and height above the release [m], from far enough up not to land."""
+    grid, path = _path(values, 1e4, 0.005, until)
+    return grid, path - 1e4
+
+
+def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
+    """Write one set into `folder`; return what it hides, and all that was drawn."""
     rng = np.random.default_rng([seed, 2])
     kind = draw_kind(rng)
     kind = "none" if kind == "recalibration" else kind
@@ -31,29 +88,14 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
             for n in rng.choice(OUTSIDE if kind == "outside" else INSIDE, size=2 if kind == "two" else 1, replace=False)
         ]
     )
-    if set(names) in ({"buoyancy", "gain_error"}, {"quadratic_drag", "wind"}):  # one is the other by construction
+    if set(names) in ALIKE:
         names = [names[0], "delay"]
-    # two effects of a few times the noise are mostly one smooth curve, so pairs are drawn up to where they part
-    # (and what the bank lacks mostly looks like a set of it, so it is drawn as far)
-    low, high = (2.0, 100.0) if kind in ("two", "outside") else (0.5, 8.0)
+    low, high = sizes_of(kind)
     size = {n: float(np.exp(rng.uniform(np.log(low), np.log(high)))) for n in names}
-    air = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(2.0, 6.0))} if "wind" in names else {}
+    air = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(*UPDRAFT))} if "wind" in names else {}
     values, plain = dict(air), _fly({}, top, rate)
     for n in names:  # size: root mean square change of the drop over the noise
-        low, high = (
-            0.0,
-            {
-                "linear_drag": 3.0,
-                "quadratic_drag": 1.0,
-                "buoyancy": 0.9,
-                "wind": 1.0,
-                "gain_error": 0.5,
-                "delay": 0.5,
-                "gust": 60.0,
-                "cubic_drag": 0.2,
-                "swing": 30.0,
-            }[n],
-        )
+        low, high = 0.0, LARGEST[n]
         change = 0.0
         for _ in range(24):
             middle = 0.5 * (low + high)
@@ -74,7 +116,7 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
         if "buoyancy" not in values:
             values["buoyancy"] = lift  # too small to see, and not missing from a model that knows both
             header["mass"] = round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)
-    entries, seen = [], []
+    entries, seen, cleans = [], [], []
     for e in range(episodes):
         h0 = top * rng.uniform(0.85, 1.0)
         h = _fly(values, h0, rate)
@@ -83,22 +125,20 @@ def write_fall_case(seed: int, folder: Path) -> Truth:
         wiggle, memory, slow = coloured_as(rng, len(h), 1.0 / rate, noise)
         h = h + wiggle
         if e < episodes - max(1, episodes // 3):
-            seen.append((t, clean, precision(len(t), 1.0 / rate, noise, memory, slow)))
+            seen.append((t, h, precision(len(t), 1.0 / rate, noise, memory, slow)))
+            cleans.append(clean)
         file = folder / f"drop_{e + 1}.csv"
         np.savetxt(file, np.stack([t, h], axis=1), delimiter=",", header="t,h", comments="", fmt="%.7g")
         entries.append({"file": file.name, "role": "heldout" if e >= episodes - max(1, episodes // 3) else "fit"})
     (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
     truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
-    if names:
-        lift = values["buoyancy"] if "mass" in header else None
-        until = max(float(t[-1]) for t, *_ in seen) + 0.5
-
-        def relative(v: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-            grid, path = _path(v, 1e4, 0.005, until)
-            return grid, path - 1e4
-
-        truth.apart = apart(names, seen, relative, lift)
-    return truth
+    return truth, Drawn(
+        names=tuple(names),
+        drops=tuple(seen),
+        clean=tuple(cleans),
+        lift=values.get("buoyancy") if "mass" in header and names else None,
+        until=max(float(d[0][-1]) for d in seen) + 0.5,
+    )
 
 
 def _fly(values: dict[str, float], h0: float, rate: float) -> np.ndarray:

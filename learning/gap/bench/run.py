@@ -38,9 +38,26 @@ def solve(system: str, seed: int, out: Path) -> Path:
 
 
 def run(
-    systems: list[str], seeds: str, half: str, out: Path, ablations: bool, jobs: int, say: Callable[[str], None]
+    systems: list[str],
+    seeds: str,
+    half: str,
+    out: Path,
+    ablations: bool,
+    jobs: int,
+    say: Callable[[str], None],
+    observer: bool = False,
 ) -> int:
     """Score seeds first:last of every system and print the table.
+
+    Args:
+        systems: among arm, axis, fall, cloth.
+        seeds: `first:last`.
+        half: `tune` (even seeds), `report` (odd) or `both`.
+        out: folder for sets, truths, rows and the table; what is there is not done again.
+        ablations: also score simpler ways on the same sets.
+        jobs: processes.
+        say: told of every case.
+        observer: also say what could be known from the drops at most.
 
     Raises:
         GapError: seeds or systems make no sense.
@@ -73,6 +90,10 @@ def run(
         from .ablations import compare
 
         lines += compare(cases, out, say)
+    if observer and "fall" in systems:
+        from .fall_observer import report
+
+        lines += report(wanted, out, say)
     (out / f"table_{half}.txt").write_text("\n".join(lines) + "\n")
     say("\n".join(lines))
     return 0
