@@ -21,6 +21,7 @@ TITLES = {
     "manual": "baseline 4, tuned by hand",
     "random": "baseline 5, random",
 }
+SAVINGS = 50  # checkpoints of a training, and points of its learning curve
 NETWORKS = {
     "paper": fit_paper,
     "supervised": fit_supervised,
@@ -48,5 +49,6 @@ class Plan:
 
 def fit_network(name: str, train: Examples, plan: Plan, seed: int) -> Method:
     """A fitted method of `NETWORKS`; trainings that the folder holds already are taken up where they ended."""
-    return NETWORKS[name](train, Budget(steps=plan.steps), seed=seed, folder=plan.folder / f"seed{seed}",
+    budget = Budget(steps=plan.steps, save_every=max(1, plan.steps // SAVINGS))
+    return NETWORKS[name](train, budget, seed=seed, folder=plan.folder / f"seed{seed}",
                           backbone=plan.backbone, say=plan.say)

@@ -1,4 +1,4 @@
-"""Pictures of a study: t-SNE of parameters and embeddings, a box plot of errors, measured and simulated clips."""
+"""Pictures of a study: t-SNE of parameters and embeddings, box plot, learning curves, measured and simulated clips."""
 
 from __future__ import annotations
 
@@ -61,6 +61,7 @@ def draw(study: Path, data: Path, out: Path, *, also: Sequence[Path] = (), weigh
     out.mkdir(parents=True, exist_ok=True)
     results = _results(study)
     yield box_plot((study, *also), out / "garment-physics-errors.png")
+    yield learning_curves((study, *also), out / "garment-physics-curves.png")
     yield map_of_clips(study, load_examples(data, study, partial=partial), results, out / "garment-physics-map.png")
     yield strips(weights, out / "garment-physics-strips.png")
 
@@ -79,9 +80,10 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
 
     errors: dict[str, dict[str, list[np.ndarray]]] = defaultdict(lambda: defaultdict(list))
     for study in studies:
-        kind = _results(study)["data"]["kind"]
+        kind, backbone = _results(study)["data"]["kind"], _results(study)["backbone"]
         for test, method, _, kept in predictions(study):
             title = test if test == kind else f"{test}, trained on {kind}"
+            title += "" if backbone == "scores" else f", {backbone}"
             errors[title][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
     columns = min(3, len(errors))
     rows = -(-len(errors) // columns)
@@ -99,6 +101,32 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
         axis.grid(axis="y", alpha=0.3)
     for axis in axes[::columns]:
         axis.set_ylabel("$M_{eg}$, shown parameters [%]", fontsize=8)
+    figure.tight_layout()
+    figure.savefig(path, dpi=90)
+    return path
+
+
+def learning_curves(studies: Sequence[Path], path: Path) -> Path:
+    """Loss of both phases of the paper's method while they learn, each seed of each study."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.4, 3.2))
+    phases = {"contrastive": "phase one, contrastive loss", "residual": "phase two, residual loss"}
+    for axis, (phase, title) in zip(figure.subplots(1, 2), phases.items(), strict=True):
+        for colour, study in enumerate(studies):
+            kind, label = _results(study)["data"]["kind"], ""
+            for file in sorted(study.glob(f"seed*/{phase}/record.json")):
+                record = json.loads(file.read_text(encoding="utf-8"))
+                steps = np.linspace(0, record["steps"], len(record["losses"]) + 1)[1:]
+                name = "" if label else f"{record['backbone']} on {kind}"  # one line of the legend for all seeds
+                label = label or name
+                axis.plot(steps, record["losses"], color=f"C{colour}", lw=1, label=name or None)
+        axis.set_yscale("log")
+        axis.set_xlabel("steps", fontsize=8)
+        axis.set_title(title, fontsize=9)
+        axis.grid(alpha=0.3)
+        if axis.lines:
+            axis.legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(path, dpi=90)
     return path

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -74,25 +75,27 @@ class Study:
     def ours(self, say: Callable[[str], None]) -> Ours:
         """Our method, fitted and calibrated, or as it was left in the folder."""
         path = self.folder / "ours.safetensors"
-        method, calibrated_on = None, 0
+        method, calibrated_on, before = None, 0, -time.process_time()
         if path.exists():
             kept, record = load_weights(path)
             if record["data"] == self.hash:
                 method, calibrated_on = kept, record["calibrated_on"]
+                before += record.get("processor_seconds", 0.0)
         if method is None:
             others = (self.cuts.part("train"), self.cuts.part("val")) if self.cuts else None
             method = fit_ours(self.data.part("train"), self.data.part("val"), others, seed=self.seeds[0], shown=SHOWN)
-            self._save(method, path, 0)  # what follows takes much longer than the fit, and may be interrupted
+            self._save(method, path, 0, before)  # what follows takes much longer than the fit, and may be interrupted
         if self.calibrate and calibrated_on != self.calibrate:
             self._calibrate(method, say)
-            self._save(method, path, self.calibrate)
+            self._save(method, path, self.calibrate, before)
         return method
 
-    def _save(self, method: Ours, path: Path, calibrated_on: int) -> None:
+    def _save(self, method: Ours, path: Path, calibrated_on: int, before: float) -> None:
         clips = sum(int((one.split == "train").sum()) for one in (self.data, self.cuts) if one)
         save_weights(method, path, {
             "method": "ours", "data": self.hash, "kind": self.data.kind, "seed": self.seeds[0],
             "clips": clips, "calibrated_on": calibrated_on, "machine": machine(),
+            "processor_seconds": round(before + time.process_time(), 3),
         })  # fmt: skip
 
     def _calibrate(self, method: Ours, say: Callable[[str], None]) -> None:

@@ -19,6 +19,7 @@ import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 from torch import nn  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
+from .backbone import has_half
 
 Say = Callable[[str], None]
 
@@ -67,6 +68,7 @@ def machine() -> dict[str, object]:
     return {
         "processor": platform.machine(), "system": platform.system(), "cores": os.cpu_count(),
         "threads": torch.get_num_threads(), "python": platform.python_version(), "torch": torch.__version__,
+        "bfloat16": has_half(),
     }  # fmt: skip
 
 

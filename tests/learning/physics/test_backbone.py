@@ -1,6 +1,7 @@
 import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
+from caretree.learning.physics import backbone  # noqa: E402
 from caretree.learning.physics.backbone import ClipEmbedding, embed  # noqa: E402
 from caretree.learning.physics.densenet import densenet, densenet121  # noqa: E402
 from caretree.sim.errors import CaretreeError  # noqa: E402
@@ -25,6 +26,22 @@ def test_embedding_in_pieces_is_embedding_at_once():
     network = ClipEmbedding(size=16, embedding=4, features=8)
     frames = torch.rand(5, 3, 2, 16, 16)
     torch.testing.assert_close(embed(network, frames, batch=2), network(frames).detach())
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_densenet_learns_in_half_precision_and_embeds_in_full(monkeypatch, half):
+    kinds = []
+    monkeypatch.setattr(backbone, "has_half", lambda: half)
+    monkeypatch.setattr("caretree.learning.physics.densenet.densenet121",
+                        lambda **sizes: densenet(**sizes, growth=4, blocks=(1, 1)))
+    network = ClipEmbedding("densenet121", embedding=4, features=8)
+    network.frame_net.register_forward_hook(lambda _, __, out: kinds.append(out.dtype))
+    seen = network(torch.rand(2, 3, 2, 32, 32))
+    assert seen.shape == (2, 4)
+    seen.sum().backward()
+    assert all(p.grad.dtype == torch.float32 for p in network.parameters())
+    embed(network, torch.rand(2, 3, 2, 32, 32))
+    assert kinds == [torch.bfloat16 if half else torch.float32, torch.float32]
 
 
 def test_densenet121_has_121_layers():

@@ -12,7 +12,7 @@ from caretree.learning.physics.examples import Loaded  # noqa: E402
 from caretree.learning.physics.measure import coverage, garment_error, median_interval  # noqa: E402
 from caretree.learning.physics.methods import TITLES, Plan  # noqa: E402
 from caretree.learning.physics.parameters import NAMES  # noqa: E402
-from caretree.learning.physics.pictures import box_plot  # noqa: E402
+from caretree.learning.physics.pictures import box_plot, learning_curves  # noqa: E402
 from caretree.learning.physics.study import Study  # noqa: E402
 from caretree.learning.physics.weights import load_weights  # noqa: E402
 from caretree.sim.errors import CaretreeError  # noqa: E402
@@ -103,6 +103,7 @@ def test_other_cuts_are_learned_from_and_tested_apart(study, small_gown):
     assert rows["cuts", "ours_simulated"]["clips"] == 11
     _, record = load_weights(wider.folder / "ours.safetensors")
     assert record["clips"] == 36 + 120
+    assert record["processor_seconds"] > 0
     assert set(load_weights(wider.folder / "ours.safetensors")[0].inversions) == {"clean", "clean_other", "rough_other"}
 
 
@@ -127,7 +128,10 @@ def test_an_interrupted_calibration_keeps_the_fit(study, monkeypatch):
         with pytest.raises(KeyboardInterrupt):
             study.run(lambda _: None, ("ours",))
     monkeypatch.setattr(study_module, "fit_ours", killed)
+    _, fit = load_weights(study.folder / "ours.safetensors")
     study.run(lambda _: None, ("ours",))
+    _, whole = load_weights(study.folder / "ours.safetensors")
+    assert whole["processor_seconds"] >= fit["processor_seconds"] > 0
     assert (study.folder / "predictions" / "uniform-ours_simulated-0.npz").exists()
 
 
@@ -141,3 +145,15 @@ def test_box_plot_shows_each_test_of_several_studies(study, tmp_path):
     assert two.size > 1.8 * one.size
     with pytest.raises(CaretreeError, match="there is no study"):
         box_plot([tmp_path / "none"], tmp_path / "errors.png")
+
+
+def test_curves_show_every_seed_that_learned(study, tmp_path):
+    study.run(lambda _: None, ("paper",))
+    write_results(study)
+    record = json.loads((study.folder / "seed0" / "contrastive" / "record.json").read_text())
+    assert len(record["losses"]) == study.plan.steps  # saved fifty times, or after every step of a short training
+    drawn = imread(learning_curves([study.folder], tmp_path / "some.png"))
+    shutil.rmtree(study.folder / "seed1")
+    fewer = imread(learning_curves([study.folder], tmp_path / "some.png"))
+    assert drawn.shape == fewer.shape
+    assert (drawn != fewer).any()
