@@ -21,7 +21,7 @@ TITLES = {
     "manual": "baseline 4, tuned by hand",
     "random": "baseline 5, random",
 }
-SAVINGS = 50  # checkpoints of a training, and points of its learning curve
+SAVINGS = 25  # checkpoints of a training, and points of its learning curve
 NETWORKS = {
     "paper": fit_paper,
     "supervised": fit_supervised,

@@ -151,7 +151,7 @@ def test_curves_show_every_seed_that_learned(study, tmp_path):
     study.run(lambda _: None, ("paper",))
     write_results(study)
     record = json.loads((study.folder / "seed0" / "contrastive" / "record.json").read_text())
-    assert len(record["losses"]) == study.plan.steps  # saved fifty times, or after every step of a short training
+    assert len(record["losses"]) == study.plan.steps  # saved 25 times, or after every step of a short training
     drawn = imread(learning_curves([study.folder], tmp_path / "some.png"))
     shutil.rmtree(study.folder / "seed1")
     fewer = imread(learning_curves([study.folder], tmp_path / "some.png"))
