@@ -66,7 +66,7 @@ def table(results: dict[str, Any]) -> str:
     grouped: dict[str, dict[str, list[dict[str, Any]]]] = defaultdict(lambda: defaultdict(list))
     for row in results["rows"]:
         grouped[row["test"]][row["method"]].append(row)
-    out = []
+    out = [f"Networks: backbone `{results['backbone']}`, {results['steps']} steps a phase.", ""]
     for test, methods in grouped.items():
         first = sorted({f"first {row['first']} clips" for rows in methods.values() for row in rows if "first" in row})
         head = ["method", "M_eg, shown parameters", *first, "all six", *NAMES, "90 % intervals hold"]

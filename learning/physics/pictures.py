@@ -29,6 +29,7 @@ from .weights import PACKAGED, load_weights
 
 CLASSES = 50  # of the t-SNE, as in the paper's figure
 CLIPS = 1200
+USUAL = "scores"  # backbone that is not named in the box plot
 LEARNED = ("ours_simulated", "ours", "paper", "supervised", "contrastive_regression", "residual_only")
 
 
@@ -78,13 +79,13 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
     """M_eg of every method on each test of each study, on a logarithmic axis."""
     from matplotlib.figure import Figure
 
-    errors: dict[str, dict[str, list[np.ndarray]]] = defaultdict(lambda: defaultdict(list))
+    errors: dict[str, dict[tuple[str, str], list[np.ndarray]]] = defaultdict(lambda: defaultdict(list))
     for study in studies:
         kind, backbone = _results(study)["data"]["kind"], _results(study)["backbone"]
         for test, method, _, kept in predictions(study):
             title = test if test == kind else f"{test}, trained on {kind}"
-            title += "" if backbone == "scores" else f", {backbone}"
-            errors[title][method].append(garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN)))
+            error = garment_error(to_values(kept["true"]), to_values(kept["unit"]), list(SHOWN))
+            errors[title][method, "" if backbone == USUAL else f", {backbone}"].append(error)
     columns = min(3, len(errors))
     rows = -(-len(errors) // columns)
     figure = Figure(figsize=(3.4 * columns + 0.6, 3.8 * rows))
@@ -92,10 +93,10 @@ def box_plot(studies: Sequence[Path], path: Path) -> Path:
     for axis in axes[len(errors) :]:
         axis.axis("off")
     for axis, (test, methods) in zip(axes, errors.items(), strict=False):
-        names = [name for name in TITLES if name in methods]
-        axis.boxplot([100 * np.concatenate(methods[name]) for name in names], showfliers=False)
-        axis.set_xticks(range(1, len(names) + 1), [TITLES[name].replace(", ", ",\n") for name in names], rotation=60,
-                        fontsize=6, ha="right")  # fmt: skip
+        boxes = sorted(methods, key=lambda box: (list(TITLES).index(box[0]), box[1]))
+        axis.boxplot([100 * np.concatenate(methods[box]) for box in boxes], showfliers=False)
+        names = [TITLES[method].replace(", ", ",\n") + backbone for method, backbone in boxes]
+        axis.set_xticks(range(1, len(boxes) + 1), names, rotation=60, fontsize=6, ha="right")
         axis.set_yscale("log")
         axis.set_title(test, fontsize=9)
         axis.grid(axis="y", alpha=0.3)

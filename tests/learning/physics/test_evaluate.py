@@ -74,6 +74,7 @@ def test_a_study_compares_every_method_on_every_test(study):
     assert results["data"]["hash"] == study.data.examples.hash
     text = table(results)
     assert all(title in text for title in TITLES.values())
+    assert f"backbone `{study.plan.backbone}`, 3 steps" in text
 
 
 def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
@@ -145,6 +146,21 @@ def test_box_plot_shows_each_test_of_several_studies(study, tmp_path):
     assert two.size > 1.8 * one.size
     with pytest.raises(CaretreeError, match="there is no study"):
         box_plot([tmp_path / "none"], tmp_path / "errors.png")
+
+
+def test_box_plot_keeps_backbones_apart(study, tmp_path, monkeypatch):
+    study.run(lambda _: None, ("random",))
+    path = write_results(study)
+    second = tmp_path / "second"
+    shutil.copytree(study.folder / "predictions", second / "predictions")
+    boxes = []
+    monkeypatch.setattr("matplotlib.axes.Axes.boxplot", lambda _, values, **__: boxes.append(len(values)))
+    written = json.loads(path.read_text())
+    for backbone in ("scores", "densenet121"):
+        (second / "results.json").write_text(json.dumps({**written, "backbone": backbone}))
+        path.write_text(json.dumps({**written, "backbone": "scores"}))
+        box_plot([study.folder, second], tmp_path / "errors.png")
+    assert boxes == [1, 1, 2, 2]  # one box where both have the same backbone, for each of two tests
 
 
 def test_curves_show_every_seed_that_learned(study, tmp_path):
