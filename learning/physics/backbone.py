@@ -62,7 +62,8 @@ class ClipEmbedding(nn.Module):
             from .densenet import densenet121
 
             # channels last: a third of the time less, since most convolutions are 1 x 1
-            self.frame_net = densenet121(channels=CHANNELS, features=features).to(memory_format=torch.channels_last)
+            self.frame_net = densenet121(channels=CHANNELS, features=features)
+            self.frame_net.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - not in its types
         self.memory = nn.LSTM(features, features, batch_first=True)
         self.out = nn.Linear(features, embedding)
 

@@ -15,6 +15,7 @@ from ...sim.errors import CaretreeError
 FRAMES = 15
 RATE = 30.0  # [Hz]
 SIZE = 64  # height and width [px]
+RIGID = 1e-3  # by which a rotation's products may be off
 UNIT = 1e-4  # of stored depth [m]; 0 is "not gown"
 _FIELDS = ("depth", "rate", "intrinsics", "pose_camera_in_map")
 _DAMAGED = (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error)
@@ -58,12 +59,18 @@ class Clip:
             raise CaretreeError(f"frame {empty[0]} of the clip is all masked: the gown must be seen in every frame")
         if float(np.nanmin(self.depth)) <= 0.0 or float(np.nanmax(self.depth)) >= 65535 * UNIT:
             raise CaretreeError(f"the clip's depth runs from {np.nanmin(self.depth):.3g} to {np.nanmax(self.depth):.3g}"
-                                f" m, it must lie between 0 and {65535 * UNIT:.2f} m")
+                                f" m, it must lie between 0 and {65535 * UNIT:.2f} m, and be NaN outside the gown")
         if len(self.intrinsics) != 4 or not np.all(np.isfinite(self.intrinsics)) or min(self.intrinsics[:2]) <= 0:
             raise CaretreeError("the clip's intrinsics must be four numbers, fx, fy, cx, cy [px], focal lengths "
                                 "above zero")
         if np.shape(self.pose_camera_in_map) != (4, 4) or not np.all(np.isfinite(self.pose_camera_in_map)):
             raise CaretreeError("the clip's pose_camera_in_map must be a 4x4 matrix of finite numbers")
+        rigid = np.asarray(self.pose_camera_in_map, float)
+        turned = rigid[:3, :3] @ rigid[:3, :3].T  # the unit matrix, for a rotation
+        if np.abs(turned - np.eye(3)).max() > RIGID or np.abs(rigid[3] - (0, 0, 0, 1)).max() > RIGID or (
+                np.linalg.det(rigid[:3, :3]) < 0):
+            raise CaretreeError("the clip's pose_camera_in_map must be a rotation and a translation, with 0, 0, 0, 1 "
+                                "in the last row")
 
     def save(self, path: str | Path) -> Path:
         """Write one .npz, completely or not at all; returns its path."""
@@ -95,6 +102,8 @@ class Clip:
         if missing:
             raise CaretreeError(f"{path}: the clip lacks {', '.join(missing)}; it needs {', '.join(_FIELDS)}")
         try:
+            if any(np.iscomplexobj(value) for value in values.values()):
+                raise TypeError("complex")
             return Clip(depth=values["depth"].astype(np.float32), rate=float(values["rate"]),
                         intrinsics=tuple(float(v) for v in np.ravel(values["intrinsics"])),  # type: ignore[arg-type]
                         pose_camera_in_map=values["pose_camera_in_map"].astype(float))

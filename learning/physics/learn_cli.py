@@ -127,6 +127,9 @@ def _identify(options: argparse.Namespace) -> int:
     from .identify import identify, write
     from .weights import PACKAGED, load_weights
 
+    if options.out and (Path(options.out).is_dir() or not Path(options.out).parent.is_dir()):
+        raise CaretreeError(f"{options.out}: a gown file cannot be written there, it must be a file in a folder that "
+                            "exists")
     clip = Clip.load(options.clip)
     method, _ = load_weights(options.weights or PACKAGED)
     start = time.perf_counter()

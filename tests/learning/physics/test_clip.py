@@ -43,6 +43,10 @@ def gone():
     ({"intrinsics": (80.0, 80.0, 31.5)}, "intrinsics must be four numbers"),
     ({"intrinsics": (0.0, 80.0, 31.5, 31.5)}, "focal lengths above zero"),
     ({"pose_camera_in_map": np.eye(3)}, "4x4 matrix"),
+    ({"pose_camera_in_map": np.zeros((4, 4))}, "must be a rotation and a translation"),
+    ({"pose_camera_in_map": np.diag([1.0, 1.0, -1.0, 1.0])}, "must be a rotation and a translation"),
+    ({"pose_camera_in_map": np.eye(4)[::-1]}, "must be a rotation and a translation"),
+    ({"depth": np.nan_to_num(depth_of())}, "NaN outside the gown"),
 ])
 def test_a_bad_clip_is_refused_when_made_and_when_read(tmp_path, changes, sentence):
     with pytest.raises(CaretreeError, match=sentence):
@@ -71,6 +75,10 @@ def test_what_is_no_clip_at_all_is_refused(tmp_path):
     np.savez(tmp_path / "words.npz", depth=depth_of(), rate="fast", intrinsics=np.ones(4), pose_camera_in_map=np.eye(4))
     with pytest.raises(CaretreeError, match="must be numbers"):
         Clip.load(tmp_path / "words.npz")
+    np.savez(tmp_path / "imaginary.npz", depth=depth_of() * 1j, rate=RATE, intrinsics=np.ones(4),
+             pose_camera_in_map=np.eye(4))
+    with pytest.raises(CaretreeError, match="must be numbers"):
+        Clip.load(tmp_path / "imaginary.npz")
     whole = (tmp_path / "half.npz").read_bytes()
     (tmp_path / "cut.npz").write_bytes(whole[: len(whole) // 2])
     with pytest.raises(CaretreeError, match="this is no clip"):

@@ -114,6 +114,15 @@ def test_bad_clips_get_one_sentence_and_exit_2(damage, tmp_path, capsys):
     assert "clip.npz" in message
 
 
+@pytest.mark.parametrize("out", ["", "none/gown.yaml"])
+def test_where_no_gown_can_be_written_is_said_first(fitted, small_gown, out, tmp_path, capsys):
+    clip = film(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
+    assert main(["learn", "physics", "identify", str(clip), "--out", str(tmp_path / out)]) == 2
+    said = capsys.readouterr()
+    assert "a gown file cannot be written there" in said.err
+    assert not said.out
+
+
 def test_bad_arguments_get_one_sentence(tmp_path, small_gown, fitted):
     clip = Clip(depth=np.full((15, 64, 64), 2.5, np.float32), rate=30.0, intrinsics=(80.0, 80.0, 32.0, 32.0),
                 pose_camera_in_map=np.eye(4))  # fmt: skip
