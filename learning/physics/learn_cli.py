@@ -12,7 +12,8 @@ from typing import NoReturn
 from ...sim.errors import CaretreeError
 
 STEPS = 1500
-METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random")
+METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random",
+           "class_centre")
 
 
 class _Parser(argparse.ArgumentParser):

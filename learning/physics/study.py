@@ -22,7 +22,7 @@ from .ours import SORTS, Ours, fit_ours
 from .parameters import SHOWN, values_to_unit
 from .simulator import Simulator
 from .training import machine
-from .untrained import ManualTuning, RandomParameters, settings
+from .untrained import ManualTuning, RandomParameters, class_centres, settings
 from .weights import load_weights, save_weights
 
 PIECE = 10  # clips simulated between two savings
@@ -150,6 +150,11 @@ class Study:
             for test, loaded, index in sets:
                 clips = loaded.examples.part(index)
                 self._keep(test, "manual", first, clips.unit, unit=by_hand.estimate(clips.frames))
+        if wanted("class_centre") and (self.data.examples.class_id >= 0).all():
+            test, loaded, index = sets[0]  # its classes are those of the part `train`
+            clips = loaded.examples.part(index)
+            self._keep(test, "class_centre", first, clips.unit,
+                       unit=class_centres(self.data.part("train"), clips.class_id))
         if wanted("ours"):
             self._ours(sets, say)
 

@@ -66,15 +66,23 @@ def test_a_study_compares_every_method_on_every_test(study):
     results = json.loads(write_results(study).read_text())
     rows = {(row["test"], row["method"], row["seed"]): row for row in results["rows"]}
     for test in ("uniform", "heldout_gown"):
-        assert {method for t, method, _ in rows if t == test} == set(TITLES)
+        assert {method for t, method, _ in rows if t == test} == set(TITLES) - {"class_centre"}  # there are no classes
         assert {seed for t, method, seed in rows if (t, method) == (test, "paper")} == {0, 1}
     assert rows["uniform", "ours_simulated", 0]["clips"] == 11
     assert rows["uniform", "paper", 1]["clips"] == 12
     assert set(rows["uniform", "ours", 0]["coverage"]) == set(NAMES)
     assert results["data"]["hash"] == study.data.examples.hash
     text = table(results)
-    assert all(title in text for title in TITLES.values())
+    assert all(title in text for method, title in TITLES.items() if method != "class_centre")
     assert f"backbone `{study.plan.backbone}`, 3 steps" in text
+
+
+def test_the_centre_of_the_class_is_shown_for_comparison(study):
+    clips = replace(study.data.examples, class_id=np.arange(60) // 5)  # four of five learned from, one of them tested
+    replace(study, data=replace(study.data, examples=clips)).run(lambda _: None, ("class_centre",))
+    kept = np.load(study.folder / "predictions" / "uniform-class_centre-0.npz")
+    np.testing.assert_allclose(kept["unit"], clips.unit.reshape(12, 5, 6)[:, :3].mean(axis=1))
+    assert not list(study.folder.glob("predictions/heldout*"))
 
 
 def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
