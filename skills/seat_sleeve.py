@@ -21,10 +21,10 @@ from .skill import Skill
 from .strap_grip import StrapGrip
 from .tracking import watch_arm
 
-FARTHEST, TAUT = 0.12, 4.8  # the strap is drawn at most this far [m] and this hard [N]
+FARTHEST = 0.12  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
-ABOVE_BED, TUCKED = 0.04, 7.0  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
+ABOVE_BED, TUCKED = 0.04, 5.5  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
 DOWN, TUCKING = 0.06, 3.0  # [m/s], for so long at most [s]
 SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]
 SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
@@ -37,10 +37,11 @@ class SeatSleeve(Skill):
     was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
     over it, one that is let go of behind it stays.  It ends with the hand still closed.
 
-    Inputs: `grip`, how the strap is held; `law`, constants of the pull.
+    Inputs: `grip`, how the strap is held; `taut`, how hard it is drawn at most [N]; `law`, constants of the pull.
     """
 
     grip = Input(StrapGrip)
+    taut = Input(float, default=4.5)
     law = Input(PullLaw, default=PullLaw())
     reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
 
@@ -65,7 +66,7 @@ class SeatSleeve(Skill):
             while window[0][0] < seen.time - WINDOW:
                 window.popleft()
             stands = seen.time - window[0][0] > 0.9 * WINDOW and gone - window[0][1] < STANDS
-            if gone > FARTHEST or np.linalg.norm(load) > TAUT or stands:
+            if gone > FARTHEST or np.linalg.norm(load) > self.taut or stands:
                 return
             self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
             linear = SPEED * self.law.ease(load) * HEADWARD

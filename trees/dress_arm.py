@@ -36,8 +36,8 @@ from .decorators import RecoverBy
 HEAD_END, SEAT = -0.45, -0.30
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
-TAUT: dict[Side, float] = {"right": 4.0, "left": 1.8}
-TAUT_ON: dict[Side, float] = {"right": 5.6, "left": 5.2}
+TAUT: dict[Side, float] = {"right": 4.0, "left": 3.0}
+TAUT_ON: dict[Side, float] = {"right": 5.0, "left": 4.8}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
@@ -117,14 +117,15 @@ def grasp_worn(context: Context, arm: Side, name: str) -> GraspSleeve:
     return GraspSleeve(name, context, side=arm, hand=PULLING[arm], worn=True, grip=Key(f"{arm}_grip"))
 
 
-def up_arm(context: Context, arm: Side, again: str = "") -> Behaviour:
-    """From past the wrist to the shoulder; names of the nodes begin with `again`."""
+def up_arm(context: Context, arm: Side, again: str = "", taut: float | None = None) -> Behaviour:
+    """To the shoulder, drawn as hard as `taut` [N], `TAUT_ON` if not given; names of the nodes begin with `again`."""
+    taut = TAUT_ON[arm] if taut is None else taut
     grip = Key(f"{arm}_grip")
     return sequence(
         f"{again}pull up and seat, {arm}",
         PullAlongArm(f"{again}pull up to the {arm} shoulder", context, grip=grip, upto=HEAD_END, seat=SEAT,
-                     stand=stance(arm, "shoulder"), taut=TAUT_ON[arm]),
-        SeatSleeve(f"{again}seat the {arm} sleeve", context, grip=grip))
+                     stand=stance(arm, "shoulder"), taut=taut),
+        SeatSleeve(f"{again}seat the {arm} sleeve", context, grip=grip, taut=0.9 * taut))
 
 
 def back_off(context: Context, name: str, distance: float) -> Behaviour:

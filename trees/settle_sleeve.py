@@ -17,12 +17,13 @@ from .dress_arm import back_off, grasp_worn, up_arm
 # How far down the upper arm the cuff shows at most.  In 31 recorded runs the armhole was 0.77 up the upper arm or more
 # where the cuff was at 0.60 or less, 0.67 to 0.77 where it was at 0.61 to 0.76, and 0.50 where it was at 0.85 and 1.03.
 SITS, WILL_DO = 0.60, 0.78
+TAUT = 4.0  # how hard it is drawn: harder, it would pull the other sleeve down in its turn [N]
 
 
 def settle_sleeve(context: Context, arm: Side) -> Behaviour:
     """Go to an arm and look how far up its sleeve is; where it is low, take it by the strap and draw it up again."""
     draw_up = sequence(f"draw the {arm} sleeve up again",
-                       grasp_worn(context, arm, f"grasp the low {arm} sleeve"), up_arm(context, arm, "again "),
+                       grasp_worn(context, arm, f"grasp the low {arm} sleeve"), up_arm(context, arm, "again ", TAUT),
                        back_off(context, f"leave the {arm} sleeve", 0.25))
     return sequence(
         f"settle the {arm} sleeve",
