@@ -1,7 +1,7 @@
 """Stages C and D of the dressing tree, and what is owed whenever a stage fails.
 
 C  dress the right arm, drive round the foot of the bed, dress the left arm
-D  draw the collar to the neck where the chest shows, and the first sleeve up again where the second has pulled it down
+D  draw the collar to the neck where the chest shows, and sleeves that have slipped up their arms once more
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def spread(context: Context) -> Behaviour:
         "spread and settle", fallback(
             "spread the gown", covered("it lies spread already"),
             sequence("draw it straight", *sides, covered("the chest is covered"))),
-        settle_sleeve(context, "right")), seconds=300.0))
+        *(settle_sleeve(context, arm) for arm in ("left", "right"))), seconds=400.0))
 
 
 def make_safe(context: Context) -> Behaviour:
