@@ -26,7 +26,8 @@ class CheckSleeve(Skill):
 
     A sleeve of which too little shows is let pass.
 
-    Inputs: `side` of the person; `upto`, how far down the upper arm the cuff of a sleeve that sits well shows at most.
+    Inputs: `side` of the person; `upto`, how far from the shoulder the cuff of a sleeve that sits well shows at
+    most, along the upper arm [m].
     """
 
     commands = False
@@ -46,8 +47,10 @@ class CheckSleeve(Skill):
         self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}")
         if seen.cuff_at < CUFF_AT:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
-        if seen.cuff_at > self.upto:
-            raise SkillFailure(Reason.SLEEVE_LOW, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
+        away = seen.cuff_at * float(np.linalg.norm(arm[1] - arm[0]))
+        if away > self.upto:
+            raise SkillFailure(Reason.SLEEVE_LOW, f"the cuff is {away * 100:.0f} cm down the arm, "
+                                                  f"{self.upto * 100:.0f} cm at most are asked for")
         yield
 
     @classmethod

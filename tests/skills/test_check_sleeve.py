@@ -1,5 +1,6 @@
 """Whether an arm is inside its sleeve, as far as it shows."""
 
+import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import WornSleeve
@@ -12,6 +13,8 @@ from caretree.skills.scripted_person import lying_posture
 from caretree.trees.guard import GuardedWorld
 from py_trees.common import Status
 
+UPPER_ARM = float(np.linalg.norm(np.diff(lying_posture("left").points_in_map[:2], axis=0)))  # [m]
+
 
 def worn(cuff_at=0.5):
     return WornSleeve(stamp=0.0, confidence=0.9, side="left", armhole_at=0.2, cuff_at=cuff_at)
@@ -21,9 +24,9 @@ def worn(cuff_at=0.5):
     (worn(), None, Status.SUCCESS, None),
     (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
     (worn(cuff_at=0.9), None, Status.SUCCESS, None),
-    (worn(cuff_at=0.59), 0.60, Status.SUCCESS, None),
-    (worn(cuff_at=0.61), 0.60, Status.FAILURE, Reason.SLEEVE_LOW),
-    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60, Status.SUCCESS, None),
+    (worn(cuff_at=0.59), 0.60 * UPPER_ARM, Status.SUCCESS, None),
+    (worn(cuff_at=0.61), 0.60 * UPPER_ARM, Status.FAILURE, Reason.SLEEVE_LOW),
+    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60 * UPPER_ARM, Status.SUCCESS, None),
 ])
 def test_a_heap_at_the_shoulder_is_a_miss_and_a_cuff_far_down_is_low(seen, upto, status, reason):
     world = ScriptedWorld()
