@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 KINDS = ("none", "recalibration", "single", "two", "outside")
+STEPS = (0.0, 0.5)  # a recording is rounded to, over its noise
 SHARES = (0.27, 0.06, 0.34, 0.17, 0.16)
 
 
@@ -63,6 +64,11 @@ def coloured_as(rng: np.random.Generator, n: int, dt: float, rms: float) -> tupl
     slow = lfilter([np.sqrt(1 - a * a)], [1.0, -a], rng.normal(size=n + 500))[500:]
     part = float(rng.uniform(0.2, 0.8))
     return rms * (np.sqrt(part) * slow + np.sqrt(1 - part) * rng.normal(size=n)), memory, part
+
+
+def rounded(x: np.ndarray, step: float) -> np.ndarray:
+    """What an instrument of this resolution shows of `x`; 0 for a perfect one."""
+    return np.round(x / step) * step if step > 0.0 else x
 
 
 def multisine(rng: np.random.Generator, t: np.ndarray, base: float, harmonics: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..cloth.obj import write_obj
 from ..cloth.scene import ClothEpisode, read_scene
 from ..cloth.simulate import simulate
 from ..measurement import Episode, MeasurementSet
-from .case import Truth, coloured, draw_kind
+from .case import STEPS, Truth, coloured, draw_kind, rounded
 
 STILL = EffectEntry(name="wind", target="cloth", parameters={"x": 1e-6, "y": 0.0})
 LEAST = 0.5  # size over the noise below which nothing is hidden: another effect is drawn instead
@@ -88,12 +88,14 @@ def write_cloth_case(seed: int, folder: Path) -> Truth:
     )
     scene, parsed = read_scene(measured)
     noise = float(rng.uniform(0.0008, 0.002))
+    step = noise * float(np.random.default_rng([seed, 3, 1]).choice(STEPS))
     effects, changed = _draw(rng, kind, truth, vertices, limb, duration, noise, scene, parsed)
     for e in parsed:
         x = simulate(scene, e, effects, changed)
         if kind == "outside":
             x = _outside(rng, truth, x, e, noise)
         x = x + np.stack([coloured(rng, len(t), t[1], noise) for _ in range(x.shape[1])], axis=1)
+        x = rounded(x, step)
         names = [f"m{k}{a}" for k in range(len(markers)) for a in "xyz"]
         np.savetxt(
             folder / f"{e.name}.csv",

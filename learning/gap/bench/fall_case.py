@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from .case import Truth, coloured_as, draw_kind
+from .case import STEPS, Truth, coloured_as, draw_kind, rounded
 from .fall_oracle import apart, precision
 
 INSIDE = ("linear_drag", "quadratic_drag", "buoyancy", "wind", "gain_error", "delay")
@@ -116,6 +116,7 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
         if "buoyancy" not in values:
             values["buoyancy"] = lift  # too small to see, and not missing from a model that knows both
             header["mass"] = round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)
+    step = noise * float(np.random.default_rng([seed, 2, 1]).choice(STEPS))
     entries, seen, cleans = [], [], []
     for e in range(episodes):
         h0 = top * rng.uniform(0.85, 1.0)
@@ -123,7 +124,7 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
         t = np.arange(len(h)) / rate
         clean = h
         wiggle, memory, slow = coloured_as(rng, len(h), 1.0 / rate, noise)
-        h = h + wiggle
+        h = rounded(h + wiggle, step)
         if e < episodes - max(1, episodes // 3):
             seen.append((t, h, precision(len(t), 1.0 / rate, noise, memory, slow)))
             cleans.append(clean)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from .case import Truth, coloured, draw_kind, draw_size, moves, multisine
+from .case import STEPS, Truth, coloured, draw_kind, draw_size, moves, multisine
 from .joint_loads import INSIDE, OUTSIDE, Trace, shape_of
 
 ROBOTS = ("ur5", "ur10", "panda", "z1", "xarm7")
@@ -49,7 +49,7 @@ def write_joint_case(system: str, seed: int, folder: Path) -> Truth:
     position_step = rng.choice([0.0, 2e-5, 5e-5]) * (0.2 if system == "axis" else 1.0)
     position_noise = rng.choice([0.0, 1e-5]) * (0.2 if system == "axis" else 1.0)
     give_speed = rng.random() < 0.6
-    load_step = noise * rng.choice([0.0, 0.5])
+    load_step = noise * rng.choice(STEPS)
     entries = []
     for e, ((q, v, _), u) in enumerate(zip(motions, loads, strict=True)):
         total = u + added[e]
