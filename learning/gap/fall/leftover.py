@@ -18,7 +18,7 @@ from .colour import Colour, grid, likelihood
 from .drop import height
 from .fit import RELEASE, DropFit, table_of
 
-FORCES = (4, 6, 14)  # pieces of the acceleration over the time since release
+FORCES = (6, 14)  # pieces of the acceleration over the time since release
 PUSHES = (8, 14, 20)  # of which one alone is a push
 SWINGS = 16  # periods tried
 READING = 8  # pieces of a bent reading over the height
@@ -128,7 +128,11 @@ def _best_of(fit: DropFit, columns: np.ndarray, each: int, colours: list[Colour]
     left = [_left(X[:, g], y)[0] for g in groups]
     k = int(np.argmin(left))
     energy, p, _ = _pays(fit, columns[:, groups[k]], colours)
-    return energy, min(1.0, len(groups) * p), k
+    tried = float(len(groups))
+    if each == 1:  # pushes that overlap are not as many chances
+        spread = np.linalg.svd(X / (np.linalg.norm(X, axis=0) + 1e-12), compute_uv=False) ** 2
+        tried = max(float(np.sum(spread) ** 2 / np.sum(spread**2)), 1.0)
+    return energy, min(1.0, tried * p), k
 
 
 def _reading(fit: DropFit, heights: list[np.ndarray], colours: list[Colour]) -> Leftover:

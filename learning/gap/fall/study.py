@@ -108,7 +108,9 @@ class FallStudy(Study):
         return fit
 
     def _repeats(self, fit: DropFit) -> Leftover:
-        return repeating(fit, [d.t for d in self.fitted])
+        """What repeats in all drops, the held-out ones too: whether a set of effects is enough is asked of every one."""
+        drops = [*self.fitted, *self.heldout]
+        return repeating(fit_drops(drops, fit.names, fit.mode), [d.t for d in drops])
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
         """Part of resampled stretches in which each effect keeps paying its price."""
