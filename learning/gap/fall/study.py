@@ -108,7 +108,7 @@ class FallStudy(Study):
         return fit
 
     def _repeats(self, fit: DropFit) -> Leftover:
-        """What repeats in all drops, the held-out ones too: whether a set of effects is enough is asked of every one."""
+        """What repeats in all drops; whether a set of effects is enough is asked of the held-out ones too."""
         drops = [*self.fitted, *self.heldout]
         return repeating(fit_drops(drops, fit.names, fit.mode), [d.t for d in drops])
 
@@ -295,11 +295,11 @@ class FallStudy(Study):
             )
         guess = ""
         if self.verdict == "unknown":
-            guess = "the effects that explain the fitted drops do not hold on the held-out ones"
-            if self._many:
-                guess = "a smooth force that only three effects of the bank together can follow, as they follow any"
-        if self.verdict == "unknown" and self.leftover.p_value < SURE:
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
+            if self._strange > TRANSFERRED:
+                guess = "the effects that explain the fitted drops do not hold on the held-out ones"
+            elif self._many and self.leftover.p_value >= SURE:
+                guess = "a smooth force that only three effects of the bank together can follow, as they follow any"
         return self.verdict, tuple(out), (), guess
 
     def rivals(self) -> tuple[Rival, ...]:
