@@ -109,7 +109,8 @@ class FallStudy(Study):
 
     def _repeats(self, fit: DropFit) -> Leftover:
         """What repeats in all drops; whether a set of effects is enough is asked of the held-out ones too."""
-        drops = [*self.fitted, *self.heldout]
+        # one fitted drop cannot tell a repeating force from slow noise, and a second one that is like it is one chance
+        drops = self.fitted if len(self.fitted) < 2 else [*self.fitted, *self.heldout]
         return repeating(fit_drops(drops, fit.names, fit.mode), [d.t for d in drops])
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
