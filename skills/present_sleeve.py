@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 
 import numpy as np
 
@@ -27,13 +27,15 @@ RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
 LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
+HARDER = 1.5  # how much harder a sleeve that does not open is drawn out the second time
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
 
 class PresentSleeve(Skill):
     """Raises the sleeve, carries it to a place beyond the fingertips and turns it there, never over the arm.
 
-    Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.
+    Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.  A sleeve that does
+    not open is carried out once more, farther.
 
     Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
     is carried no farther, lest the gown be drawn off the other arm [N]; `opens`, how far beyond the armhole the cuff
@@ -59,44 +61,58 @@ class PresentSleeve(Skill):
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
         yield from holding(self, self.hold, look_towards(self, path.point(LOOK)))
-        yield from holding(self, self.hold, self._carry_out(path))
+        yield from self._bring(path, self.taut)
+        if (folded := (yield from self._folded(path))) is not None and np.isfinite(self.taut):
+            self.note(f"brings the {arm} sleeve from farther out")  # on its way back the cuff trails behind
+            try:
+                yield from self._bring(path, HARDER * self.taut)
+            except MotionError:
+                raise folded from None
+            folded = yield from self._folded(path)
+        if folded is not None:
+            raise folded
+
+    def _bring(self, path: ArmPath, taut: float) -> Iterator[None]:
+        """Out beyond the fingertips, then back before them."""
+        hand = self.grip.hand
+        yield from holding(self, self.hold, self._carry_out(path, taut))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
-        path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
+        path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
         place = path.moved(3.0, BEFORE)
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
         yield from holding(self, self.hold, move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either"))
-        yield from self._check(path)
 
-    def _check(self, path: ArmPath) -> Iterator[None]:
+    def _folded(self, path: ArmPath) -> Generator[None, None, SkillFailure | None]:
         """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it.
 
         One that hides behind its panel cannot be centred on the hand either.
         """
         if not np.isfinite(self.opens):
-            return
+            return None
         yield from holding(self, self.hold, self.wait(0.3))
         try:
             seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
                                          near_in_map=hand_now(self, self.grip.hand)[:3, 3])
         except PerceptionFailure as hidden:
-            raise SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}") from hidden
+            return SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}")
         assert isinstance(seen, SleeveHeading)
         beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
-        if beyond < self.opens:
-            raise SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
-                                                     f"{self.opens * 100:.0f} cm are asked for")
+        if beyond >= self.opens:
+            return None
+        return SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
+                                                  f"{self.opens * 100:.0f} cm are asked for")
 
-    def _carry_out(self, path: ArmPath) -> Iterator[None]:
+    def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
         problem: MotionError | None = None
         for beyond in BEYOND:
             goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
             try:
                 motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
-                yield from until_taut(self, self.grip.hand, self.taut, motion)
+                yield from until_taut(self, self.grip.hand, taut, motion)
                 return
             except MotionError as stop:
                 problem = stop

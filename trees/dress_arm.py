@@ -36,7 +36,7 @@ from .decorators import RecoverBy
 HEAD_END, SEAT = -0.45, -0.30
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
-TAUT: dict[Side, float] = {"right": 4.0, "left": 2.4}
+TAUT: dict[Side, float] = {"right": 4.0, "left": 2.0}
 TAUT_ON: dict[Side, float] = {"right": 5.0, "left": 4.4}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
