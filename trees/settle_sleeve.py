@@ -17,8 +17,9 @@ from .decorators import RecoverBy
 from .dress_arm import MISSES, back_off, grasp_worn, up_arm
 
 # How far down the arm the cuff shows at most, from the shoulder.  In 65 recorded sleeves the armhole was up the upper
-# arm by 1.11 less 1.96 for each metre of that, give or take 0.04: by 0.77 for the one and 0.68 for the other [m].
-SITS, WILL_DO = 0.175, 0.22
+# arm by 1.11 less 1.96 for each metre of that, give or take 0.04: by 0.73 for the one and 0.68 for the other.  A
+# sleeve that was drawn up again from 0.74 came to rest at 0.71, from 0.51 and 0.66 at 0.66 and 0.77 [m].
+SITS, WILL_DO = 0.195, 0.22
 TAUT = 3.7  # how hard it is drawn: harder, it would pull the other sleeve down in its turn [N]
 
 
