@@ -1,0 +1,55 @@
+"""A sleeve that does not open before the hand is carried farther out once, then given up as folded."""
+
+import numpy as np
+import pytest
+from caretree.perception.estimates import SleeveHeading
+from caretree.sim.robot import model
+from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.skills.bedside import stance
+from caretree.skills.context import Context
+from caretree.skills.present_sleeve import PresentSleeve
+from caretree.skills.reasons import Reason
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.skills.scripted_person import LYING, lying_posture
+from caretree.skills.strap_grip import StrapGrip
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+ALONG = (LYING[3] - LYING[2]) * (1.0, 1.0, 0.0) / np.linalg.norm((LYING[3] - LYING[2])[:2])  # the right hand
+
+
+def heading(beyond):
+    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=beyond * ALONG)
+
+
+@pytest.mark.parametrize(("seen", "reason", "asked"), [
+    ([heading(0.09)], None, 1),
+    ([heading(-0.02), heading(0.08)], None, 2),
+    ([heading(-0.02), heading(0.03)], Reason.SLEEVE_FOLDED, 2),
+])
+def test_it_is_brought_twice_at_most(seen, reason, asked):
+    room = scripted_room()
+    room.waypoints["start"] = tuple(stance("right", "lift"))
+    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    world.load["right"] = np.array((0.0, 0.0, -1.0, 0.0, 0.0, 0.0))  # the sleeve that hangs from it [N]
+    guard = GuardedWorld(world)
+    looks = []
+
+    def answer(frame, **details):
+        looks.append(frame.stamp)
+        return seen[min(len(looks), len(seen)) - 1]
+
+    context = Context(world=guard, guard=guard, seed=1,
+                      perception=scripted_perception({"arm": lying_posture("right"), "sleeve_heading": answer}))
+    grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+    skill = PresentSleeve("present", context, grip=grip, taut=4.0, opens=0.05)
+    for _ in range(3000):
+        context.lease.advance()
+        skill.tick_once()
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+        if skill.status != Status.RUNNING:
+            break
+    assert (skill.failure and skill.failure.reason) == reason
+    assert skill.status == (Status.SUCCESS if reason is None else Status.FAILURE)
+    assert len(looks) == asked
