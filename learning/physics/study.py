@@ -127,7 +127,10 @@ class Study:
         """Make all predictions that are missing, of all methods or of the named ones."""
         self._forget_other_data()
         sets = list(self.test_sets())
-        wanted = lambda name: not only or name in only  # noqa: E731
+
+        def wanted(name: str) -> bool:
+            return not only or name in only
+
         todo = [(seed, name) for seed in self.seeds for name in NETWORKS if wanted(name)
                 and any(not self._file(t, name, seed).exists() for t, _, _ in sets)]
         if todo:
