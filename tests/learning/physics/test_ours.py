@@ -159,7 +159,10 @@ def moved_blobs(unit, misplaced):
     low = np.clip(np.floor(rows).astype(int), 0, frames.shape[-2] - 2)
     share = np.clip(rows - low, 0.0, 1.0)[:, None, None, :, None]
     index = low[:, None, None, :, None]
-    take = lambda k: np.take_along_axis(frames, np.broadcast_to(k, frames.shape), axis=3)  # noqa: E731
+
+    def take(k):
+        return np.take_along_axis(frames, np.broadcast_to(k, frames.shape), axis=3)
+
     return ((1 - share) * take(index) + share * take(index + 1)).astype(np.float16)
 
 
@@ -179,7 +182,10 @@ def test_each_sort_of_clips_has_its_own_inversion_and_a_misplaced_camera_is_foun
     assert set(method.inversions) == {"clean", "rough"}
     assert method.sort(True) is method.sort(True, other=True) is method.inversions["rough"]
     assert method.sort(False) is method.sort(False, other=True) is method.inversions["clean"]
-    films = lambda index: (moved_blobs if test.gaps[index[0]] else blob_frames)  # noqa: E731
+
+    def films(index):
+        return moved_blobs if test.gaps[index[0]] else blob_frames
+
     alone, (again, _) = method.infer(test), method.raw(test, films)
     rough = test.gaps
     fooled = method.sort(False).alone(test.frames)[0]
@@ -198,6 +204,9 @@ def test_gowns_of_other_cuts_are_read_by_a_process_that_learned_from_many():
     test = cut(40, 5)
     fooled, told = (np.abs(method.infer(test, other=other).unit - test.unit).mean() for other in (False, True))
     assert told < 0.1 * fooled
-    films = lambda index: lambda unit: blob_frames(unit + [0.4, 0.0])  # noqa: E731
+
+    def films(index):
+        return lambda unit: blob_frames(unit + [0.4, 0.0])
+
     again, _ = method.raw(test, films, other=True)
     assert np.abs(again - test.unit).mean() < told
