@@ -20,6 +20,7 @@ OUTCOMES: tuple[str, ...] = get_args(Outcome)
 RUN_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE = (
     "run.json", "trace.jsonl", "truth.npz", "video.mp4", "report.html")
 SPOOL_FOLDER = "truth.spool"
+ERRORS_FILE = "errors.log"  # tracebacks of errors in the program or in a task file
 VERSIONED = ("caretree", "numpy", "scipy", "pybullet", "py_trees", "pin", "toppra", "opencv-python-headless",
              "filterpy")
 

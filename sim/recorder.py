@@ -13,16 +13,17 @@ from typing import Any
 import numpy as np
 
 from .errors import RecordError
+from .folder_claim import FolderClaim
 from .record import (
+    ERRORS_FILE,
+    REPORT_FILE,
     RUN_FILE,
     SPOOL_FOLDER,
     TRACE_FILE,
     TRUTH_FILE,
     VIDEO_FILE,
     RunResult,
-    is_finished,
     peak_memory,
-    read_run,
     versions,
     write_run,
 )
@@ -41,17 +42,18 @@ class Recorder:
     outcome, the trace so far and the frames so far.
 
     Args:
-        directory: created if needed.
+        directory: created if needed, or the claim on it; given back at the end.
         task, seed, world: what runs, on which world.
         parameters: everything else needed to run it again (gown, person, faults, model).
 
     Raises:
-        RecordError: the folder cannot be written or already holds a finished run.
+        RecordError: the folder cannot be written, another run is writing it, or it already holds a finished run.
     """
 
-    def __init__(self, directory: Path | str, *, task: str, seed: int, world: str,
+    def __init__(self, directory: Path | str | FolderClaim, *, task: str, seed: int, world: str,
                  parameters: Mapping[str, Any] | None = None) -> None:
-        self.directory = Path(directory)
+        self._claim = directory if isinstance(directory, FolderClaim) else FolderClaim(Path(directory))
+        self.directory = self._claim.directory
         self._clear_unfinished()
         self._run: dict[str, Any] = {
             "task": task, "seed": seed, "world": world, "outcome": None, "reason": None, "stages": [],
@@ -63,21 +65,22 @@ class Recorder:
         self._video: VideoWriter | None = None
         self._done = False
         try:
-            self.directory.mkdir(parents=True, exist_ok=True)
             self._trace = (self.directory / TRACE_FILE).open("w", encoding="utf-8", buffering=1)
         except OSError as error:
+            self._claim.release()
             raise disk_error(error, f"opening the record in {self.directory}") from error
-        write_run(self.directory, self._run)
+        try:
+            write_run(self.directory, self._run)
+        except RecordError:
+            self.close()
+            raise
 
     def _clear_unfinished(self) -> None:
-        """Make room where a run was cut short; refuse to touch a finished one."""
+        """Make room where a run was cut short."""
         if not (self.directory / RUN_FILE).exists():
             return
-        if is_finished(read_run(self.directory)):
-            raise RecordError(f"{self.directory} already holds a finished run; give another folder with --out or "
-                              "remove it")
         shutil.rmtree(self.directory / SPOOL_FOLDER, ignore_errors=True)
-        for name in (TRUTH_FILE, VIDEO_FILE):
+        for name in (TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE):
             (self.directory / name).unlink(missing_ok=True)
 
     def begin(self, static: TruthStatic) -> None:
@@ -139,8 +142,14 @@ class Recorder:
         """
         if self._done:
             raise RecordError("the recorder was finished twice")
-        self.close()
+        self._close_files()
         self._done = True
+        try:
+            self._finish(result)
+        finally:
+            self._claim.release()
+
+    def _finish(self, result: RunResult) -> None:
         problem: RecordError | None = None
         began = time.perf_counter()
         if self._spool is not None and self._spool.frames:
@@ -162,6 +171,10 @@ class Recorder:
 
     def close(self) -> None:
         """Release files without an outcome; the record stays readable as a run cut short.  May be called twice."""
+        self._close_files()
+        self._claim.release()
+
+    def _close_files(self) -> None:
         self._trace.close()
         if self._spool is not None:
             self._spool.close()

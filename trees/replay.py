@@ -14,7 +14,7 @@ from .runner import Run
 from .tasks import load_task
 from .timeline import read_trace
 from .trace import canonical
-from .worlds import make_world
+from .worlds import make_world, prepare_stage
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,7 @@ def replay(directory: Path) -> Replay:
         world = FaultyWorld(inner, faults) if faults else inner
         run = Run(loaded, world, seed=seed, rate_hz=float(parameters.get("rate_hz", 15.0)), perception=perception,
                   params={"stage": stage} if stage else None)
+        prepare_stage(inner, stage)
         run.run()
     finally:
         inner.close()

@@ -54,9 +54,12 @@ def write_report(directory: Path | str) -> Path:
     directory = Path(directory)
     page = build_report(directory)
     path = directory / REPORT_FILE
+    part = path.with_name(f"{REPORT_FILE}.part")
     try:
-        path.write_text(page, encoding="utf-8")
+        part.write_text(page, encoding="utf-8", errors="replace")  # names of folders need not be text
+        part.replace(path)
     except OSError as error:
+        part.unlink(missing_ok=True)
         raise disk_error(error, f"writing {path}") from error
     return path
 

@@ -36,3 +36,14 @@ def make_world(name: str, task: Task, *, seed: int, gown: str | None = None, per
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model}
     options = {key: value for key, value in options.items() if value is not None}
     return BulletWorld(seed=seed, view=view, **options), None
+
+
+def prepare_stage(world: World, stage: str | None) -> None:
+    """Bring `world` to where `stage` begins, where it can; None stands for the whole task.
+
+    Raises:
+        CaretreeError: this world cannot begin there.
+    """
+    prepare = getattr(world, "prepare_stage", None)
+    if prepare is not None and stage:
+        prepare(stage)

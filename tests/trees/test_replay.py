@@ -13,6 +13,33 @@ def record(tmp_path, monkeypatch):
     return tmp_path / "run"
 
 
+STAGED = """
+from caretree.sim.scripted import ScriptedWorld
+from caretree.trees.tasks.wave import FailSafe, LetGo, MoveJoint
+
+
+class Prepared(ScriptedWorld):
+    def prepare_stage(self, stage):
+        self._q[:] = {"B": 0.5}[stage]
+
+
+def scripted(seed):
+    return Prepared(seed=seed), None
+
+
+def build(context, stage=""):
+    return FailSafe("safely", MoveJoint("up", context, side="left", joint="w1", angle=0.2), LetGo("let go", context))
+"""
+
+
+def test_a_stage_begins_where_it_began(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "staged.py").write_text(STAGED)
+    assert main(["run", "staged.py", "--world", "scripted", "--stage", "B", "--out", "run"]) == 0
+    assert '"goal":[0.7]' in (tmp_path / "run" / "trace.jsonl").read_text()
+    assert replay(tmp_path / "run").same
+
+
 def edit(path, change):
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     path.write_text("".join(json.dumps(each) + "\n" for each in change(lines)))

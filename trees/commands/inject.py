@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from pathlib import Path
 
 from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS
+from ...sim.file_lock import lock_file
 from ...sim.spool import disk_error
 from ..inject import Campaign, Row, table
-from ..tasks import load_task
+from ..tasks import Task, load_task
 from ..worlds import make_world
 
 ROWS = "inject.jsonl"
@@ -28,6 +30,20 @@ def main(options: argparse.Namespace) -> int:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
     usual = Path("runs") / f"inject-{Path(options.task).stem}-{options.world}-seed{options.seed}"
     path = Path(options.out or usual) / ROWS
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lock = lock_file(path)
+    except OSError as error:
+        raise disk_error(error, f"writing {path}") from error
+    if lock is None:
+        raise CaretreeError(f"another campaign is writing {path}: give another folder with --out or wait for it")
+    try:
+        return _campaign(options, task, path)
+    finally:
+        os.close(lock)
+
+
+def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     campaign = Campaign(task, lambda: make_world(options.world, task, seed=options.seed), seed=options.seed,
                         faults=tuple(options.fault) or FAULTS)
     if campaign.nominal.outcome != "success":
@@ -35,7 +51,6 @@ def main(options: argparse.Namespace) -> int:
     wanted = campaign.plan()
     rows = [row for row in read_rows(path) if row.key in set(wanted)]
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", encoding="utf-8") as file:
             for row in campaign.rows({row.key for row in rows}):
                 file.write(json.dumps(row.as_dict()) + "\n")

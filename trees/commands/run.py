@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 import signal
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,13 +10,14 @@ from typing import Any
 
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
-from ...sim.record import RUN_FILE
+from ...sim.folder_claim import FolderClaim, claim_free
+from ...sim.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
 from ...sim.recorder import Recorder
 from ...sim.world import World
 from ...skills.context import Perception
 from ..runner import Progress, Run
 from ..tasks import Task, load_task
-from ..worlds import make_world
+from ..worlds import make_world, prepare_stage
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
 RATE_HZ = 15.0
@@ -28,16 +28,6 @@ def show(progress: Progress) -> None:
     indent = "" if progress.kind == "stage" else "    "
     message = f": {progress.message}" if progress.message else ""
     print(f"{progress.time:8.2f} s {indent}{SIGNS[progress.status]} {progress.name}{message}", flush=True)
-
-
-def free_folder(task: str, seed: int) -> Path:
-    """A folder under runs/ that holds no run yet."""
-    stem = Path(task).stem
-    for number in itertools.count(1):
-        folder = Path("runs") / (f"{stem}-seed{seed}" + (f"-{number}" if number > 1 else ""))
-        if not (folder / RUN_FILE).exists():
-            return folder
-    raise AssertionError
 
 
 def main(options: argparse.Namespace) -> int:
@@ -51,40 +41,44 @@ def main(options: argparse.Namespace) -> int:
     parameters = {"gown": options.gown, "person": options.person, "model": options.model, "inject": options.inject,
                   "rate_hz": RATE_HZ, "stage": options.stage}
     parameters = {key: value for key, value in parameters.items() if value not in (None, [])}
-    inner, perception = make_world(options.world, task, seed=options.seed, gown=options.gown, person=options.person,
-                                   model=options.model, view=options.view)
+    # claimed before the world is built, which takes a while: two runs begun together get a folder each
+    claim = FolderClaim(Path(options.out)) if options.out else claim_free(
+        Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # being told to end is being interrupted
     try:
-        return _run(options, task, inner, perception, faults, parameters)
+        inner, perception = make_world(options.world, task, seed=options.seed, gown=options.gown, person=options.person,
+                                       model=options.model, view=options.view)
+        try:
+            return _run(options, task, inner, perception, faults, parameters, claim)
+        finally:
+            inner.close()
     finally:
         signal.signal(signal.SIGTERM, before)
-        inner.close()
+        claim.release()
 
 
 def _run(options: argparse.Namespace, task: Task, inner: World, perception: Perception | None,
-         faults: list[FaultSpec], parameters: dict[str, Any]) -> int:
+         faults: list[FaultSpec], parameters: dict[str, Any], claim: FolderClaim) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
     events = _Events()
     run = Run(task, world, seed=options.seed, rate_hz=RATE_HZ, recorder=events, on_progress=show, perception=perception,
               params={"stage": options.stage} if options.stage else None)
-    directory = Path(options.out) if options.out else free_folder(options.task, options.seed)
-    recorder = Recorder(directory, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
+    prepare_stage(inner, options.stage)
+    directory = claim.directory
+    recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
     events.recorder = recorder
     try:
-        for hook, arguments in (("attach_recorder", (recorder,)), ("prepare_stage", (options.stage,))):
-            if getattr(inner, hook, None) is not None and arguments[0]:
-                getattr(inner, hook)(*arguments)
+        if (attach := getattr(inner, "attach_recorder", None)) is not None:
+            attach(recorder)
         result = run.run()
         recorder.finish(result)
     finally:
         recorder.close()
-    for trace in run.context.errors:
-        (directory / "errors.log").open("a", encoding="utf-8").write(trace + "\n")
+    written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
     print(f"{result.outcome.replace('_', ' ')}: {result.reason}")
-    _report(directory)
-    for name in ("report.html", "video.mp4", RUN_FILE):
-        if (directory / name).exists():
-            print(directory / name)
+    for path in written:
+        if path is not None and path.exists():
+            print(path)
     return 0 if result.outcome == "success" else 1
 
 
@@ -99,10 +93,24 @@ class _Events:
             self.recorder.event(event)
 
 
-def _report(directory: Path) -> None:
+def _report(directory: Path) -> Path | None:
     """The page for the operator; the run counts even when it cannot be drawn."""
     try:
         from ..report import write_report  # matplotlib is needed only here
-        write_report(directory)
+        return write_report(directory)
     except (ImportError, CaretreeError, ValueError) as error:
         print(f"no report: {error}")
+        return None
+
+
+def _errors(directory: Path, errors: list[str]) -> Path | None:
+    """Keep the tracebacks of errors that the run has survived."""
+    if not errors:
+        return None
+    path = directory / ERRORS_FILE
+    try:
+        path.write_text("\n".join(errors), encoding="utf-8", errors="backslashreplace")
+    except OSError as error:
+        print(f"no {ERRORS_FILE}: {error.strerror or error}")
+        return None
+    return path
