@@ -61,7 +61,7 @@ def check(task: Task) -> CheckReport:
         TaskError: the tree cannot even be built.
     """
     report = CheckReport()
-    root = _fresh(task)
+    root = fresh_tree(task)
     paths = paths_of(root)
     report.skills = sum(isinstance(node, Skill) for node in root.iterate())
     report.findings += _names(root) + _nodes(root, paths) + _fail_safes(root, paths)
@@ -69,7 +69,7 @@ def check(task: Task) -> CheckReport:
     wiring = Wiring(paths)
     wiring.check(root)
     report.findings += wiring.findings
-    explorer = Explorer(_fresh(task))
+    explorer = Explorer(fresh_tree(task))
     explorer.explore()
     report.findings += explorer.findings
     report.executions, report.situations, report.complete = explorer.executions, explorer.situations, explorer.complete
@@ -78,7 +78,12 @@ def check(task: Task) -> CheckReport:
     return report
 
 
-def _fresh(task: Task) -> Behaviour:
+def fresh_tree(task: Task) -> Behaviour:
+    """The task's tree, built on its scripted world.
+
+    Raises:
+        TaskError: it cannot be built.
+    """
     world, perception = task.scripted(0)
     guard = GuardedWorld(world)
     return task.build(Context(world=guard, guard=guard, perception=perception))

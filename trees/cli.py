@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import importlib.util
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -61,7 +62,8 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
-    check.add_argument("task", metavar="TASK")
+    check.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    check.add_argument("--tree", action="store_true", help="draw the tree instead: nodes, recoveries and data")
 
     inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
     inject.add_argument("task", metavar="TASK")
@@ -101,6 +103,9 @@ def _dispatch(argv: list[str]) -> int:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal without an accent must not end a run
     try:
         return _dispatch(list(sys.argv[1:] if argv is None else argv))
     except CaretreeError as error:

@@ -144,6 +144,9 @@ class RecoverBy(Wrapper):
         if not recoveries or not all(isinstance(reason, Reason) for reason in recoveries):
             raise TreeError(f"recoveries of {name!r} map a Reason to a function that builds a subtree, e.g. "
                             "{Reason.MULTI_LAYER: build_shake}")
+        if ready := [make for make in recoveries.values() if not callable(make)]:
+            raise TreeError(f"a recovery of {name!r} is the node {getattr(ready[0], 'name', ready[0])!r}, but a "
+                            "function that builds a subtree is asked for, e.g. lambda: Hold('wait', context)")
         built = {make: make() for make in dict.fromkeys(recoveries.values())}
         subtrees = {reason: built[make] for reason, make in recoveries.items()}
         super().__init__(name, body, *built.values())

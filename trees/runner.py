@@ -12,6 +12,7 @@ safe branch succeeded, the fingers opened.
 
 from __future__ import annotations
 
+import difflib
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -39,6 +40,7 @@ RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
 OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
 OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
 CALM_TICKS = 5
+FEW_NAMES = 12  # so many are listed whole in an error
 DEAD_CLOCK_TICKS = 30  # ticks without any progress of the world's clock
 
 
@@ -124,7 +126,7 @@ class Run:
         skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
         for spec in world.faults:
             if spec.node not in skills:
-                raise CaretreeError(f"fault {spec} names no skill of this task; there are {', '.join(skills)}")
+                raise CaretreeError(f"fault {spec} names no skill of this task; {_nearest(spec.node, skills)}")
 
     def run(self) -> RunResult:
         """Tick to the end and make safe.  Raises only what the recorder or the world's owner must know."""
@@ -325,6 +327,14 @@ class Run:
         except (Exception, KeyboardInterrupt) as error:
             self.context.report(error)
             return default
+
+
+def _nearest(name: str, names: list[str]) -> str:
+    """What could have been meant: all of a few names, else those most alike."""
+    if len(names) <= FEW_NAMES:
+        return f"there are {', '.join(map(repr, names))}"
+    alike = difflib.get_close_matches(name, names, n=5, cutoff=0.0)
+    return f"of {len(names)}, the nearest are {', '.join(map(repr, alike))}; `caretree check TASK --tree` shows all"
 
 
 def _in_order(node: Behaviour) -> list[Behaviour]:

@@ -2,10 +2,13 @@
 
 import errno
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from caretree.sim.file_lock import lock_file
 from caretree.sim.recorder import Recorder
 from caretree.trees.cli import main
 
@@ -53,6 +56,9 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
     (["run", "wave", "--world", "scripted", "--inject", "slip"], "is not written FAULT@NODE:PHASE"),
     (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
     (["run", "wave", "--world", "scripted", "--stage", "C"], "unexpected keyword argument 'stage'"),
+    (["run", "dressing", "--world", "scripted", "--inject", "occlusion@lift the arm:step"],
+     "the nearest are 'lift the left arm', 'lift the right arm'"),
+    (["run", "wave", "--world", "scripted", "--out", "a_file"], "a_file is a file, but a folder"),
     (["run", "dressing", "--world", "scripted", "--stage", "D-C"], "no stage 'D-C'; it has A, B, C, D, and spans"),
     (["check", "dance"], "unknown task 'dance'"),
     (["inject", "wave", "--fault", "rain"], "unknown fault 'rain'; there are"),
@@ -61,18 +67,64 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
     (["trials", "dance", "-n", "1", "--world", "scripted"], "unknown task 'dance'"),
 ])
 def test_a_users_mistake_is_one_sentence_and_status_2(arguments, said, capsys):
+    Path("a_file").touch()
     assert main(arguments) == 2
     captured = capsys.readouterr()
     assert said in captured.err
     assert captured.err.startswith("caretree: ")
     assert captured.err.count("\n") == 1
     assert "Traceback" not in captured.err
+    if arguments[:1] != ["trials"]:
+        assert not list(Path("runs").glob("*"))  # nothing is left behind
 
 
 def test_a_finished_record_is_not_overwritten(capsys):
     assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 0
     assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 2
     assert "already holds a finished run" in capsys.readouterr().err
+
+
+def test_two_campaigns_do_not_write_one_folder(capsys):
+    Path("i").mkdir()
+    lock = lock_file(Path("i/inject.jsonl"))
+    assert main(["inject", "wave", "--out", "i"]) == 2
+    assert "another campaign is writing i/inject.jsonl" in capsys.readouterr().err
+    os.close(lock)
+
+
+def test_an_error_in_a_task_is_kept_with_its_traceback(tmp_path, capsys):
+    (tmp_path / "bad.py").write_text('''
+from caretree.skills.skill import Skill
+from caretree.trees.decorators import FailSafe
+from caretree.trees.tasks.wave import LetGo
+
+
+class Bad(Skill):
+    def steps(self):
+        raise ValueError("over here")
+        yield
+
+
+def build(context):
+    return FailSafe("safely", Bad("bad", context), LetGo("let go", context))
+''')
+    assert main(["run", "bad.py", "--world", "scripted", "--out", "r"]) == 1
+    assert "r/errors.log" in capsys.readouterr().out.splitlines()
+    assert 'bad.py", line 9, in steps' in (tmp_path / "r/errors.log").read_text()
+
+
+def test_a_terminal_without_accents_does_not_end_a_run(tmp_path):
+    (tmp_path / "t.py").write_text("""
+from caretree.trees.tasks.wave import FailSafe, Hold, LetGo
+
+
+def build(context):
+    return FailSafe("safely", Hold("h\u00e4lt", context), LetGo("let go", context))
+""")
+    command = [sys.executable, "-m", "caretree.trees.cli", "run", "t.py", "--world", "scripted", "--out", "r"]
+    done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": "ascii"}, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"h\\xe4lt" in done.stdout
 
 
 @pytest.mark.parametrize("event", [0, 5])

@@ -3,6 +3,7 @@ from caretree.skills.ports import Key
 from caretree.skills.reasons import Reason
 from caretree.trees.composers import TreeError, fallback, sequence
 from caretree.trees.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout
+from caretree.trees.tasks import TaskError
 
 from .planted import Look, Plan, Release, run_of
 
@@ -20,6 +21,15 @@ def test_retry_counts_attempts_and_forgets_their_data():
     assert run.run().outcome == "success"
     assert run.root.tried == 3
     assert seen == [False, False, False], "no attempt sees what the one before has written"
+
+
+def test_a_recovery_is_a_function_not_a_node():
+    def build(context):
+        shake = Look("shake", context, outcomes=[True])
+        return RecoverBy("r", Look("p", context, outcomes=[True]), {Reason.GRASP_MISSED: shake})
+
+    with pytest.raises(TaskError, match="a recovery of 'r' is the node 'shake', but a function that builds a subtree"):
+        run_of(build)
 
 
 def test_retry_fails_with_the_last_reason():

@@ -1,6 +1,9 @@
+from pathlib import Path
+
 import pytest
 from caretree.sim.scripted import ScriptedWorld
 from caretree.skills.context import Context
+from caretree.trees import tasks
 from caretree.trees.decorators import Stage
 from caretree.trees.guard import GuardedWorld
 from caretree.trees.runner import run
@@ -76,6 +79,8 @@ def test_a_task_may_keep_its_skills_beside_it(tmp_path):
     (lambda text: text.replace('seconds=seconds)', 'second=seconds)'), 24, "Wait has no port 'second'; it has seconds"),
     (lambda text: text.replace('    return FailSafe', '    FailSafe'), 23, "build() returned NoneType"),
     (lambda text: text + "\nraise KeyError('x')\n", 26, "KeyError: 'x'"),
+    (lambda text: text + "\nraise SystemExit(3)\n", 26, "SystemExit: 3"),
+    (lambda text: text.replace("from caretree.skills.ports", "from ...skills.ports"), 6, "imports by full names"),
     (lambda text: text.replace('seconds=seconds)', 'seconds="long")'), 24, "takes float, but was given str 'long'"),
 ])
 def test_a_broken_file_is_told_with_its_line(tmp_path, change, line, said):
@@ -95,3 +100,14 @@ def test_unknown_tasks_files_and_parameters():
         load_task("nowhere/x.py")
     with pytest.raises(TaskError, match=r"wave\.py:\d+: .*unexpected keyword argument 'colour'"):
         build(load_task("wave"), colour="red")
+
+
+def test_a_task_of_the_package_is_found_by_its_path_too():
+    wave = load_task("wave")
+    assert load_task(str(Path(tasks.__file__).with_name("wave.py"))) == wave
+
+
+def test_a_folder_is_no_task_file(tmp_path):
+    (tmp_path / "task.py").mkdir()
+    with pytest.raises(TaskError, match=r"is a folder, but a \.py file is asked for"):
+        load_task(str(tmp_path / "task.py"))

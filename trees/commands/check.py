@@ -4,24 +4,34 @@ from __future__ import annotations
 
 import argparse
 
-from ..check import check
+from ..check import check, fresh_tree
+from ..draw import drawn
 from ..tasks import load_task
 
 
 def main(options: argparse.Namespace) -> int:
-    """Check the task; 0 when it holds, else 1.
+    """Check the task, or draw its tree; 0 when it holds, else 1.
 
     Raises:
         CaretreeError: the task is unknown or broken.
     """
-    report = check(load_task(options.task))
+    task = load_task(options.task)
+    if options.tree:
+        print("\n".join(drawn(fresh_tree(task))))
+        return 0
+    report = check(task)
     for finding in report.findings:
         print(f"fault: {finding}")
     for note in report.notes:
         print(f"note: {note}")
-    followed = f"{report.skills} skills, {report.situations} situations in {report.executions} executions with stubs"
+    followed = (f"{_count(report.skills, 'skill')}, {_count(report.situations, 'situation')} in "
+                f"{_count(report.executions, 'execution')} with stubs")
     if report.ok:
         print(f"{options.task} holds: every input is written before it is read, every failure ends safely ({followed})")
         return 0
-    print(f"{options.task} does not hold: {len(report.findings)} faults ({followed})")
+    print(f"{options.task} does not hold: {_count(len(report.findings), 'fault')} ({followed})")
     return 1
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -57,7 +57,7 @@ class Task:
             return ScriptedWorld(seed=seed), None
         try:
             return self.script(seed)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise TaskError(_located(self.file, error)) from error
 
     def build(self, context: Context, **params: Any) -> Behaviour:
@@ -72,7 +72,7 @@ class Task:
             raise TaskError(f"{self._line()}: task {self.name!r}: build(context, ...) {error}") from error
         try:
             root = self.function(context, **params)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise TaskError(_located(self.file, error)) from error
         if not isinstance(root, Behaviour):
             raise TaskError(f"{self._line()}: build() returned {type(root).__name__}, but a tree's root is asked for")
@@ -96,6 +96,8 @@ def load_task(name: str) -> Task:
     """
     path = Path(name)
     if path.suffix == ".py" or path.parent != Path("."):
+        if path.suffix == ".py" and path.stem in task_names() and _same_file(path, Path(__file__).parent / path.name):
+            return load_task(path.stem)  # a task of the package, named by its path
         return _load_file(path)
     if name not in task_names():
         raise TaskError(f"unknown task {name!r}; there are {', '.join(task_names())}, or give the path of a .py file")
@@ -104,24 +106,25 @@ def load_task(name: str) -> Task:
     file = _shown(Path(spec.origin)) if spec is not None and spec.origin else Path(f"{name}.py")
     try:
         module = importlib.import_module(module_name)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise TaskError(_located(file, error)) from error
     return _task(name, module, file)
 
 
 def _load_file(path: Path) -> Task:
     if not path.is_file():
-        raise TaskError(f"task file {path} does not exist; named tasks are {', '.join(task_names())}")
+        wrong = "is a folder, but a .py file is asked for" if path.is_dir() else "does not exist"
+        raise TaskError(f"task file {path} {wrong}; named tasks are {', '.join(task_names())}")
     try:
         code = compile(path.read_text(encoding="utf-8"), str(path), "exec")
         module = ModuleType(f"caretree_task_{path.stem}")
-        module.__file__ = str(path)
+        module.__file__, module.__package__ = str(path), ""
         folder = str(path.resolve().parent)
         if folder not in sys.path:
             sys.path.append(folder)  # a task may keep its skills in a file beside it
         sys.modules[module.__name__] = module  # dataclasses look their module up there
         exec(code, module.__dict__)  # running the user's own file is the point
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise TaskError(_located(path, error)) from error
     return _task(path.stem, module, path)
 
@@ -133,14 +136,20 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
     return Task(name, cast(Callable[..., Behaviour], build), file, getattr(module, "scripted", None))
 
 
-def _located(file: Path, error: Exception) -> str:
+def _located(file: Path, error: Exception | SystemExit) -> str:
     """One sentence for an error of a task file, with the last line of that file it passed through."""
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).name == file.name:
         return f"{file}:{error.lineno or 1}: {error.msg}"
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
              if Path(frame.filename).name == file.name and frame.lineno]
     text = str(error) if isinstance(error, CaretreeError) else f"{type(error).__name__}: {error}"
+    if isinstance(error, ImportError) and "relative import" in text:
+        text = "a task file imports by full names: `from caretree.skills...`, not `from ...skills...`"
     return f"{file}:{lines[-1] if lines else 1}: {text}"
+
+
+def _same_file(path: Path, other: Path) -> bool:
+    return path.exists() and other.exists() and path.samefile(other)
 
 
 def _shown(path: Path) -> Path:
