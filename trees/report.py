@@ -18,11 +18,13 @@ from ..sim.record import REPORT_FILE, TRACE_FILE, VIDEO_FILE, is_finished, read_
 from ..sim.spool import disk_error
 from ..sim.video import read_pictures
 from . import report_figures
-from .timeline import read_trace, spans_of
+from .timeline import Span, read_trace, spans_of
+from .trial import JUDGED
 
 TEMPLATE = Path(__file__).with_name("report_template.html")
 FRAMES_MAX = 12
-LONG, APART = 60.0, 1.0  # a stage that is shown half way, and pictures that are not alike [s]
+EVERY, WITHIN = 30.0, 4  # a stage is shown once more for each so many seconds of it, at most so many times [s]
+APART = 1.0  # pictures closer together than this are alike [s]
 SENTENCES = {"success": "success", "failure": "failure", "safe_stop": "safe stop"}
 CLASSES = {"success": "good", "failure": "bad", "safe_stop": "warn"}
 BOUNDS: tuple[tuple[str, str, str, str, float], ...] = (
@@ -78,7 +80,7 @@ def build_report(directory: Path) -> str:
     return string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=f"{task}, seed {seed}", outcome=SENTENCES.get(outcome or "", "cut short"),
         outcome_class=CLASSES.get(outcome or "", "warn"), subtitle=f"{task} · seed {seed} · world {world}",
-        sentence=_text(sentence), facts=_facts(run), verdict=_or_sentence(lambda: _verdict(evaluate(directory))),
+        sentence=_text(sentence), facts=_facts(run), verdict=_or_sentence(lambda: _verdict(directory, run)),
         stages=_stages(stages), timeline=_or_sentence(lambda: _timeline(directory, stages)),
         frames=_or_sentence(lambda: _frames(directory, run, stages)),
         curves=_or_sentence(lambda: _image(report_figures.curves(read_series(directory)), "curves over time")),
@@ -123,12 +125,20 @@ def _facts(run: Mapping[str, Any]) -> str:
     if isinstance(run.get("peak_memory_mb"), (int, float)):
         facts.append((f"{run['peak_memory_mb']:.0f} MB", "peak memory"))
     parameters = run.get("parameters") if isinstance(run.get("parameters"), Mapping) else {}
-    facts += [(str(parameters[key]), key) for key in ("gown", "person") if parameters and parameters.get(key)]
+    for key in ("stage", "gown", "person", "model", "inject"):
+        given = parameters.get(key) if parameters else None
+        facts += [(str(value), key) for value in (given if isinstance(given, list) else [given]) if value]
     return "".join(f'<div class="fact"><b>{_text(value)}</b><span>{_text(name)}</span></div>' for value, name in facts)
 
 
-def _verdict(verdict: Verdict) -> str:
-    """The project's own evaluator, from the geometry alone."""
+def _verdict(directory: Path, run: Mapping[str, Any]) -> str:
+    """The project's own evaluator, from the geometry alone; other tasks than dressing do not ask it."""
+    if Path(str(run.get("task"))).stem not in JUDGED:
+        return '<p class="soft">Not asked of this task; <code>caretree evaluate DIR</code> asks it of any record.</p>'
+    return _judged(evaluate(directory))
+
+
+def _judged(verdict: Verdict) -> str:
     kind, word = ("good", "dressed") if verdict.dressed else ("bad", "not dressed")
     says = "Decided from the recorded geometry alone, whatever the tree says of itself."
     if not verdict.agrees:
@@ -172,25 +182,14 @@ def _timeline(directory: Path, stages: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
-    """The first picture, the middle of long stages, the end of each one, the last picture, and the video itself."""
+    """The first picture, moments of each stage and its end, the last picture, and the video itself."""
     start, end = run.get("video_start_s"), run.get("sim_time_s")
     path = directory / VIDEO_FILE
     if not path.exists():
         return '<p class="soft">No video was recorded.</p>'
     start = float(start) if isinstance(start, (int, float)) else 0.0
-    moments = [(start, "at the start")]
-    for stage in stages:
-        first, last, name = stage.get("t_start"), stage.get("t_end"), stage.get("name")
-        if not isinstance(last, (int, float)):
-            continue
-        if isinstance(first, (int, float)) and last - first > LONG:
-            moments.append((0.5 * (first + last), f"half way through {name}"))
-        if last - moments[-1][0] > APART:  # a stage that found nothing to do shows what the one before it left
-            moments.append((float(last), f"end of {name}"))
-    moments = moments[:FRAMES_MAX - 1]
-    last = float(end) if isinstance(end, (int, float)) else float("inf")
-    if last - moments[-1][0] > APART:
-        moments.append((last, "at the end"))
+    end = float(end) if isinstance(end, (int, float)) else float("inf")
+    moments = key_moments(stages, spans_of(read_trace(directory / TRACE_FILE)), start, end)
     pictures = read_pictures(path, [max(0.0, t - start) for t, _ in moments])
     figures = "".join(
         f"<figure>{_image(report_figures.jpeg(picture), caption, 'jpeg')}<figcaption>{_text(caption)}"
@@ -198,6 +197,37 @@ def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[st
         for picture, (t, caption) in zip(pictures, moments, strict=True))
     return (f'<div class="frames">{figures}</div><video controls preload="metadata" src="{VIDEO_FILE}"></video>'
             f'<p><a href="{VIDEO_FILE}">{VIDEO_FILE}</a></p>')
+
+
+def key_moments(stages: Sequence[Mapping[str, Any]], spans: Sequence[Span], start: float,
+                end: float) -> list[tuple[float, str]]:
+    """What a reader should see of a run: when [s], and what that is.
+
+    Args:
+        stages: of run.json.
+        spans: of the skills; a long stage is shown where some of them end.
+        start: of the video [s].
+        end: of the run [s]; infinite where it is not known.
+    """
+    moments = [(start, "at the start")]
+
+    def add(t: float, caption: str) -> None:
+        if t - moments[-1][0] > APART:  # a stage that found nothing to do shows what the one before it left
+            moments.append((t, caption))
+
+    for stage in stages:
+        first, last, name = stage.get("t_start"), stage.get("t_end"), stage.get("name")
+        if not isinstance(first, (int, float)) or not isinstance(last, (int, float)):
+            continue
+        count = min(WITHIN, int((last - first) / EVERY))
+        for k in range(count):
+            wanted = first + (last - first) * (k + 1) / (count + 1)
+            ends = [(abs(span.t_end - wanted), span.t_end, span.name) for span in spans
+                    if first < span.t_end < last - APART]
+            add(*(min(ends)[1:] if ends else (wanted, f"within {name}")))
+        add(float(last), f"end of {name}")
+    add(end, "at the end")
+    return moments[:FRAMES_MAX - 1] + moments[-1:] if len(moments) > FRAMES_MAX else moments
 
 
 def _timing(run: Mapping[str, Any]) -> str:

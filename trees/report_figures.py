@@ -83,10 +83,10 @@ def timeline(stages: Sequence[Mapping[str, Any]], spans: Sequence[Span], end: fl
 
 
 def _line(axis: Axes, value: float, label: str) -> None:
+    """A limit, named beside the plot, where no curve runs."""
     axis.axhline(value, **LIMIT)
-    axis.annotate(label, (1.0, value), xycoords=("axes fraction", "data"), xytext=(-2, 2), textcoords="offset points",
-                  ha="right", fontsize=7, color=LIMIT["color"],
-                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.5})
+    axis.annotate(label, (1.0, value), xycoords=("axes fraction", "data"), xytext=(3, 0), textcoords="offset points",
+                  va="center", fontsize=7, color=LIMIT["color"])
 
 
 def _both(axis: Axes, t: np.ndarray, curves: np.ndarray) -> None:
@@ -116,6 +116,8 @@ def curves(series: Series) -> bytes:
     force.set_ylabel("force on person [N]", fontsize=8)
     force.set_ylim(bottom=0)
     if len(order):
+        _line(force, DEFAULT.arm_load_stop, "stop, if it lasts")
+        force.set_ylim(0, 1.25 * max(DEFAULT.arm_load_stop, float(np.nanmax(series.person_force, initial=0.0))))
         _legend(force)
 
     _both(distance, t, series.distance)
@@ -125,23 +127,23 @@ def curves(series: Series) -> bytes:
 
     near = np.where(series.distance < DEFAULT.near_person, series.speed, np.nan)
     for k, side in enumerate(SIDES):
-        speed.plot(t, series.speed[:, k], color=COLOURS[side], linewidth=0.7, alpha=0.35)
+        speed.plot(t, series.speed[:, k], color=COLOURS[side], linewidth=0.7, alpha=0.35, label=f"{side}, farther away")
         speed.plot(t, near[:, k], color=COLOURS[side], linewidth=1.2, label=f"{side}, near the person")
     speed.set_ylabel("hand speed [m/s]", fontsize=8)
-    _line(speed, DEFAULT.hand_speed, "limit near the person")
+    _line(speed, DEFAULT.hand_speed, "limit, near")
     speed.set_ylim(0, max(2.2 * DEFAULT.hand_speed, 1.1 * float(np.nanmax(series.speed, initial=0.0))))
     _legend(speed)
 
     _both(sleeves, t, series.upper_arm)
     sleeves.set_ylabel("armhole up the\nupper arm", fontsize=8)
     sleeves.set_ylim(0, 1.15)
-    _line(sleeves, UPPER_ARM_MIN, "dressed")
+    _line(sleeves, UPPER_ARM_MIN, "at least")
 
     stretch.plot(t, series.stretch_p99, color="#566573", linewidth=1.0, label="99th percentile")
     stretch.plot(t, series.stretch_max, color="#a9b4bd", linewidth=1.0, label="longest")
     stretch.set_ylabel("edge over rest", fontsize=8)
-    _line(stretch, STRETCH_P99_MAX, "limit of the 99th percentile")
-    _line(stretch, STRETCH_MAX, "limit of the longest")
+    _line(stretch, STRETCH_P99_MAX, "99th at most")
+    _line(stretch, STRETCH_MAX, "longest at most")
     stretch.set_ylim(0.9, 1.12 * max(STRETCH_MAX, float(np.nanmax(series.stretch_max, initial=0.0))))
     _legend(stretch)
     stretch.set_xlabel("time [s]", fontsize=8)

@@ -113,6 +113,25 @@ def build(context):
     assert 'bad.py", line 9, in steps' in (tmp_path / "r/errors.log").read_text()
 
 
+def test_a_world_that_keeps_time_says_where_it_went(tmp_path):
+    (tmp_path / "timed.py").write_text("""
+from caretree.sim.scripted import ScriptedWorld
+from caretree.trees.tasks.wave import build
+
+
+class Timed(ScriptedWorld):
+    timing = {"cameras": -3.0, "physics": 2.0, "record": 0.5}
+
+
+def scripted(seed):
+    return Timed(seed=seed), None
+""")
+    assert main(["run", "timed.py", "--world", "scripted", "--out", "r"]) == 0
+    timing = json.loads((tmp_path / "r/run.json").read_text())["timing"]
+    assert set(timing) == {"tree", "cameras", "physics", "record"}
+    assert timing["tree"] > 3.0
+
+
 def test_a_terminal_without_accents_does_not_end_a_run(tmp_path):
     (tmp_path / "t.py").write_text("""
 from caretree.trees.tasks.wave import FailSafe, Hold, LetGo

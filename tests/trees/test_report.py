@@ -8,7 +8,8 @@ import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.record import RunResult
 from caretree.sim.recorder import Recorder
-from caretree.trees.report import write_report
+from caretree.trees.report import FRAMES_MAX, key_moments, write_report
+from caretree.trees.timeline import Span
 
 
 class Tags(HTMLParser):
@@ -52,6 +53,35 @@ def test_whole_page(make_record, tmp_path):
     assert "video.mp4" in sources
     assert "Not available" not in page
     assert not re.search(r'(src|href)="(https?:)?//', page)  # nothing is fetched from elsewhere
+
+
+def test_a_long_stage_is_shown_where_its_skills_end():
+    stages = [{"name": "A", "t_start": 0.0, "t_end": 20.0}, {"name": "C", "t_start": 20.0, "t_end": 120.0},
+              {"name": "D", "t_start": 120.0, "t_end": 120.2}, {"name": "E"}]
+    spans = [Span(path=f"task/C/{name}", t_start=t - 5, t_end=t, status="SUCCESS")
+             for name, t in (("look", 30.0), ("lift", 52.0), ("pull", 68.0), ("let go", 119.5))]
+    assert key_moments(stages, spans, 0.1, 130.0) == [
+        (0.1, "at the start"), (20.0, "end of A"), (52.0, "lift"), (68.0, "pull"), (120.0, "end of C"),
+        (130.0, "at the end")]
+    assert [caption for _, caption in key_moments(stages[1:2], [], 0.1, 120.0)] == [
+        "at the start", "within C", "within C", "within C", "end of C"]
+    many = [{"name": str(k), "t_start": 50.0 * k, "t_end": 50.0 * (k + 1)} for k in range(20)]
+    moments = key_moments(many, [], 0.0, 1000.0)
+    assert len(moments) == FRAMES_MAX
+    assert moments[-1] == (1000.0, "end of 19")
+
+
+def test_what_was_asked_of_the_run_is_shown_and_a_task_that_dresses_nobody_is_not_judged(tmp_path):
+    recorder = Recorder(tmp_path, task="mine/wave.py", seed=0, world="bullet", parameters={
+        "stage": "C", "gown": "light", "inject": ["grip_slip@let <go>:start", "occlusion@look:step"]})
+    recorder.finish(RunResult(outcome="success", reason="The task is done.", sim_time_s=1.0))
+    page = write_report(tmp_path).read_text()
+    parsed(page)
+    for value, name in (("C", "stage"), ("light", "gown"), ("grip_slip@let &lt;go&gt;:start", "inject"),
+                        ("occlusion@look:step", "inject")):
+        assert f"<b>{value}</b><span>{name}</span>" in page
+    assert "Not asked of this task" in page
+    assert "dressed</span>" not in page
 
 
 def test_claim_against_the_geometry_is_shown(make_record, tmp_path):
