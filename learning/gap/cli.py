@@ -61,6 +61,11 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--observer", action="store_true", help="also say what an observer who knows the noise would name from drops"
     )
+    p.add_argument(
+        "--follow-up",
+        action="store_true",
+        help="of drops: make the recordings each verdict asks for, run again, and score both rounds",
+    )
     p.add_argument("--jobs", type=int, default=1, help="processes")
     return top
 
@@ -112,6 +117,7 @@ def _dispatch(args: argparse.Namespace) -> int:
             args.jobs,
             print,
             args.observer,
+            args.follow_up,
         )
     from . import steps
 

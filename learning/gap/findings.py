@@ -90,6 +90,37 @@ class Rival:
     experiment: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class FollowUp:
+    """Recordings to make next, for this workflow to be run on again.
+
+    Attributes:
+        kind: `drop`.
+        height_m: to release from [m].
+        mass_factor: mass over that of the body as it is.
+        drops: how many; the last is held out.
+        apart: how far the named set and the nearest of its rivals would then be apart, all recordings asked for
+            together [standard deviations]; None where it has no rival.
+    """
+
+    kind: str
+    height_m: float
+    mass_factor: float
+    drops: int
+    apart: float | None = None
+
+    @property
+    def sentence(self) -> str:
+        """For a reader."""
+        return f"{released(self.height_m, self.mass_factor)}, {self.drops} times"
+
+
+def released(height: float, mass_factor: float) -> str:
+    """What to do with a body: let it go at a height [m], with its mass changed."""
+    heavy = "" if mass_factor == 1.0 else f", {mass_factor:g} times as heavy in the same shape"
+    return f"drop from {height:.3g} m{heavy}"
+
+
 def told_apart(experiment: str, name: str, other: str, apart: float) -> str:
     """Sentence on the experiment in which two explanations part most.
 
@@ -159,6 +190,7 @@ class Verdict:
     guess: str = ""
     placebos: tuple[Placebo, ...] = ()
     rivals: tuple[Rival, ...] = ()
+    follow_up: tuple[FollowUp, ...] = ()
     forward: Gap | None = None
     detectable: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()

@@ -70,17 +70,18 @@ class MeasurementSet:
         """Episodes kept for the final comparison."""
         return tuple(e for e in self.episodes if e.role == "heldout")
 
-    def number(self, key: str) -> float | None:
-        """A positive setting, or None where the file does not give it.
+    def number(self, key: str, episode: Episode | None = None) -> float | None:
+        """A positive setting of the set, or of one episode of it; None where the file does not give it.
 
         Raises:
             GapError: it is there and is not a positive number.
         """
-        value = self.settings.get(key)
+        value = (self if episode is None else episode).settings.get(key)
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value) or value <= 0:
-            raise GapError(f"{self.folder / 'measurement.yaml'}: {key} is {value!r}, a positive number is needed")
+            of = f" of {episode.file.name}" if episode else ""
+            raise GapError(f"{self.folder / 'measurement.yaml'}: {key}{of} is {value!r}, a positive number is needed")
         return float(value)
 
 

@@ -165,9 +165,19 @@ def _gap_table(gap: Gap) -> str:
     )
 
 
+def _asked(v: Verdict) -> str:
+    """The recordings asked for, as a sentence."""
+    what = "; ".join(escape(f.sentence) for f in v.follow_up)
+    apart = v.follow_up[0].apart
+    why = f" (the nearest set that fits as well is then {apart:.2g} standard deviations away)" if apart else ""
+    return f"{what[0].upper()}{what[1:]}{why}.  Add these recordings to the set and run this again."
+
+
 def _next(v: Verdict) -> str:
     wanted = [f.experiment for f in (*v.effects, *v.recalibration)] + [r.experiment for r in v.rivals]
     items = [f"<li>{_words(x)}</li>" for x in dict.fromkeys(wanted) if x]
+    if v.follow_up:
+        items.insert(0, f"<li>{_asked(v)}</li>")
     small = [
         f"<li>{escape(f.name.replace('_', ' '))} on {escape(f.target)} would have been seen down to "
         f"{100 * f.smallest:.0f} % of the size found</li>"

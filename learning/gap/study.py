@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from typing import Any
 
-from .findings import EffectFinding, Gap, Placebo, Rival, Verdict, VerdictName, Where
+from .findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Verdict, VerdictName, Where
 from .measurement import MeasurementSet
 from .pictures import Curve
 
@@ -42,6 +42,10 @@ class Study(abc.ABC):
         """Other whole sets of effects this data cannot rule out, likeliest first."""
         return ()
 
+    def follow_up(self) -> tuple[FollowUp, ...]:
+        """Recordings to make next, for the workflow to be run on again."""
+        return ()
+
     def conclude(self, seconds: float = 0.0) -> Verdict:
         """All four steps as one verdict."""
         p_value, source, where = self.find()
@@ -61,6 +65,7 @@ class Study(abc.ABC):
             guess=guess,
             placebos=placebos,
             rivals=self.rivals(),
+            follow_up=self.follow_up(),
             forward=forward,
             detectable=detectable,
             notes=tuple(dict.fromkeys(self.notes)),

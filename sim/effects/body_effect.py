@@ -21,6 +21,7 @@ class BodyEffect(abc.ABC):
     contains: ClassVar[frozenset[str]] = frozenset()
     per_mass: ClassVar[bool] = True  # the first parameter times the mass is the usual physical coefficient
     usual_unit: ClassVar[str] = ""  # its unit
+    of_air: ClassVar[bool] = True  # the first parameter is a force of the air per mass: ballast makes it smaller
     sentence: ClassVar[str]
 
     @abc.abstractmethod
@@ -30,6 +31,11 @@ class BodyEffect(abc.ABC):
     def read(self, height: float, values: dict[str, float]) -> float:
         """How a height is recorded; effects on the sensor change this."""
         return height
+
+    def ballasted(self, values: dict[str, float], factor: float) -> dict[str, float]:
+        """Values for the same shape `factor` times as heavy: the air's forces stay, per mass they shrink."""
+        first = self.parameters[0].name
+        return {**values, first: values[first] / factor} if self.of_air else values
 
     def check(self, values: dict[str, float]) -> None:
         """Refuse values this effect cannot have.

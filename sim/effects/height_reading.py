@@ -10,6 +10,7 @@ from .effect import Parameter
 
 class _Reading(BodyEffect):
     per_mass = False
+    of_air = False
 
     def specific_force(self, velocity: np.ndarray, values: dict[str, float], gravity: float) -> np.ndarray:
         """None: only the reading changes."""

@@ -18,7 +18,7 @@ from ....sim.effects.body_bank import BODY_EFFECTS
 from ....sim.effects.effect import Parameter
 from ..fall.drop import height
 from ..fall.fit import RELEASE, fit_drops, table_of
-from ..fall.study import drop_of
+from ..fall.recording import drop_of
 from ..joints.block import bank
 from ..joints.gram import assemble
 from ..joints.log import read_logs
@@ -118,7 +118,7 @@ def _of_joints(measured: MeasurementSet) -> Problem:
 
 def _of_drops(measured: MeasurementSet) -> Problem:
     """What a little of each effect changes; wind is a quadratic drag until it is fitted, so it is left out."""
-    drops = [drop_of(e) for e in measured.fitted]
+    drops = [drop_of(measured, e) for e in measured.fitted]
     given = fit_drops(drops, (), "together")
     duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
     columns = []

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
@@ -14,6 +16,7 @@ from .fall_oracle import apart, precision
 INSIDE = ("linear_drag", "quadratic_drag", "buoyancy", "wind", "gain_error", "delay")
 OUTSIDE = ("gust", "cubic_drag", "swing")
 ALIKE = ({"buoyancy", "gain_error"}, {"quadratic_drag", "wind"})  # one is the other by construction
+AIR = ("linear_drag", "quadratic_drag", "buoyancy", "wind", "gust", "cubic_drag", "swing")  # forces, not readings
 UPDRAFT = (2.0, 6.0)  # [m/s] up or down
 LARGEST = {
     "linear_drag": 3.0,
@@ -38,6 +41,12 @@ class Drawn:
         clean: heights without noise [m].
         lift: buoyancy a stated size and mass imply, or None.
         until: longest time since release that is needed [s].
+        values: the truth's numbers, per mass of the body as it is.
+        noise: root mean square [m].
+        step: of the instrument [m], 0 for a perfect one.
+        rate: samples per second.
+        top: the highest release [m].
+        mass: of the body as it is [kg].
     """
 
     names: tuple[str, ...]
@@ -45,6 +54,12 @@ class Drawn:
     clean: tuple[np.ndarray, ...]
     lift: float | None
     until: float
+    values: dict[str, float]
+    noise: float
+    step: float
+    rate: float
+    top: float
+    mass: float
 
 
 def write_fall_case(seed: int, folder: Path) -> Truth:
@@ -128,9 +143,8 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
         if e < episodes - max(1, episodes // 3):
             seen.append((t, h, precision(len(t), 1.0 / rate, noise, memory, slow)))
             cleans.append(clean)
-        file = folder / f"drop_{e + 1}.csv"
-        np.savetxt(file, np.stack([t, h], axis=1), delimiter=",", header="t,h", comments="", fmt="%.7g")
-        entries.append({"file": file.name, "role": "heldout" if e >= episodes - max(1, episodes // 3) else "fit"})
+        role = "heldout" if e >= episodes - max(1, episodes // 3) else "fit"
+        entries.append({**_write(folder, e + 1, rate, h), "role": role})
     (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
     truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
     return truth, Drawn(
@@ -139,7 +153,49 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
         clean=tuple(cleans),
         lift=values.get("buoyancy") if "mass" in header and names else None,
         until=max(float(d[0][-1]) for d in seen) + 0.5,
+        values=values,
+        noise=noise,
+        step=step,
+        rate=rate,
+        top=top,
+        mass=header.get("mass", 0.5),
     )
+
+
+def drop_again(seed: int, asked: Sequence[dict[str, Any]], folder: Path) -> None:
+    """Write the set of `seed` once more, with the drops asked for appended.
+
+    Args:
+        seed: of the set.
+        asked: `follow_up` of a verdict: height_m, mass_factor and drops of each kind of drop.
+        folder: for the set.
+    """
+    _, drawn = draw_fall(seed, folder)
+    rng = np.random.default_rng([seed, 2, 2])
+    file = folder / "measurement.yaml"
+    content = yaml.safe_load(file.read_text())
+    content["mass"] = drawn.mass  # ballast is weighed, and so is the body then
+    for a in asked:
+        values = ballasted(drawn.values, a["mass_factor"])
+        for k in range(a["drops"]):
+            h = _fly(values, a["height_m"] * rng.uniform(0.95, 1.0), drawn.rate)
+            wiggle = coloured_as(rng, len(h), 1.0 / drawn.rate, drawn.noise)[0]
+            entry = _write(folder, len(content["episodes"]) + 1, drawn.rate, rounded(h + wiggle, drawn.step))
+            role = "heldout" if k == a["drops"] - 1 else "fit"
+            content["episodes"].append({**entry, "role": role, "mass": drawn.mass * a["mass_factor"]})
+    file.write_text(yaml.safe_dump(content, sort_keys=False))
+
+
+def _write(folder: Path, number: int, rate: float, h: np.ndarray) -> dict[str, str]:
+    file = folder / f"drop_{number}.csv"
+    t = np.arange(len(h)) / rate
+    np.savetxt(file, np.stack([t, h], axis=1), delimiter=",", header="t,h", comments="", fmt="%.7g")
+    return {"file": file.name}
+
+
+def ballasted(values: dict[str, float], factor: float) -> dict[str, float]:
+    """The same body `factor` times as heavy: the air's forces stay as they are, per mass they shrink."""
+    return {n: v / factor if n in AIR else v for n, v in values.items()}
 
 
 def _fly(values: dict[str, float], h0: float, rate: float) -> np.ndarray:

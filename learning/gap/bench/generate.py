@@ -1,12 +1,14 @@
-"""Write the benchmark's sets and, apart from them, what they hide."""
+"""Write the benchmark's sets and, apart from them, what they hide; perform the experiments a verdict asks for."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from .case import Truth
-from .fall_case import write_fall_case
+from .fall_case import drop_again, write_fall_case
 from .joint_case import write_joint_case
 
 
@@ -27,3 +29,10 @@ def generate(system: str, seed: int, folder: Path) -> Truth:
     apart.mkdir(exist_ok=True)
     (apart / f"{name}.json").write_text(json.dumps(truth.as_dict(), indent=1))
     return truth
+
+
+def perform(seed: int, asked: Sequence[dict[str, Any]], folder: Path) -> None:
+    """Write the drops of `seed` with those a verdict asked for into `folder/sets/..._again`."""
+    where = folder / "sets" / f"fall_{seed:05d}_again"
+    where.mkdir(parents=True, exist_ok=True)
+    drop_again(seed, asked, where)

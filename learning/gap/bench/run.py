@@ -6,35 +6,67 @@ import json
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
+from functools import cache
+from itertools import repeat
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from ..errors import GapError
-from .score import judge_case, table
+from .score import Row, judge_case, side_by_side
 
 
-def solve(system: str, seed: int, out: Path) -> Path:
+@cache
+def _apart() -> ProcessPoolExecutor:
+    """The process that alone knows what is hidden: it writes the sets and performs the experiments asked for."""
+    return ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+
+
+def solve(system: str, seed: int, out: Path, again: bool = False) -> list[Path]:
     """Generate and solve one case; a finished one is not done again.
 
+    Args:
+        system: of the case.
+        seed: of the case.
+        out: folder of the benchmark.
+        again: also perform the experiment the verdict asks for, and solve the set with it.
+
     Returns:
-        The file with its scored row.
+        The files with its scored rows, one per round.
     """
+    from .generate import generate, perform
+
+    name = f"{system}_{seed:05d}"
+    first, second = out / "rows" / f"{name}.json", out / "rows" / f"{name}_again.json"
+    if not first.is_file():
+        _apart().submit(generate, system, seed, out).result()
+        _row(out, name, first, _verdict(out, name))
+    if not again:
+        return [first]
+    if not second.is_file():
+        asked = json.loads(first.read_text())["follow_up"]
+        if asked:
+            _apart().submit(perform, seed, asked, out).result()
+            _row(out, name, second, _verdict(out, f"{name}_again"))
+        else:
+            second.write_text(first.read_text())
+    return [first, second]
+
+
+def _verdict(out: Path, name: str) -> dict[str, Any]:
     from ..measurement import load_set
     from ..study import open_study
-    from .generate import generate
 
-    result = out / "rows" / f"{system}_{seed:05d}.json"
-    if result.is_file():
-        return result
-    generate(system, seed, out)
-    name = f"{system}_{seed:05d}"
     started = time.monotonic()
     study = open_study(load_set(out / "sets" / name), cache=out / "cache" / name)
-    verdict = study.conclude().as_dict()
-    verdict["seconds"] = time.monotonic() - started
+    return {**study.conclude().as_dict(), "seconds": time.monotonic() - started}
+
+
+def _row(out: Path, name: str, file: Path, verdict: dict[str, Any]) -> None:
     truth = json.loads((out / "truth" / f"{name}.json").read_text())
-    result.parent.mkdir(parents=True, exist_ok=True)
-    result.write_text(json.dumps(judge_case(truth, verdict)))
-    return result
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps({**judge_case(truth, verdict), "follow_up": verdict["follow_up"]}))
 
 
 def run(
@@ -46,6 +78,7 @@ def run(
     jobs: int,
     say: Callable[[str], None],
     observer: bool = False,
+    again: bool = False,
 ) -> int:
     """Score seeds first:last of every system and print the table.
 
@@ -58,6 +91,7 @@ def run(
         jobs: processes.
         say: told of every case.
         observer: also say what could be known from the drops at most.
+        again: of drops, perform the experiment each verdict asks for, solve the set with it, and score both rounds.
 
     Raises:
         GapError: seeds or systems make no sense.
@@ -73,19 +107,17 @@ def run(
     cases = [(system, seed) for system in systems for seed in wanted]
     if not cases:
         raise GapError(f"--seeds {seeds} --half {half} holds no seed")
+    if again and systems != ["fall"]:
+        raise GapError("--follow-up is for --system fall alone, no other system's verdict asks for a recording")
     out.mkdir(parents=True, exist_ok=True)
-    rows = []
-    if jobs > 1:
-        with ProcessPoolExecutor(jobs) as pool:
-            for k, file in enumerate(pool.map(solve, *zip(*cases, strict=True), [out] * len(cases))):
+    rounds: list[list[Row]] = [[], []] if again else [[]]
+    with ProcessPoolExecutor(jobs) if jobs > 1 else nullcontext() as pool:
+        solved = (pool.map if pool else map)(solve, *zip(*cases, strict=True), repeat(out), repeat(again))
+        for k, files in enumerate(solved):
+            for rows, file in zip(rounds, files, strict=True):
                 rows.append(json.loads(file.read_text()))
-                say(f"{k + 1}/{len(cases)} {_line(rows[-1])}")
-    else:
-        for k, (system, seed) in enumerate(cases):
-            rows.append(json.loads(solve(system, seed, out).read_text()))
-            say(f"{k + 1}/{len(cases)} {_line(rows[-1])}")
-    lines = [f"{'question':52s} {'system':6s} {'right':>9s}  rate (95 % interval)"]
-    lines += [f"{q:52s} {s:6s} {h:4d}/{n:4d}  {r:.3f} ({a:.3f} to {b:.3f})" for q, s, h, n, r, a, b in table(rows)]
+            say(f"{k + 1}/{len(cases)} {' ; '.join(_line(rows[-1]) for rows in rounds)}")
+    lines = side_by_side(rounds)
     if ablations:
         from .ablations import compare
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -166,4 +167,18 @@ def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float
                 float(seconds.max()),
             )
         )
+    return out
+
+
+def side_by_side(rounds: Sequence[list[Row]]) -> list[str]:
+    """The table as lines, one column per round of the same cases."""
+    answers = [{(q, s): rest for q, s, *rest in table(rows)} for rows in rounds]
+    titles = ["right        rate (95 % interval)"]
+    if len(rounds) > 1:
+        titles = ["first round", "with the recordings asked for"]
+    out = [f"{'question':62s} {'system':6s} " + "  ".join(f"{t:>35s}" for t in titles)]
+    for key in dict.fromkeys(k for a in answers for k in a):
+        cells = [a.get(key) for a in answers]
+        shown = [f"{c[0]:4d}/{c[1]:4d}  {c[2]:.3f} ({c[3]:.3f} to {c[4]:.3f})" if c else "-" for c in cells]
+        out.append(f"{key[0]:62s} {key[1]:6s} " + "  ".join(f"{x:>35s}" for x in shown))
     return out

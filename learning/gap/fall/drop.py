@@ -36,7 +36,7 @@ def fallen(duration: float, linear: float, quadratic: float, wind: float, gravit
     out[:, 1], out[:, 2] = _riccati(t, a, b, -c)
     if gravity + linear * wind <= 0.0:
         return out  # it never overtakes the air
-    root = _root(a, b, -c)
+    root = complex(_root(a, b, -c))
     overtakes = float((2.0 / root * np.arctanh(-wind * root / (2.0 * a - wind * b))).real)
     later = t > overtakes
     x0 = float(_riccati(np.array([overtakes]), a, b, -c)[0][0])
@@ -60,20 +60,21 @@ def _riccati(t: np.ndarray, a: float, b: float, c: float) -> tuple[np.ndarray, n
     return (log / c).real, v.real
 
 
-def _root(a: float, b: float, c: float) -> complex:
+def _root(a: float, b: float, c: float) -> float | complex:
     """Square root of the discriminant, imaginary where the air pushes, kept off zero."""
-    root = complex(np.sqrt(complex(b * b + 4.0 * a * c)))
-    return root if abs(root) > 1e-7 else 1e-7 + 0j
+    inside = b * b + 4.0 * a * c
+    root = float(np.sqrt(inside)) if inside >= 0.0 else 1j * float(np.sqrt(-inside))
+    return root if abs(root) > 1e-7 else 1e-7
 
 
-def height(t: np.ndarray, table: np.ndarray, release_height: float, release_t: float) -> tuple[np.ndarray, np.ndarray]:
+def height(
+    t: np.ndarray, table: np.ndarray, release_height: float | np.ndarray, release_t: float | np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Height and downward speed at times `t`, at rest before the release, (T,) each."""
     since = np.maximum(t - release_t, 0.0)
     # cubic-exact between steps: distance + speed * rest + acceleration/2 * rest^2
     i = np.minimum((since / STEP).astype(int), len(table) - 2)
-    rest = since - table[i, 0]
-    acceleration = (table[i + 1, 2] - table[i, 2]) / STEP
-    return (
-        release_height - (table[i, 1] + table[i, 2] * rest + 0.5 * acceleration * rest**2),
-        table[i, 2] + acceleration * rest,
-    )
+    at, way, speed = table[i].T
+    rest = since - at
+    change = (table[i + 1, 2] - speed) / STEP * rest
+    return release_height - (way + (speed + 0.5 * change) * rest), speed + change

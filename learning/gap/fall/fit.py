@@ -17,12 +17,21 @@ START = {"rate": 0.1, "coefficient": 0.02, "fraction": 0.0, "speed": 0.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Drop:
-    """One recorded drop.  t: (T,) [s] from its first sample, h: (T,) [m]; white: (T, T) makes its noise white."""
+    """One recorded drop.
+
+    Attributes:
+        name: of the recording.
+        t: (T,) [s] from its first sample.
+        h: (T,) [m].
+        white: (T, T) makes its noise white.
+        factor: mass of the body with its ballast over that without.
+    """
 
     name: str
     t: np.ndarray
     h: np.ndarray
     white: np.ndarray | None = None
+    factor: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,8 +73,9 @@ def unpack(names: tuple[str, ...], theta: np.ndarray) -> dict[str, dict[str, flo
     return out
 
 
-def table_of(values: dict[str, dict[str, float]], duration: float) -> tuple[np.ndarray, float]:
-    """Fall table under the effects, and the scale of the reading."""
+def table_of(values: dict[str, dict[str, float]], duration: float, factor: float = 1.0) -> tuple[np.ndarray, float]:
+    """Fall table of the body `factor` times as heavy under the effects, and the scale of the reading."""
+    values = {name: BODY_EFFECTS[name].ballasted(v, factor) for name, v in values.items()}
     wind = values.get("wind", {"coefficient": 0.0, "speed": 0.0})
     quadratic = values.get("quadratic_drag", {"coefficient": 0.0})["coefficient"] + wind["coefficient"]
     gravity = GRAVITY * (1.0 - values.get("buoyancy", {"fraction": 0.0})["fraction"])
@@ -96,6 +106,11 @@ def fit_drops(
     moving, e = 0 if start is not None else len(parameters), len(drops)
     instants = {"together": 0, "late": 0 if late is not None else 1, "free": e}[mode]
     duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
+    times, measured = (np.concatenate(x) for x in ([d.t for d in drops], [d.h for d in drops]))
+    counts = [len(d.t) for d in drops]
+    ends = np.cumsum(counts)[:-1]
+    factor_of = np.repeat([d.factor for d in drops], counts)
+    rows_of = {f: np.flatnonzero(factor_of == f) for f in dict.fromkeys(factor_of.tolist())}
     first = np.concatenate([theta[:moving], [d.h[:3].mean() for d in drops], np.zeros(instants)])
     low = np.concatenate([[p.lower for p in parameters][:moving], [-np.inf] * e, [-RELEASE] * instants])
     high = np.concatenate([[p.upper for p in parameters][:moving], [np.inf] * e, [RELEASE] * instants])
@@ -107,13 +122,16 @@ def fit_drops(
 
     def model(x: np.ndarray) -> tuple[np.ndarray, list[np.ndarray], float]:
         values, tops, release = split(x)
-        table, scale = table_of(unpack(names, values), duration)
-        pairs = [height(d.t, table, top, when) for d, top, when in zip(drops, tops, release, strict=True)]
-        read = np.concatenate([top + scale * (h - top) for (h, _), top in zip(pairs, tops, strict=True)])
-        return read, [v for _, v in pairs], scale
-
-    measured = np.concatenate([d.h for d in drops])
-    ends = np.cumsum([len(d.t) for d in drops])[:-1]
+        under, scale = unpack(names, values), 1.0
+        tables: dict[float, np.ndarray] = {}
+        for factor in rows_of:
+            tables[factor], scale = table_of(under, duration, factor)
+        read, speeds = np.empty(len(measured)), np.empty(len(measured))
+        top, when = np.repeat(tops, counts), np.repeat(release, counts)
+        for factor, rows in rows_of.items():
+            h, speeds[rows] = height(times[rows], tables[factor], top[rows], when[rows])
+            read[rows] = top[rows] + scale * (h - top[rows])
+        return read, np.split(speeds, ends), scale
 
     white = [d.white for d in drops if d.white is not None]
 

@@ -1,9 +1,11 @@
 """Whether something is left over that repeats from drop to drop: then what is missing is not in the bank.
 
 Free forms are tried: a force that bends over the time since release slowly or quickly, one short push, one swing, and
-a reading of the height that is bent.  A push or a swing has one or two numbers besides its place and period, and is
-seen where fourteen pieces of a force would drown it.  Effects and releases may give way to each form, and the noise's
-colour is asked anew, so that neither what the bank can still take up nor slow noise is mistaken for a discovery.
+a reading of the height that is bent; where the body was dropped with ballast too, also a drag that bends over the
+speed.  (Released from rest at one mass, a body has one speed at a time, and a force over the one is a force over the
+other.)  A push or a swing has one or two numbers besides its place and period, and is seen where fourteen pieces of a
+force would drown it.  Effects and releases may give way to each form, and the noise's colour is asked anew, so that
+neither what the bank can still take up nor slow noise is mistaken for a discovery.
 """
 
 from __future__ import annotations
@@ -14,14 +16,16 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.stats import f as fisher
 
+from ....sim.effects.body_bank import BODY_EFFECTS
 from .colour import Colour, grid, likelihood
 from .drop import height
-from .fit import RELEASE, DropFit, table_of
+from .fit import RELEASE, Drop, DropFit, table_of
 
 FORCES = (6, 14)  # pieces of the acceleration over the time since release
 PUSHES = (8, 14, 20)  # of which one alone is a push
 SWINGS = 16  # periods tried
 READING = 8  # pieces of a bent reading over the height
+DRAG = 6  # pieces of a drag over the speed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,31 +43,48 @@ class Leftover:
     what: str
 
 
-def repeating(fit: DropFit, times: list[np.ndarray]) -> Leftover:
+def repeating(fit: DropFit, drops: list[Drop]) -> Leftover:
     """Let each free form, the same in all drops, compete with noise; the surest is returned.
 
     Args:
         fit: the best set of effects.
-        times: sample times of each drop [s].
+        drops: what it was fitted to.
     """
     none = Leftover(energy=0.0, p_value=1.0, what="")
-    if len(times) < 2:
+    if len(drops) < 2:
         return none  # one drop cannot tell a repeating force from slow noise
-    since = [np.maximum(t - r, 0.0) for t, r in zip(times, fit.releases[:, 1], strict=True)]
-    colours = grid(times)
-    found = [_push(fit, since, colours), _swing(fit, since, colours)]  # fewest numbers first: they win ties
-    found += [_force(fit, since, pieces, colours) for pieces in FORCES]
-    found.append(_reading(fit, _paths(fit, times), colours))
+    falls = [Fall.of(d, r) for d, r in zip(drops, fit.releases[:, 1], strict=True)]
+    colours = grid([d.t for d in drops])
+    found = [_push(fit, falls, colours), _swing(fit, falls, colours)]  # fewest numbers first: they win ties
+    found += [_force(fit, falls, pieces, colours) for pieces in FORCES]
+    found.append(_reading(fit, _paths(fit, drops), colours))
+    if len({f.factor for f in falls}) > 1:
+        found.append(_drag(fit, falls, colours))
     best = min(found, key=lambda x: x.p_value)
     return Leftover(energy=best.energy, p_value=min(len(found) * best.p_value, 1.0), what=best.what)
 
 
-def _paths(fit: DropFit, times: list[np.ndarray]) -> list[np.ndarray]:
+@dataclass(frozen=True, kw_only=True)
+class Fall:
+    """A drop as a force sees it.  since: (T,) time since release [s]; factor: mass over that without ballast."""
+
+    since: np.ndarray
+    factor: float
+
+    @classmethod
+    def of(cls, drop: Drop, release: float) -> Fall:
+        """The drop after its release [s]."""
+        return cls(since=np.maximum(drop.t - release, 0.0), factor=drop.factor)
+
+
+def _paths(fit: DropFit, drops: list[Drop]) -> list[np.ndarray]:
     """Heights the fit predicts, per drop [m]."""
-    table, scale = table_of(fit.values, max(float(t[-1]) for t in times) + RELEASE + 0.1)
-    return [
-        top + scale * (height(t, table, top, when)[0] - top) for t, (top, when) in zip(times, fit.releases, strict=True)
-    ]
+    duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
+    out = []
+    for d, (top, when) in zip(drops, fit.releases, strict=True):
+        table, scale = table_of(fit.values, duration, d.factor)
+        out.append(top + scale * (height(d.t, table, top, when)[0] - top))
+    return out
 
 
 def _pieces(low: float, high: float, count: int) -> list[BSpline]:
@@ -71,43 +92,80 @@ def _pieces(low: float, high: float, count: int) -> list[BSpline]:
     return [BSpline.basis_element(knots[i : i + 5], extrapolate=False) for i in range(count)]
 
 
-def _ways(forces: np.ndarray, moments: np.ndarray, since: list[np.ndarray]) -> np.ndarray:
+def _moments(falls: list[Fall]) -> np.ndarray:
+    return np.linspace(0.0, max(float(f.since[-1]) for f in falls), 600)
+
+
+def _ways(forces: np.ndarray, moments: np.ndarray, falls: list[Fall]) -> np.ndarray:
     """How far forces (M, k) at `moments` after release push each sample, (N, k)."""
     step = moments[1]
     way = np.cumsum(np.cumsum(forces, axis=0) * step, axis=0) * step
-    return np.concatenate([np.stack([np.interp(s, moments, f) for f in way.T], axis=1) for s in since])
+    return np.concatenate([_at(f.since, moments, way) / f.factor for f in falls])
+
+
+def _at(since: np.ndarray, moments: np.ndarray, way: np.ndarray) -> np.ndarray:
+    return np.stack([np.interp(since, moments, w) for w in way.T], axis=1)
 
 
 def _bumps(moments: np.ndarray, count: int) -> np.ndarray:
     return np.stack([np.nan_to_num(b(moments)) for b in _pieces(0.0, float(moments[-1]), count)], axis=1)
 
 
-def _force(fit: DropFit, since: list[np.ndarray], count: int, colours: list[Colour]) -> Leftover:
-    moments = np.linspace(0.0, max(float(s[-1]) for s in since), 600)
+def drag_ways(values: dict[str, dict[str, float]], falls: list[Fall]) -> np.ndarray:
+    """How far pieces of a drag over the speed move each sample of falls under these effects, (N, DRAG)."""
+    moments = _moments(falls)
+    slope = {f.factor: _pull(values, moments, f.factor) for f in falls}
+    fastest = max(float(v.max()) for v, _ in slope.values())
+    ways = {}
+    for factor, (speed, brake) in slope.items():
+        force = np.stack([np.nan_to_num(b(speed)) for b in _pieces(0.0, fastest + 1e-6, DRAG)], axis=1) / factor
+        # what a force adds to the speed, the drag of that speed takes away again
+        fades = np.exp(np.minimum(np.cumsum(brake) * moments[1], 500.0))[:, None]
+        ways[factor] = np.cumsum(np.cumsum(force * fades, axis=0) / fades, axis=0) * moments[1] ** 2
+    return np.concatenate([_at(f.since, moments, ways[f.factor]) for f in falls])
+
+
+def _pull(values: dict[str, dict[str, float]], moments: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Speed [m/s] and how much faster it is braked per speed [1/s] at `moments` after release, (M,) each."""
+    table, _ = table_of(values, float(moments[-1]) + 0.1, factor)
+    speed = np.interp(moments, table[:, 0], table[:, 2])
+    v = {n: BODY_EFFECTS[n].ballasted(x, factor) for n, x in values.items()}
+    still, moving = v.get("quadratic_drag", {"coefficient": 0.0}), v.get("wind", {"coefficient": 0.0, "speed": 0.0})
+    brake = v.get("linear_drag", {"rate": 0.0})["rate"] + 2.0 * still["coefficient"] * speed
+    return speed, brake + 2.0 * moving["coefficient"] * np.abs(speed + moving["speed"])
+
+
+def _drag(fit: DropFit, falls: list[Fall], colours: list[Colour]) -> Leftover:
+    energy, p, _ = _pays(fit, drag_ways(fit.values, falls), colours)
+    return Leftover(energy=energy, p_value=p, what="a drag that bends over the speed as none of the bank does")
+
+
+def _force(fit: DropFit, falls: list[Fall], count: int, colours: list[Colour]) -> Leftover:
+    moments = _moments(falls)
     bumps = _bumps(moments, count)
-    energy, p, theta = _pays(fit, _ways(bumps, moments, since), colours)
+    energy, p, theta = _pays(fit, _ways(bumps, moments, falls), colours)
     when = float(moments[int(np.argmax(np.abs(bumps @ theta)))])
     return Leftover(
         energy=energy, p_value=p, what=f"a force that repeats from drop to drop, largest {when:.2f} s after release"
     )
 
 
-def _push(fit: DropFit, since: list[np.ndarray], colours: list[Colour]) -> Leftover:
+def _push(fit: DropFit, falls: list[Fall], colours: list[Colour]) -> Leftover:
     """One short force, wherever and as long as it fits best."""
-    moments = np.linspace(0.0, max(float(s[-1]) for s in since), 600)
+    moments = _moments(falls)
     bumps = np.concatenate([_bumps(moments, count) for count in PUSHES], axis=1)
-    energy, p, k = _best_of(fit, _ways(bumps, moments, since), 1, colours)
+    energy, p, k = _best_of(fit, _ways(bumps, moments, falls), 1, colours)
     when = float(moments[int(np.argmax(bumps[:, k]))])
     return Leftover(energy=energy, p_value=p, what=f"a short push {when:.2f} s after release, the same in all drops")
 
 
-def _swing(fit: DropFit, since: list[np.ndarray], colours: list[Colour]) -> Leftover:
+def _swing(fit: DropFit, falls: list[Fall], colours: list[Colour]) -> Leftover:
     """One force that swings, of whatever period fits best."""
-    end = max(float(s[-1]) for s in since)
-    moments = np.linspace(0.0, end, 600)
+    moments = _moments(falls)
+    end = float(moments[-1])
     turns = 2.0 * np.pi * np.linspace(0.75, 0.5 * SWINGS + 0.25, SWINGS) / end
     waves = np.stack([f(w * moments) for w in turns for f in (np.sin, np.cos)], axis=1)
-    energy, p, k = _best_of(fit, _ways(waves, moments, since), 2, colours)
+    energy, p, k = _best_of(fit, _ways(waves, moments, falls), 2, colours)
     return Leftover(
         energy=energy,
         p_value=p,

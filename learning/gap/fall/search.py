@@ -62,6 +62,7 @@ class DropSearch:
     Attributes:
         candidates: best first.
         drops: the drops with their noise's colour.
+        colour: of the noise.
         worth: samples beyond those the fit takes up.
         price: of one number.
         floor: root mean square the richest fit leaves [m].
@@ -70,6 +71,7 @@ class DropSearch:
 
     candidates: tuple[Candidate, ...]
     drops: tuple[Drop, ...]
+    colour: Colour
     worth: float
     price: float
     floor: float
@@ -94,9 +96,11 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     """Fit every plausible set and rank them."""
     sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
     sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
-    plain = [
-        fit_drops(drops, names, mode) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3
-    ]  # one or two drops cannot tell late from each at its own instant
+    # one or two drops cannot tell late from each at its own instant
+    tried = [(mode, names) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3]
+    if any(d.factor != 1.0 for d in drops):  # two effects and an instant for every drop would follow any smooth force
+        tried = [(mode, names) for mode, names in tried if mode != "free" or len(names) < LARGEST]
+    plain = [fit_drops(drops, names, mode) for mode, names in tried]
     colours = grid([d.t for d in drops])
     cleanest = min(plain, key=lambda f: f.rss)
     white = _coloured(drops, estimated(colours, np.concatenate(cleanest.residuals), cleanest.jacobian))
@@ -130,9 +134,11 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     candidates += [Candidate(fit=f, score=behind + x, misfit=behind + x - price(f)) for f, x in far]
     candidates.sort(key=lambda c: c.score)
     best = candidates[0].fit
+    noise = estimated(colours, np.concatenate(best.residuals), best.jacobian)
     return DropSearch(
         candidates=tuple(candidates),
-        drops=tuple(_coloured(drops, estimated(colours, np.concatenate(best.residuals), best.jacobian))),
+        drops=tuple(_coloured(drops, noise)),
+        colour=noise,
         worth=worth,
         price=number,
         floor=float(np.sqrt(cleanest.rss / max(rows - spent, 1))),

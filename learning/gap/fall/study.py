@@ -9,53 +9,25 @@ import numpy as np
 from scipy.stats import chi2
 
 from ....sim.effects.body_bank import BODY_EFFECTS
-from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Rival, Value, VerdictName, Where
-from ..measurement import Episode, require_columns
+from ..findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Value, VerdictName, Where
 from ..pictures import Curve
 from ..regions import phase_of
 from ..study import Study
 from .experiment import detectable, separating
 from .fit import Drop, DropFit, fit_drops
+from .follow_up import follow_up
 from .leftover import Leftover, repeating
+from .recording import drop_of
 from .search import EFFECT, LARGEST, DropSearch, equals, foreseen, price_of, rivals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
+VISIBLE = 0.1  # of the floor, with ballast: then the same numbers have to hold for every mass, and less has to be left
 SURE = 2e-3  # `unknown` below this p-value of what repeats
 CLEAN = 0.05  # a set leaves nothing that repeats at or above it
 NEAR = 12.0  # criterion within which another set is asked before `unknown` is said
 TRANSFER = 3.0  # held-out energy over the worst fitted drop's from which on an explanation is asked if it holds there
 TRANSFERRED = 0.06  # `unknown` above this part of the explainable held-out energy
 CONFIDENCE = 0.8
-MOST_ROWS = 500  # of one drop
-
-
-def drop_of(episode: Episode) -> Drop:
-    """One episode as a drop, cut where it stops falling.
-
-    Raises:
-        GapError: no heights, or heights no fall could make.
-    """
-    require_columns(episode, ["h"])
-    t, h = episode.t - episode.t[0], episode.columns["h"]
-    step = float(np.median(np.diff(t)))
-    if step > 0.5:
-        raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
-    jump = np.abs(np.diff(h))
-    row = int(np.argmax(jump))
-    if jump[row] > 50.0 * max(step, 0.02) * 5.0:
-        raise GapError(
-            f"{episode.file}: column 'h', row {row + 3} jumps by {jump[row]:g} in {step:g} s, "
-            "it must be a height in metres"
-        )
-    lowest = int(np.argmin(h))
-    if lowest < len(h) - 2 and h[-1] - h[lowest] > 0.03 * np.ptp(h):  # it bounced: only the fall is modelled
-        t, h = t[:lowest], h[:lowest]
-    if len(t) < 12 or h[0] - h[-1] < 0.05:
-        raise GapError(f"{episode.file}: column 'h' does not fall (rows 2 to {len(episode.t) + 1})")
-    k = -(-len(t) // MOST_ROWS)  # a drop is smooth: means over a few milliseconds lose nothing of it
-    whole = len(t) // k * k
-    return Drop(name=episode.name, t=t[:whole].reshape(-1, k).mean(axis=1), h=h[:whole].reshape(-1, k).mean(axis=1))
 
 
 class FallStudy(Study):
@@ -65,7 +37,7 @@ class FallStudy(Study):
     def drops(self) -> dict[str, Drop]:
         """All episodes."""
         self.mass, self.diameter = self.measured.number("mass"), self.measured.number("diameter")
-        return {e.name: drop_of(e) for e in self.measured.episodes}
+        return {e.name: drop_of(self.measured, e) for e in self.measured.episodes}
 
     @property
     def fitted(self) -> list[Drop]:
@@ -111,7 +83,15 @@ class FallStudy(Study):
         """What repeats in all drops; whether a set of effects is enough is asked of the held-out ones too."""
         # one fitted drop cannot tell a repeating force from slow noise, and a second one that is like it is one chance
         drops = self.fitted if len(self.fitted) < 2 else [*self.fitted, *self.heldout]
-        return repeating(fit_drops(drops, fit.names, fit.mode), [d.t for d in drops])
+        asked = (fit.names, fit.mode)
+        if asked not in self._asked:
+            self._asked[asked] = repeating(fit_drops(drops, fit.names, fit.mode), drops)
+        return self._asked[asked]
+
+    @cached_property
+    def _asked(self) -> dict[tuple[tuple[str, ...], str], Leftover]:
+        """What repeats beside the sets asked so far."""
+        return {}
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
         """Part of resampled stretches in which each effect keeps paying its price."""
@@ -169,7 +149,10 @@ class FallStudy(Study):
         """One of the four."""
         energy = self.leftover.energy
         explained = max(_squares(self.found.given) - _squares(self.chosen), 0.0) / self.found.rows
-        if self.leftover.p_value < SURE and energy / (energy + explained + 1e-30) > REMAINDER:
+        much = energy / (energy + explained + 1e-30) > REMAINDER
+        if any(d.factor != 1.0 for d in self.fitted):
+            much = energy > (VISIBLE * self.found.floor) ** 2
+        if self.leftover.p_value < SURE and much:
             return "unknown"
         if self._strange > TRANSFERRED or self._many:
             return "unknown"
@@ -316,6 +299,12 @@ class FallStudy(Study):
             )
             for c in rivals(self.found, self.chosen)
         )
+
+    def follow_up(self) -> tuple[FollowUp, ...]:
+        """See `Study.follow_up`."""
+        if self.verdict == "adequate":
+            return ()
+        return follow_up(self.found, self.chosen, [c.fit for c in rivals(self.found, self.chosen)])
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""

@@ -42,9 +42,12 @@ def axis_set(tmp_path):
 
 @pytest.fixture
 def drop_set(tmp_path):
-    """Write a set of drops from 20 m with quadratic drag `coefficient` [1/m] and 1 cm of noise."""
+    """Write a set of drops from 20 m with quadratic drag `coefficient` [1/m] and 1 cm of noise.
 
-    def make(coefficient=0.0, episodes=4) -> Path:
+    `ballast` is the mass in each episode over the 0.2 kg of the body; `steep` adds a drag with the cube [s/m^2].
+    """
+
+    def make(coefficient=0.0, episodes=4, ballast=(), steep=0.0) -> Path:
         folder = tmp_path / "drops"
         folder.mkdir()
         listed = []
@@ -53,7 +56,7 @@ def drop_set(tmp_path):
             for step in range(1700):
                 if step % 33 == 0:
                     heights.append(h)
-                a = -9.81 - coefficient * abs(v) * v
+                a = -9.81 - (coefficient * abs(v) * v + steep * v**3) / (ballast[k] if ballast else 1.0)
                 h += 1e-3 * (v + 0.5e-3 * a)
                 v += 1e-3 * a
             t = 0.033 * np.arange(len(heights))
@@ -66,7 +69,10 @@ def drop_set(tmp_path):
                 comments="",
             )
             listed.append({"file": f"d{k}.csv", "role": "heldout" if k == episodes - 1 else "fit"})
-        (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "fall", "episodes": listed}))
+            if ballast:
+                listed[-1]["mass"] = 0.2 * ballast[k]
+        mass = {"mass": 0.2} if ballast else {}
+        (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "fall", **mass, "episodes": listed}))
         return folder
 
     return make

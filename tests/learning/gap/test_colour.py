@@ -59,7 +59,7 @@ def drops(extra):
 )
 def test_what_repeats_from_drop_to_drop_is_noticed(extra, seen, word):
     given = drops(extra)
-    left = repeating(fit_drops(given, ()), [d.t for d in given])
+    left = repeating(fit_drops(given, ()), given)
     assert (left.p_value < 2e-3) == seen
     if seen:
         assert word in left.what

@@ -16,7 +16,7 @@ def drops(force, noise=0.01):
 
 
 def left_over(made):
-    return repeating(fit_drops(made, (), "together"), [d.t for d in made])
+    return repeating(fit_drops(made, (), "together"), made)
 
 
 def test_nothing_repeats_in_noise():

@@ -1,5 +1,5 @@
 import pytest
-from caretree.learning.gap.bench.score import interval, judge_case, table
+from caretree.learning.gap.bench.score import interval, judge_case, side_by_side, table
 
 
 def case(hidden, said, kind="single", verdict="effects", equivalent=()):
@@ -68,3 +68,9 @@ def test_interval_is_exact():
 def test_table_has_a_row_per_question():
     rows = table([case(["offset"], ["offset"]), case([], [], kind="none", verdict="adequate")])
     assert any(r[0].startswith("single effect, size >= 2") and r[2:4] == (1, 1) for r in rows)
+
+
+def test_two_rounds_stand_side_by_side():
+    lines = side_by_side([[case(["offset"], [])], [case(["offset"], ["offset"])]])
+    row = next(line for line in lines if line.startswith("single effect, size >= 2, exact set"))
+    assert row.index("0/   1") < row.index("1/   1")
