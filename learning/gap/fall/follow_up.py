@@ -69,15 +69,15 @@ def follow_up(found: DropSearch, named: DropFit, rivals: Sequence[DropFit]) -> t
         prior = _block(before, _known(other, old))
         both = zip(after, (_column(other, x) for x in new), strict=True)
         apart = [np.column_stack([a[:, 1:], b[:, 1:], a[:, 0] - b[:, 0]]) for a, b in both]
-        grams.append((prior, [x.T @ x for x in apart]))
+        grams.append((prior, np.stack([x.T @ x for x in apart])))
     free = _free(named, old, new)
 
     def tells(pair: tuple[int, ...]) -> float:
-        parted = sum(np.log1p(_apart(prior, sum(g[k] for k in pair))) for prior, g in grams)
+        parted = sum(np.log1p(_apart(prior, g[list(pair)].sum(axis=0))) for prior, g in grams)
         return float(parted) + _gain(*free, pair)
 
     best = max(combinations(range(len(new)), KINDS), key=tells)
-    far = [np.sqrt(_apart(prior, sum(g[k] for k in best))) for prior, g in grams]
+    far = [np.sqrt(_apart(prior, g[list(best)].sum(axis=0))) for prior, g in grams]
     return tuple(
         FollowUp(
             kind="drop",
@@ -145,7 +145,7 @@ def _apart(prior: np.ndarray, gram: np.ndarray) -> float:
     return max(float(gram[-1, -1] - across @ np.linalg.solve(prior + gram[:-1, :-1], across)), 0.0)
 
 
-def _free(named: DropFit, old: Sequence[Look], new: Sequence[Look]) -> tuple[np.ndarray, list[np.ndarray], int]:
+def _free(named: DropFit, old: Sequence[Look], new: Sequence[Look]) -> tuple[np.ndarray, np.ndarray, int]:
     """Information on a set's numbers and a free drag: what there is, what each new look adds, the set's count."""
     looks = [*old, *new]
     falls = [Fall(since=np.maximum(x.t - (x.when or 0.0), 0.0), factor=x.factor) for x in looks]
@@ -159,12 +159,12 @@ def _free(named: DropFit, old: Sequence[Look], new: Sequence[Look]) -> tuple[np.
         grams.append(both.T @ both)
     own = len(grams[0]) - pieces.shape[1]
     prior = _block(_known(named, []), np.eye(pieces.shape[1]) / FORCE**2)
-    return prior + sum(grams[: len(old)]), grams[len(old) :], own
+    return prior + np.sum(grams[: len(old)], axis=0), np.stack(grams[len(old) :]), own
 
 
-def _gain(known: np.ndarray, added: list[np.ndarray], own: int, pair: tuple[int, ...]) -> float:
+def _gain(known: np.ndarray, added: np.ndarray, own: int, pair: tuple[int, ...]) -> float:
     """Nats some new looks tell of a free drag."""
-    after = known + sum(added[k] for k in pair)
+    after = known + added[list(pair)].sum(axis=0)
     return 0.5 * (_volume(after) - _volume(known) - _volume(after[:own, :own]) + _volume(known[:own, :own]))
 
 
