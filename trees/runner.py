@@ -15,7 +15,7 @@ from __future__ import annotations
 import difflib
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -206,17 +206,21 @@ class Run:
         self._announce(node, node.status)
 
     def _sweep(self) -> None:
-        """Note and tell what was stopped without being visited."""
+        """Note and tell what was stopped without being visited; what is reset may be told of again."""
         self.trace.sweep()
-        for node in [node for node, told in self._told.items() if told == Status.RUNNING]:
+        for node, told in list(self._told.items()):
             if node.status == Status.INVALID and isinstance(node, (Skill, Stage)):
-                self._announce(node, Status.INVALID)
+                if told == Status.RUNNING:
+                    self._announce(node, Status.INVALID)
+                del self._told[node]
 
     def _announce(self, node: Skill | Stage, status: Status) -> None:
         if self._told.get(node) == status:
             return
         self._told[node] = status
         failure = node.failure if status == Status.FAILURE else None
+        if failure is not None and failure.node == node.name:
+            failure = replace(failure, node="")  # the line names the node already
         words = {Status.INVALID: "stopped"}.get(status, status.name.lower())
         self._tell(Progress(self.context.now(), "skill" if isinstance(node, Skill) else "stage", node.name, words,
                             failure.sentence() if failure else node.feedback_message))

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
-from caretree.sim.scripted import ScriptedWorld
 from caretree.skills.skill import Skill
+from caretree.trees.check import check
 from caretree.trees.runner import run
 from caretree.trees.tasks import Task
 
@@ -38,5 +38,9 @@ def test_python_blocks_run(page, code):
     exec(compile(code, page, "exec"), names)
     build = names.get("build")
     if callable(build):
-        result = run(Task("page", build, ROOT / page), ScriptedWorld())
+        script = names.get("scripted")
+        task = Task("page", build, ROOT / page, script if callable(script) else None)
+        world, perception = task.scripted(0)
+        assert check(task).ok
+        result = run(task, world, perception=perception)
         assert result.outcome == "success", result.reason

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -34,11 +35,15 @@ def test_a_run_shows_progress_outcome_and_paths(tmp_path, capsys):
 
 
 def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
-    assert main(["run", "wave", "--world", "scripted", "--inject", "dead_camera@hold still:start", "--out", "r"]) == 1
-    assert "safe stop: A sensor gave nothing. [hold still]" in capsys.readouterr().out
+    assert main(["run", "wave", "--world", "scripted", "--inject", "dead_camera@hold still:start",
+                 "--inject", "occlusion@wait:start", "--out", "r"]) == 1
+    out = capsys.readouterr().out
+    assert "safe stop: A sensor gave nothing. [hold still]" in out
+    assert re.search(r"^    3\.\d\d s ! dead_camera@hold still:start$", out, re.M)
+    assert "   never ! occlusion@wait:start: the run did not come to that phase of that node" in out
     record = json.loads((tmp_path / "r/run.json").read_text())
     assert record["outcome"] == "safe_stop"
-    assert record["parameters"]["inject"] == ["dead_camera@hold still:start"]
+    assert record["parameters"]["inject"] == ["dead_camera@hold still:start", "occlusion@wait:start"]
     assert [stage["status"] for stage in record["stages"]] == ["success", "failure"]
 
 

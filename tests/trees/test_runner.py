@@ -10,7 +10,7 @@ from caretree.sim.scripted import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
 from caretree.skills.reasons import Reason
 from caretree.trees.composers import fallback, sequence, watch
-from caretree.trees.decorators import FailSafe, Stage, Timeout
+from caretree.trees.decorators import FailSafe, Retry, Stage, Timeout
 from caretree.trees.runner import run as run_task
 from caretree.trees.tasks import load_task
 from py_trees.common import Status
@@ -43,6 +43,19 @@ def test_the_same_seed_gives_the_same_hash_and_another_world_another():
     first, again = (run_task(load_task("wave"), ScriptedWorld(seed=0), seed=0) for _ in range(2))
     assert first.trace_hash == again.trace_hash
     assert run_task(load_task("wave"), ScriptedWorld(seed=0), params={"side": "right"}).trace_hash != first.trace_hash
+
+
+def test_every_failure_is_told_even_one_that_takes_no_time():
+    told = []
+
+    def build(context):
+        blink = Look("blink", context, outcomes=[Reason.NOTHING_SEEN], ticks=0)
+        return FailSafe("safe", Retry("again", blink, attempts=3), Release("let go", context))
+
+    run_of(build, on_progress=told.append).run()
+    blinks = [line for line in told if line.name == "blink"]
+    assert [line.status for line in blinks] == ["failure"] * 3
+    assert blinks[0].message == Reason.NOTHING_SEEN.value, "the line says whose failure it is; the message need not"
 
 
 def test_an_error_in_a_plain_node_is_fenced_in():

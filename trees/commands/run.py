@@ -76,6 +76,8 @@ def _run(options: argparse.Namespace, task: Task, inner: World, perception: Perc
     finally:
         recorder.close()
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
+    if isinstance(world, FaultyWorld):
+        _tell_faults(world)
     print(f"{result.outcome.replace('_', ' ')}: {result.reason}")
     for path in written:
         if path is not None and path.exists():
@@ -92,6 +94,16 @@ class _Events:
         """Append one event."""
         if self.recorder is not None:
             self.recorder.event(event)
+
+
+def _tell_faults(world: FaultyWorld) -> None:
+    """Which of the faults that were asked for came to act, and when."""
+    begun = {id(spec): time for spec, time in world.begun}
+    for spec in world.faults:
+        if id(spec) in begun:
+            print(f"{begun[id(spec)]:8.2f} s ! {spec}")
+        else:
+            print(f"   never ! {spec}: the run did not come to that phase of that node")
 
 
 def _timing(of_run: Mapping[str, float], of_world: Mapping[str, float]) -> Mapping[str, float]:
