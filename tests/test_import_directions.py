@@ -10,12 +10,13 @@ LAYERS = {"sim": 0, "perception": 1, "learning": 1, "skills": 2, "trees": 3}
 # What of sim/ the acting parts may use: the contract, what is data, and the robot's own model.
 ALLOWED_SIM = {
     "world", "errors", "scripted", "linear_arm", "faults", "record", "recorder", "robot", "spool",
+    "file_lock", "folder_claim",  # of records
     "appearance",  # colours of the gown's bindings: known to whoever bought it
 }
 # These read records after a run, or start a world; the tree never calls them.
 OUTSIDE_THE_TREE = {
     "trees/report.py", "trees/report_figures.py", "trees/trial.py", "trees/trials.py", "trees/evaluate_command.py",
-    "trees/worlds.py", "trees/trials_table.py",
+    "trees/worlds.py", "trees/trials_table.py", "skills/rehearsal.py",
 }
 FILES = sorted(path.relative_to(ROOT) for layer in LAYERS for path in (ROOT / layer).rglob("*.py"))
 
