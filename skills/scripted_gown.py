@@ -3,30 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..perception.estimates import CORNER_OF, Estimate, GownSide, GraspPoint, LayerCount, PreGrasp
 from ..sim.robot.kinematics import planar_pose
-from ..sim.world import Frame, Side
-from .context import Context
+from ..sim.world import Frame, Observation, Side
+from .context import Perception
 
 PLACE = np.array((0.70, 0.0, 1.20))  # of the gown, in base [m]
-ASIDE = 0.18  # of a corner of its neckline from its middle [m]
+ASIDE, BELOW = 0.18, 0.37  # of a corner of its neckline from its middle, which the hook holds [m]
 
 
-def offer_gown(context: Context) -> None:
+class Senses(Protocol):
+    """What knows where the robot is."""
+
+    def observe(self) -> Observation:
+        """Latest proprioception."""
+        ...
+
+
+class Stage(Protocol):
+    """The part of a context that scripted estimators use."""
+
+    @property
+    def world(self) -> Senses:
+        """Where the robot is."""
+        ...
+
+    @property
+    def perception(self) -> Perception:
+        """Where the estimators go."""
+        ...
+
+
+def offer_gown(context: Stage) -> None:
     """Give a context without estimators the ones that stages A and B ask for."""
 
-    def point(frame: Frame, target: Any, lateral: float) -> GraspPoint:
+    def point(frame: Frame, target: Any, lateral: float, below: float = 0.0) -> GraspPoint:
         base = planar_pose(context.world.observe().pose_base_in_map)
-        place = base @ np.append(PLACE + (0.0, lateral, 0.0), 1.0)
+        place = base @ np.append(PLACE + (0.0, lateral, -below), 1.0)
         return GraspPoint(stamp=frame.stamp, confidence=0.9, target=target, position_in_map=place[:3],
                           approach_in_map=base[:3, 0], closing_in_map=base[:3, 1])
 
     def hung(frame: Frame, side: Side, **_: Any) -> Estimate:
-        return point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE)
+        return point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE, BELOW)
 
     def shown(frame: Frame, side: Side | None = None, **_: Any) -> Estimate:
         return hung(frame, side or "left")

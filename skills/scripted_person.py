@@ -14,11 +14,12 @@ from ..perception.estimates import (
     Estimate,
     GraspPoint,
     Head,
+    SleeveHeading,
     SleeveOpening,
     WornSleeve,
 )
 from ..sim.world import Frame, Side
-from .context import Context
+from .scripted_gown import Stage
 
 # shoulder, elbow, wrist, fingertip of a right arm at rest [m]
 LYING = np.array(((0.20, -0.55, 0.70), (0.40, -0.36, 0.67), (0.55, -0.16, 0.66), (0.65, -0.02, 0.66)))
@@ -44,7 +45,7 @@ def laid_strap(side: Side, stamp: float = 0.0) -> SleeveOpening:
                          ring_points_in_map=ring, centre_in_map=ring.mean(axis=0))
 
 
-def offer_person(context: Context) -> None:
+def offer_person(context: Stage) -> None:
     """Give a context without estimators the ones that stages C and D ask for."""
 
     def arm(frame: Frame, side: Side, **_: Any) -> Estimate:
@@ -70,7 +71,12 @@ def offer_person(context: Context) -> None:
     def worn(frame: Frame, side: Side, **_: Any) -> Estimate:
         return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6)
 
+    def heading(frame: Frame, side: Side, **_: Any) -> Estimate:
+        return SleeveHeading(stamp=frame.stamp, confidence=0.9, side=side,
+                             cuff_from_armhole_in_map=mirrored(LYING[3] - LYING[2], side))
+
     for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
+                            ("sleeve_heading", heading), ("chest_cover", cover),
                             ("held_armhole", sleeve), ("hand_cover", cover), ("head", head),
                             ("worn_sleeve", worn), ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
         context.perception.offer(name, estimator)

@@ -70,7 +70,8 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject.add_argument("--seed", type=_seed, default=0, metavar="N")
     inject.add_argument("--world", default="scripted", choices=("bullet", "scripted", "ros1"), help="default: scripted")
     inject.add_argument("--fault", action="append", default=[], metavar="FAULT", help="only this one; may be repeated")
-    inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows")
+    inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
+    inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 
     replay = commands.add_parser("replay", help="run a record again and say where it differs")
     replay.add_argument("directory", metavar="DIR")

@@ -7,7 +7,7 @@ no arm is held, and, unless the task succeeded, the fingers are open.
 from __future__ import annotations
 
 import collections
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -23,6 +23,7 @@ from .decorators import FailSafe, RecoverBy
 from .runner import OPEN, Run
 from .tasks import Task
 
+FaultKey = tuple[str, str, str]  # node, phase, fault
 MakeWorld = Callable[[], tuple[World, Perception | None]]
 SETTLE = 1.0  # [s] watched after the end for anything that still moves
 MOVED = 0.02  # [rad] or [m] in that time
@@ -48,7 +49,7 @@ class Row:
     unsafe: str = ""
 
     @property
-    def key(self) -> tuple[str, str, str]:
+    def key(self) -> FaultKey:
         """What identifies the row."""
         return self.node, self.phase, self.fault
 
@@ -97,15 +98,14 @@ class Campaign:
         self._interrupt_at = moving[-1] if moving else None
         self._triggers = _triggers(run.root, set(order))
 
-    def plan(self) -> list[tuple[str, str, str]]:
+    def plan(self) -> list[FaultKey]:
         """Every node, phase and fault."""
         return [(node, phase, fault) for node in self.nodes for phase in PHASES for fault in self._faults]
 
-    def rows(self, done: set[tuple[str, str, str]] = frozenset()) -> Iterator[Row]:  # type: ignore[assignment]
-        """One row after the other; those in `done` are left out."""
-        for key in self.plan():
-            if key not in done:
-                yield self._row(*key)
+    def rows(self, keys: Iterable[FaultKey] | None = None) -> Iterator[Row]:
+        """One row after the other: those of `keys`, or of the whole plan."""
+        for key in self.plan() if keys is None else keys:
+            yield self._row(*key)
 
     def _row(self, node: str, phase: str, fault: str) -> Row:
         stop_at, trigger = self._stop_at(node, phase), self._triggers.get(node)

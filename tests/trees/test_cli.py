@@ -209,6 +209,17 @@ def test_inject_keeps_rows_and_goes_on(tmp_path, capsys):
     assert second.count("[") < first.count("[")
 
 
+def test_a_sample_of_a_campaign_is_drawn_by_the_seed(capsys):
+    assert main(["inject", "wave", "--sample", "3", "--seed", "2", "--out", "a"]) == 0
+    assert main(["inject", "wave", "--sample", "3", "--seed", "2", "--out", "b"]) == 0
+    rows = [Path(folder, "inject.jsonl").read_text() for folder in "ab"]
+    assert rows[0] == rows[1]
+    assert len(rows[0].splitlines()) == 3
+    capsys.readouterr()
+    assert main(["inject", "wave", "--sample", "0"]) == 2
+    assert "--sample is 0, but at least 1" in capsys.readouterr().err
+
+
 def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
     import types
     given = []

@@ -7,11 +7,13 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
+
 from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS
 from ...sim.file_lock import lock_file
 from ...sim.spool import disk_error
-from ..inject import Campaign, Row, table
+from ..inject import Campaign, FaultKey, Row, table
 from ..tasks import Task, load_task
 from ..worlds import make_world
 
@@ -48,11 +50,12 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
                         faults=tuple(options.fault) or FAULTS)
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
-    wanted = campaign.plan()
+    wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
     rows = [row for row in read_rows(path) if row.key in set(wanted)]
     try:
         with path.open("a", encoding="utf-8") as file:
-            for row in campaign.rows({row.key for row in rows}):
+            done = {row.key for row in rows}
+            for row in campaign.rows([key for key in wanted if key not in done]):
                 file.write(json.dumps(row.as_dict()) + "\n")
                 file.flush()
                 rows.append(row)
@@ -66,6 +69,20 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         return 130
     print(table(sorted(rows, key=lambda row: wanted.index(row.key))))
     return 0 if all(row.survived for row in rows) else 1
+
+
+def drawn_rows(plan: list[FaultKey], count: int | None, seed: int) -> list[FaultKey]:
+    """`count` rows of a campaign too long to run whole, drawn by the seed, in the plan's order; None takes all.
+
+    Raises:
+        CaretreeError: `count` is below 1.
+    """
+    if count is None or count >= len(plan):
+        return plan
+    if count < 1:
+        raise CaretreeError(f"--sample is {count}, but at least 1 fault is asked for")
+    chosen = np.random.default_rng(seed).choice(len(plan), count, replace=False)
+    return [plan[k] for k in sorted(chosen)]
 
 
 def read_rows(path: Path) -> list[Row]:

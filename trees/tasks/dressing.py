@@ -6,7 +6,9 @@ from py_trees.behaviour import Behaviour
 
 from ...perception.estimators import classical_estimators
 from ...sim.errors import CaretreeError
-from ...skills.context import Context
+from ...sim.world import World
+from ...skills.context import Context, Perception
+from ...skills.rehearsal import rehearsal
 from ..composers import sequence
 from ..decorators import FailSafe
 from ..dressing import dress, make_safe, spread
@@ -31,3 +33,8 @@ def build(context: Context, stage: str = "") -> Behaviour:
         context.perception.offer(name, estimator)
     stages = [STAGES[letter](context) for letter in chosen]
     return FailSafe("dress safely", sequence("dressing", *stages), make_safe(context))
+
+
+def scripted(seed: int) -> tuple[World, Perception]:
+    """The world on which the task is rehearsed: every grasp succeeds, and what is seen is made up."""
+    return rehearsal(seed)
