@@ -71,8 +71,8 @@ RESULT = RunResult(
 
 @pytest.fixture
 def make_record() -> Callable[..., Path]:
-    """Write a whole record into a folder: `make_record(folder, seed=3, pictures=True)`."""
-    def make(directory: Path, *, seed: int = 0, pictures: bool = False, result: RunResult = RESULT) -> Path:
+    """Write a whole record into a folder: `make_record(folder, seed=3, pictures=True)`; one cut short if no result."""
+    def make(directory: Path, *, seed: int = 0, pictures: bool = False, result: RunResult | None = RESULT) -> Path:
         recorder = Recorder(directory, task="dressing", seed=seed, world="bullet", parameters={"gown": "small"})
         static = gown()
         recorder.begin(static)
@@ -88,7 +88,10 @@ def make_record() -> Callable[..., Path]:
             if pictures and index % 2 == 0:
                 image = np.full((48, 64, 3), 2 * index, dtype=np.uint8)
                 recorder.picture(index * FRAME_PERIOD, image)
-        recorder.finish(result)
+        if result is None:
+            recorder.close()
+        else:
+            recorder.finish(result)
         return directory
 
     return make

@@ -1,4 +1,4 @@
-"""The command line: `caretree run|check|inject|replay|trials|evaluate|gap|learn`.
+"""The command line: `caretree run|check|inject|replay|report|trials|evaluate|gap|learn`.
 
 A user's mistake is answered by one sentence and exit status 2.
 """
@@ -75,6 +75,9 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
 
     replay = commands.add_parser("replay", help="run a record again and say where it differs")
     replay.add_argument("directory", metavar="DIR")
+
+    report = commands.add_parser("report", help="draw the page of a record, of a run cut short too")
+    report.add_argument("directory", metavar="DIR")
 
     for name, (module, summary) in SELF_PARSED.items():
         if name == command:  # the others' modules stay unread: help must be instant

@@ -6,8 +6,10 @@ from html.parser import HTMLParser
 
 import pytest
 from caretree.sim.errors import CaretreeError
+from caretree.sim.folder_claim import FolderClaim
 from caretree.sim.record import RunResult
 from caretree.sim.recorder import Recorder
+from caretree.trees.cli import main
 from caretree.trees.report import FRAMES_MAX, key_moments, write_report
 from caretree.trees.timeline import Span
 
@@ -129,3 +131,29 @@ def test_stage_that_never_ran_is_listed(make_record, tmp_path):
     page = write_report(make_record(tmp_path / "run", result=result)).read_text()
     assert "not_run" in page
     parsed(page)
+
+
+def test_the_page_of_a_killed_run_is_drawn_from_its_spool(tmp_path, make_record, capsys):
+    cut = make_record(tmp_path / "cut", result=None)
+    claim = FolderClaim(cut)
+    assert main(["report", str(cut)]) == 2
+    assert "another run is writing" in capsys.readouterr().err
+    claim.release()
+    assert main(["report", str(cut)]) == 0
+    page = (cut / "report.html").read_text()
+    assert "The run was cut short" in page
+    assert ">dressed</span>" in page
+    assert "Not available" not in page
+    assert main(["evaluate", str(cut)]) == 0
+
+
+def test_a_page_can_be_drawn_again(tmp_path, make_record, capsys):
+    whole = make_record(tmp_path / "whole")
+    assert main(["report", str(whole)]) == 0
+    assert "The person is dressed." in (whole / "report.html").read_text()
+    run = json.loads((whole / "run.json").read_text())
+    (whole / "run.json").write_text(json.dumps(run | {"stages": [{"name": "A", "t_start": "then"}]}))
+    assert main(["report", str(whole)]) == 2
+    assert "run.json is damaged: could not convert" in capsys.readouterr().err
+    assert main(["report", str(tmp_path / "nowhere")]) == 2
+    assert "is not a folder with a run record" in capsys.readouterr().err
