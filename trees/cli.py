@@ -22,6 +22,9 @@ SELF_PARSED = {
     "trials": (".trials_command", "run many seeds and count successes, by stage and overall"),
     "evaluate": (".evaluate_command", "say from the record alone whether the person is dressed"),
 }
+# said by --help, which must not import what knows them; a test compares
+GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
+FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
 
 
@@ -41,8 +44,8 @@ def _seed(text: str) -> int:
 
 def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", default="bullet", choices=("bullet", "scripted", "ros1"), help="default: bullet")
-    parser.add_argument("--gown", metavar="NAME", help="which gown, or a gown file (default: the seed decides)")
-    parser.add_argument("--person", metavar="NAME", help="which person (default: the seed decides)")
+    parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
+    parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
     parser.add_argument("--stage", metavar="NAME",
                         help="this stage alone, or a span such as C-D, from a world prepared for it")
@@ -55,10 +58,12 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="run a task", description="Run a task and write its record.")
     run.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
-    run.add_argument("--seed", type=_seed, default=0, metavar="N")
+    run.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all that varies (default 0)")
     _world_options(run)
-    run.add_argument("--inject", action="append", default=[], metavar="FAULT@NODE:PHASE", help="may be repeated")
-    run.add_argument("--view", action="store_true", help="open a window")
+    run.add_argument("--inject", action="append", default=[], metavar="FAULT@NODE:PHASE",
+                     help=f"may be repeated; FAULT: {FAULTS}; NODE: a skill, see `check --tree`; PHASE: start, step or "
+                          "cancel")
+    run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
@@ -66,10 +71,11 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     check.add_argument("--tree", action="store_true", help="draw the tree instead: nodes, recoveries and data")
 
     inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
-    inject.add_argument("task", metavar="TASK")
-    inject.add_argument("--seed", type=_seed, default=0, metavar="N")
+    inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    inject.add_argument("--seed", type=_seed, default=0, metavar="N", help="of every run (default 0)")
     inject.add_argument("--world", default="scripted", choices=("bullet", "scripted", "ros1"), help="default: scripted")
-    inject.add_argument("--fault", action="append", default=[], metavar="FAULT", help="only this one; may be repeated")
+    inject.add_argument("--fault", action="append", default=[], metavar="FAULT",
+                        help=f"only this one; may be repeated; there are {FAULTS}")
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 

@@ -9,8 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from caretree.sim import faults, scene
 from caretree.sim.file_lock import lock_file
 from caretree.sim.recorder import Recorder
+from caretree.trees import cli
 from caretree.trees.cli import main
 
 
@@ -229,6 +231,12 @@ def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "caretree.learning.gap.cli", module)
     assert main(["gap", "run", "SET", "--out", "x"]) == 7
     assert given == [["run", "SET", "--out", "x"]]
+
+
+def test_help_names_what_there_is():
+    assert ", ".join(scene.GOWNS) == cli.GOWNS
+    assert ", ".join(scene.PERSONS) == cli.PERSONS
+    assert ", ".join(faults.FAULTS) == cli.FAULTS
 
 
 def test_help_is_instant_because_nothing_heavy_is_imported():
