@@ -28,7 +28,6 @@ FRICTION_SKIN = 0.6  # rubber pads on vinyl skin
 SMOOTHING = 0.3  # share of a new load reading, taken every 10 ms
 CATCH = 0.020  # an arm whose axis is this near to the grip is centred by the closing fingers [m]
 ARM_SLIP = 0.03  # an arm that has moved this far in the grip is lost [m]
-ARM_PARTS = ("upper_arm", "forearm", "hand")
 _SAMPLES = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4.0  # barycentric, (15, 3)
 
 

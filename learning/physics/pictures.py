@@ -30,7 +30,6 @@ from .weights import PACKAGED, load_weights
 CLASSES = 50  # of the t-SNE, as in the paper's figure
 CLIPS = 1200
 USUAL = "scores"  # backbone that is not named in the box plot
-LEARNED = ("ours_simulated", "ours", "paper", "supervised", "contrastive_regression", "residual_only")
 
 
 def scene_gowns() -> dict[str, GownSpec]:

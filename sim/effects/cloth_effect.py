@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from .effect import EffectError, Parameter
+from .effect import Parameter, check_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,11 +82,4 @@ class ClothEffect(abc.ABC):
         Raises:
             EffectError: a parameter is missing, unknown or outside its bounds.
         """
-        wanted = {p.name: p for p in self.parameters}
-        if set(values) != set(wanted):
-            raise EffectError(f"effect {self.name} has parameters {sorted(values)}, it takes {sorted(wanted)}")
-        for name, p in wanted.items():
-            if not p.lower <= values[name] <= p.upper:
-                raise EffectError(
-                    f"effect {self.name}: {name} = {values[name]:g} is outside {p.lower:g} to {p.upper:g}"
-                )
+        check_values(self.name, values, self.parameters)

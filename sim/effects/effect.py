@@ -134,12 +134,26 @@ class JointEffect(abc.ABC):
         Raises:
             EffectError: a parameter is missing, unknown or outside its physical bounds.
         """
-        needed = {p.name for p in (*self.linear, *self.shape)}
-        wanted = {p.name: p for p in (*self.linear, *self.shape, *self.optional)}
-        if not needed <= set(values) <= set(wanted):
-            raise EffectError(f"effect {self.name} has parameters {sorted(values)}, it takes {sorted(wanted)}")
-        for name, p in wanted.items():
-            if name in values and not p.lower <= values[name] <= p.upper:
-                raise EffectError(
-                    f"effect {self.name}: {name} = {values[name]:g} is outside {p.lower:g} to {p.upper:g}"
-                )
+        check_values(self.name, values, (*self.linear, *self.shape), self.optional)
+
+
+def check_values(name: str, values: dict[str, float], needed: tuple[Parameter, ...],
+                 optional: tuple[Parameter, ...] = ()) -> None:
+    """Refuse values an effect cannot have.
+
+    Args:
+        name: of the effect.
+        values: parameter -> value.
+        needed: parameters that must be there.
+        optional: parameters that may be there.
+
+    Raises:
+        EffectError: a parameter is missing, unknown or outside its physical bounds.
+    """
+    wanted = {p.name: p for p in (*needed, *optional)}
+    if not {p.name for p in needed} <= set(values) <= set(wanted):
+        raise EffectError(f"effect {name} has parameters {sorted(values)}, it takes {sorted(wanted)}")
+    for key, value in values.items():
+        p = wanted[key]
+        if not p.lower <= value <= p.upper:
+            raise EffectError(f"effect {name}: {key} = {value:g} is outside {p.lower:g} to {p.upper:g}")

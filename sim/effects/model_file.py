@@ -71,8 +71,7 @@ def load_model(path: Path | str) -> EffectModel:
     if system not in SYSTEMS:
         raise EffectError(f"{path}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
     try:
-        effects = tuple(_entry(e) for e in content.get("effects") or ())
-        recalibration = tuple(_entry(e) for e in content.get("recalibration") or ())
+        effects, recalibration = (_entries(content, key) for key in ("effects", "recalibration"))
         for e in effects:
             check_effect(system, e)
     except EffectError as error:
@@ -84,6 +83,13 @@ def load_model(path: Path | str) -> EffectModel:
 def save_model(path: Path, content: dict[str, Any]) -> None:
     """Write a model file from plain values (`system`, `effects`, `recalibration`, base)."""
     path.write_text(yaml.safe_dump({"format": FORMAT, **content}, sort_keys=False), encoding="utf-8")
+
+
+def _entries(content: dict[str, Any], key: str) -> tuple[EffectEntry, ...]:
+    found = content.get(key) or []
+    if not isinstance(found, list):
+        raise EffectError(f"`{key}` must be a list, it is {found!r}")
+    return tuple(_entry(e) for e in found)
 
 
 def _entry(e: Any) -> EffectEntry:

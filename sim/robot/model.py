@@ -23,7 +23,6 @@ BASE_MASS = 135.0
 # Baxter's torso frame in the base frame.  Its floor pedestal is replaced by a column on the Ridgeback's deck.
 # The shoulder (axis s1) is 0.40 above the torso frame, hence 1.25 above the floor.
 TORSO_IN_BASE = np.array((0.10, 0.0, 0.85))
-SHOULDER_ABOVE_TORSO = 0.118588 + 0.011038 + 0.27035
 COLUMN_SIZE = np.array((0.28, 0.34))
 
 # Robotiq 2F-85: stroke 85 mm, fingertips 22 mm wide, about 0.15 from the flange to the fingertips, 0.9 kg.
@@ -36,7 +35,6 @@ PALM_SIZE = np.array((0.07, 0.10, 0.09))
 PALM_MASS = 0.8
 FINGER_SIZE = np.array((0.022, 0.012, 0.06))
 FINGER_MASS = 0.05
-PAD_LENGTH = 0.038
 
 # Cameras, optical frames (x right, y down, z forward).
 HEAD_CAMERA_IN_HEAD = np.array((0.17, 0.0, 0.12))  # on top of the screen

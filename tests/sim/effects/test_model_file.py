@@ -27,6 +27,8 @@ def test_a_model_file_comes_back_as_written(tmp_path):
         ({"effects": [{"name": "offset", "parameters": {"value": "much"}}]}, "parameters must be numbers"),
         ({"effects": [{"name": "offset", "parameters": {}}]}, "it takes"),
         ({"effects": [{"name": "air_drag", "parameters": {"coefficient": 1.0}}]}, "does not exist for system axis"),
+        ({"effects": 5}, "`effects` must be a list, it is 5"),
+        ({"recalibration": "mass"}, "`recalibration` must be a list, it is 'mass'"),
         ({"effects": ["offset"]}, "needs name, target and parameters"),
     ],
 )
