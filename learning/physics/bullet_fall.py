@@ -30,7 +30,7 @@ class _Client:
     """A PyBullet connection that loads cloth with `options` changed; unlike BulletClient it does not print."""
 
     def __init__(self, options: Mapping[str, Any]) -> None:
-        import pybullet
+        from ...sim.bullet_client import pybullet
 
         self._pybullet, self._options = pybullet, options
         self._id = pybullet.connect(pybullet.DIRECT)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pybullet
 
+from ..bullet_client import pybullet
 from ..world import SIDES, Command, Side
 from . import model
 from .kinematics import Kinematics, default_kinematics
