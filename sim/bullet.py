@@ -37,7 +37,7 @@ from .recorder import FRAME_PERIOD, Recorder
 from .robot.body import RobotBody
 from .robot.kinematics import default_kinematics
 from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
-from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand
+from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 from .truth import TruthFrame, TruthStatic
 from .world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
 
@@ -163,16 +163,17 @@ class BulletWorld(World):
                          time=self.time.time, **posture)
 
     def prepare_stage(self, stage: str) -> None:
-        """Start at a later stage, the earlier ones done by hand: B (hands hold the gown) or C (it lies on the bed).
+        """Start at a later stage, the earlier ones done by hand.
 
-        Of a span of stages ("C-D"), the first counts; before A there is nothing to do.
+        B: the robot's hands hold the gown; C: it lies on the bed; D: both sleeves are on.  Of a span of stages
+        ("C-D"), the first counts; before A there is nothing to do.
 
         Raises:
             CaretreeError: another stage, or the run has begun.
         """
         first = stage.partition("-")[0]
-        if first not in ("A", "B", "C"):
-            raise CaretreeError(f"stage {stage!r} cannot be started on its own in the bullet world; A, B and C can")
+        if first not in ("A", "B", "C", "D"):
+            raise CaretreeError(f"stage {stage!r} cannot be started on its own; A, B, C and D can")
         if self._steps:
             raise CaretreeError("a stage can only be prepared before the run begins")
         if first == "A":
@@ -185,8 +186,12 @@ class BulletWorld(World):
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
             hold_in_hands(self._cloth, self._grips, self._hands, self._client.stepSimulation, TIME_STEP)
         else:
-            lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
-            self._robot = self._stand(self.room.waypoints["bed_right"])
+            if first == "C":
+                lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
+            else:
+                put_on_by_hand(self._cloth, self._person, self._handles, self._client.stepSimulation, TIME_STEP,
+                               self.scene.seed)
+            self._robot = self._stand(self.room.waypoints["bed_right" if first == "C" else "bed_left"])
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._vertices = self._cloth.vertices()
         if self._patch is not None:

@@ -151,6 +151,19 @@ class Person:
             self.body, joints, self.client.POSITION_CONTROL, targetPositions=self._stuck.tolist(),
             positionGains=[0.2] * 8, velocityGains=[1.0] * 8, forces=[units.force(t) for t in torques])
 
+    def bend_arm(self, side: Side, angles: tuple[float, float, float, float]) -> None:
+        """Put an arm somewhere else at once, where its friction then holds it; only before a run.
+
+        Args:
+            side: which arm.
+            angles: in the order of `ARM_AXES` [rad].
+        """
+        for j, angle in zip(self.joints[side], angles, strict=True):
+            self.client.resetJointState(self.body, j, angle)
+        first = 4 * SIDES.index(side)
+        self._stuck[first:first + 4] = angles
+        self.resist()
+
     def swing(self, speed: float) -> None:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
         self._swing = speed

@@ -7,8 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from .cloth import Cloth
+from .gown import GownMesh
 from .grip import Grip
 from .handle import Handle
+from .person import Person
+from .world import SIDES
 
 LAID_COLLAR_Y = 0.12  # where the neckline comes to lie, just beyond the fingertips [m]
 LAID_CENTRE_X = -0.03  # [m]
@@ -21,6 +24,10 @@ _FORCE = 30.0  # of the fingers [N]
 _ARM = np.array((1.67, -0.10, -2.02, 2.60, 0.40, 0.18, -0.30))
 HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
 HOLDING_AT = (2.7, -0.9, np.pi / 2)  # of the base, back from the rail [m, m, rad]
+RAISED = (0.85, 0.58, -1.3, 0.25)  # joints of an arm that was lifted, dressed and let go of [rad]
+_OVER_LEGS = 0.22  # height above the mattress at which a gown hung over raised arms turns to lie on the legs [m]
+_DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is drawn to: from here ... to here,
+# from the shoulder joint, x outwards [m]
 
 
 def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
@@ -66,6 +73,75 @@ def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], t
     for _ in range(round(0.8 / time_step)):
         step()
 
+
+def put_on_by_hand(cloth: Cloth, person: Person, handles: list[Handle], step: Callable[[], None],
+                   time_step: float, seed: int) -> None:
+    """Raise the person's arms, hang the sleeves over the hands and draw both up by their straps, some less than others.
+
+    The arms stay up and spread, as after stage C; how far up them the sleeves come to rest once the straps are let go
+    of is up to the physics.
+
+    Args:
+        cloth: the gown, held by nothing.
+        person: the manikin.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+        seed: of how far each strap is drawn.
+    """
+    mesh, drawn = cloth.mesh, np.random.default_rng([seed, 4]).uniform(size=2)
+    for side in SIDES:
+        person.bend_arm(side, RAISED)
+    arms = person.arms()
+    cloth.place(_over_hands(mesh, arms, person.bed_top + _OVER_LEGS))
+    vertices = cloth.vertices()
+    pins, starts, ends = [], [], []
+    for handle, side, arm, share in zip(handles, SIDES, arms, drawn, strict=True):
+        loop = mesh.vertices[mesh.loops[f"armhole_{side}"]]
+        top = np.array((loop[:, 0].mean(), 0.0, loop[:, 2].max()))
+        near = np.argsort(np.linalg.norm(mesh.vertices - top, axis=1))[:4]
+        pose = np.eye(4)
+        pose[:3, 3] = vertices[near].mean(axis=0)
+        handle.reset(pose)
+        pins.append(cloth.pin(near, handle.body, handle.link))
+        starts.append(pose[:3, 3].copy())
+        end = _DRAWN[0] + share * (_DRAWN[1] - _DRAWN[0])
+        ends.append(arm[0] + end * (np.sign(arm[0, 0] - person.bed_xy[0]), 1, 1))
+    count = round(np.linalg.norm(ends[0] - starts[0]) / _SPEED / time_step)
+    for k in range(count + round(0.5 / time_step)):
+        for handle, start, end in zip(handles, starts, ends, strict=True):
+            pose = np.eye(4)
+            pose[:3, 3] = start + (end - start) * min(1.0, (k + 1) / count)
+            handle.follow(pose)
+        if k % 5 == 0:
+            person.resist()
+        step()
+    for group in pins:
+        cloth.unpin(group)
+    for k in range(round(1.0 / time_step)):
+        if k % 5 == 0:
+            person.resist()
+        step()
+
+
+def _over_hands(mesh: GownMesh, arms: np.ndarray, over_legs: float) -> np.ndarray:
+    """(V, 3) the gown hung upright before the raised hands, which point into its armholes, its lower part lying."""
+    holes = [mesh.vertices[mesh.loops[f"armhole_{side}"]].mean(axis=0) for side in SIDES]
+    ways = arms[:, 3] - arms[:, 1]
+    out = ways.mean(axis=0) * (0, 1, 1)
+    out /= np.linalg.norm(out)  # where the gown's outside faces
+    down = np.array((0.0, out[2], -out[1]))
+    spot = np.mean([arm[2] + way * (abs(hole[0]) - abs(arm[2, 0] - arms[:, 2, 0].mean())) / abs(way[0])
+                    for arm, way, hole in zip(arms, ways, holes, strict=True)], axis=0)
+    top = spot - down * -holes[0][2]
+    straight = (top[2] - over_legs) / -down[2]  # length of the part that hangs
+    depth = -mesh.vertices[:, 2]
+    placed = top + np.minimum(depth, straight)[:, None] * down + np.outer(np.maximum(depth - straight, 0), (0, 1, 0))
+    placed = placed + np.outer(mesh.vertices[:, 0], (1, 0, 0)) + np.outer(mesh.vertices[:, 1], out)
+    for way in ways:  # sleeves lean along the arms
+        mine = np.sign(mesh.vertices[:, 0]) == np.sign(way[0])
+        placed[mine, 0] += mesh.vertices[mine, 1] * way[0] / (way @ out)
+    return placed
 
 
 def hold_in_hands(cloth: Cloth, grips: list[Grip], hands: np.ndarray, step: Callable[[], None],

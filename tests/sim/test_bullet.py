@@ -7,8 +7,9 @@ import pytest
 from caretree.sim.bullet import BulletWorld
 from caretree.sim.cloth import GRAVITY
 from caretree.sim.errors import CaretreeError
+from caretree.sim.evaluate.crossings import sleeve
 from caretree.sim.person import PERSON_PARTS
-from caretree.sim.world import CAMERAS, BaseVelocity, GripperOpening, SensorLost
+from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost
 
 
 @pytest.fixture(scope="module")
@@ -107,5 +108,20 @@ def test_stage_b_begins_with_the_gown_in_both_hands():
     for n, corner in enumerate((right, left)):  # the outside faces the robot: its left hand holds the right corner
         assert np.linalg.norm(vertices[corner] - seen.pose_hand_in_map[n, :3, 3]) < 0.03
     world.close()
-    with pytest.raises(CaretreeError, match="A, B and C"):
-        BulletWorld(seed=2).prepare_stage("D")
+    with pytest.raises(CaretreeError, match="A, B, C and D"):
+        BulletWorld(seed=2).prepare_stage("E")
+
+
+def test_stage_d_begins_with_both_sleeves_on_and_not_both_up():
+    reached = []
+    for seed in (0, 1):
+        world = BulletWorld(seed=seed)
+        world.prepare_stage("D")
+        frame, loops = world.truth_frame(), world.scene.mesh.loops
+        for n, side in enumerate(SIDES):
+            armhole, cuff = (frame.vertices[None, loops[f"{part}_{side}"]] for part in ("armhole", "cuff"))
+            worn = sleeve(armhole, cuff, frame.arms[None, n])
+            assert worn.on.all()
+            reached.append(worn.armhole.upper_arm[0])
+        world.close()
+    assert min(reached) < 0.7 < max(reached)
