@@ -40,6 +40,7 @@ def test_the_four_steps_one_after_the_other_say_the_same(axis_set, tmp_path, cap
         ["fetch", "moon", "--out", "x"],
         ["bench", "--seeds", "a"],
         ["bench", "--system", "boat"],
+        ["bench", "--system", "axis", "--follow-up"],
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2(argv, capsys):

@@ -1,8 +1,10 @@
 import json
+from concurrent.futures import Future
 
 import numpy as np
 import pytest
 import yaml
+from caretree.learning.gap.bench import run
 from caretree.learning.gap.bench.ablations import compare
 from caretree.learning.gap.bench.fall_case import draw_fall, drop_again, write_fall_case
 from caretree.learning.gap.bench.fall_observer import observe
@@ -12,6 +14,24 @@ def test_a_seed_always_hides_the_same(tmp_path):
     one, two = (write_fall_case(293, tmp_path).as_dict() for _ in range(2))
     assert one == two
     assert one["apart"] > 0.0
+
+
+class Here:
+    """The process that knows what is hidden, without a process."""
+
+    def submit(self, do, *given):
+        done = Future()
+        done.set_result(do(*given))
+        return done
+
+
+def test_a_drag_with_the_cube_passes_for_wind_until_the_drops_asked_for_are_made(tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "_apart", Here)
+    first, second = (json.loads(f.read_text()) for f in run.solve("fall", 412, tmp_path, again=True))
+    assert first["hidden"] == [["cubic_drag", "body"]]
+    assert first["verdict"] == "effects"
+    assert second["verdict"] == "unknown"
+    assert run.solve("fall", 412, tmp_path, again=True)[1].read_text() == json.dumps(second)
 
 
 def test_drops_asked_for_are_added_to_the_same_recordings(tmp_path):
