@@ -56,8 +56,12 @@ def _riccati(t: np.ndarray, a: float, b: float, c: float) -> tuple[np.ndarray, n
     v = 2.0 * a * tanh / (root - b * tanh)
     # log of e^(bt/2) (cosh(rt/2) - b/r sinh(rt/2)), written so that nothing overflows or cancels
     rate = 4.0 * a * c / (root - b)  # root + b
-    log = 0.5 * rate * t + np.log1p(0.5 * rate / root * np.expm1(-root * t))
-    return (log / c).real, v.real
+    inside = 0.5 * rate / root * np.expm1(-root * t)
+    if (
+        np.isrealobj(inside) and inside.min() <= -1.0
+    ):  # a drag of the wrong sign, as controls have, speeds it up for ever
+        inside = inside + 0j
+    return ((0.5 * rate * t + np.log1p(inside)) / c).real, v.real
 
 
 def _root(a: float, b: float, c: float) -> float | complex:

@@ -51,7 +51,8 @@ def follow_up(found: DropSearch, named: DropFit, rivals: Sequence[DropFit]) -> t
         rivals: sets that fit as well.
     """
     sd = float(np.sqrt(named.rss / found.worth))
-    wanted = kinds(found.drops)
+    # a drop of a body that would float under one of the sets is no drop
+    wanted = [k for k in kinds(found.drops) if all(_sinks(f, k[1]) for f in (named, *rivals))]
     # all sampled alike and no longer than need be, so that one factor whitens them all
     ends = [_lands(named, h, f) for h, f in wanted]
     times = [np.linspace(0.0, max(ends), SAMPLES)[: max(int(SAMPLES * e / max(ends)), 8)] for e in ends]
@@ -88,6 +89,11 @@ def follow_up(found: DropSearch, named: DropFit, rivals: Sequence[DropFit]) -> t
         )
         for k in best
     )
+
+
+def _sinks(fit: DropFit, factor: float) -> bool:
+    """Whether the body `factor` times as heavy is still falling at the end."""
+    return bool(table_of(fit.values, LONGEST, factor)[0][-1, 2] > 0.0)
 
 
 def _lands(fit: DropFit, top: float, factor: float) -> float:

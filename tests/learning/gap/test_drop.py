@@ -40,6 +40,10 @@ def test_closed_form_is_what_integration_gives(linear, quadratic, wind):
     assert np.abs(table[: len(slow), 1:] - slow).max() < 2e-4
 
 
+def test_a_drag_of_the_wrong_sign_still_gives_numbers():
+    assert np.isfinite(fallen(6.2, -0.4, -0.0024, -1.8, G)).all()
+
+
 def test_height_before_the_release_is_the_releases():
     table = fallen(1.0, 0.0, 0.0, 0.0, G)
     h, v = height(np.array([0.0, 0.1, 0.305]), table, 5.0, 0.1)

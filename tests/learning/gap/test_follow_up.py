@@ -29,3 +29,9 @@ def test_a_wrong_scale_and_lift_are_one_until_the_mass_differs():
 def test_a_body_is_not_dropped_from_the_clouds():
     found = searched(9.81 * 0.95, top=90.0)
     assert max(f.height_m for f in follow_up(found, found.best, [])) <= HIGHEST
+
+
+def test_a_body_that_might_float_is_not_made_lighter():
+    found = searched(9.81 * 0.45)  # lift of half its weight, or a scale that is wrong by as much
+    others = [c.fit for c in rivals(found, found.best)]
+    assert min(f.mass_factor for f in follow_up(found, found.best, others)) >= 1.0
