@@ -17,11 +17,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pybullet
-from pybullet_utils.bullet_client import BulletClient
 
 from . import units
 from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
+from .bullet_client import direct_client
 from .camera import CAMERA_VIEWS, camera_intrinsics
 from .cloth import GRAVITY, Cloth
 from .effects.carriers import ClothPatch
@@ -106,9 +105,9 @@ class BulletWorld(World):
         self._still_since = 0.0
         self._asleep = False
         self._moving_person: list[float] = []
-        self._client: Any = BulletClient(pybullet.DIRECT)
+        self._client: Any = direct_client()
         self._build()
-        self._robot_client: Any = BulletClient(pybullet.DIRECT)
+        self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
         self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
