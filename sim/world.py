@@ -88,13 +88,27 @@ class JointTrajectory:
 
     Attributes:
         joints: (n,) names.
-        times: (k,) from the start of the motion, increasing, first is 0 [s].
+        times: (k,) from the start of the motion, k >= 2, increasing, first is 0 [s].
         positions: (k, n) [rad].
     """
 
     joints: tuple[str, ...]
     times: np.ndarray
     positions: np.ndarray
+
+    def __post_init__(self) -> None:
+        """Refuse what no robot can do."""
+        known = {"head_pan", *(f"{side}_{joint}" for side in SIDES for joint in ARM_JOINTS)}
+        if not self.joints or len(set(self.joints)) < len(self.joints) or not set(self.joints) <= known:
+            raise WorldError(f"a trajectory moves {', '.join(self.joints) or 'nothing'}, but different joints out of "
+                             f"head_pan and left_ or right_ with {', '.join(ARM_JOINTS)} are asked for")
+        count = len(np.atleast_1d(self.times))
+        _check_numbers("times of a trajectory", self.times, (count,))
+        _check_numbers("positions of a trajectory", self.positions, (count, len(self.joints)))
+        if count < 2 or self.times[0] != 0.0 or not (np.diff(self.times) > 0.0).all():
+            shown = np.round(self.times[:4], 3).tolist()
+            raise WorldError(f"times of a trajectory are {shown}, but two and more that begin at 0 and grow are asked "
+                             "for")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +122,12 @@ class HandTwist:
     twist_in_map: np.ndarray
     duration: float = 0.2
 
+    def __post_init__(self) -> None:
+        """Refuse what no robot can do."""
+        _check_side(self.side)
+        _check_numbers("a twist", self.twist_in_map, (6,))
+        _check_duration(self.duration)
+
 
 @dataclass(frozen=True, kw_only=True)
 class BaseVelocity:
@@ -115,6 +135,11 @@ class BaseVelocity:
 
     velocity: np.ndarray
     duration: float = 0.2
+
+    def __post_init__(self) -> None:
+        """Refuse what no robot can do."""
+        _check_numbers("the base's velocity", self.velocity, (3,))
+        _check_duration(self.duration)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,6 +149,30 @@ class GripperOpening:
     side: Side
     opening: float
     force_limit: float = 30.0
+
+    def __post_init__(self) -> None:
+        """Refuse what no robot can do."""
+        _check_side(self.side)
+        for what, value in (("opening [m]", self.opening), ("force limit [N]", self.force_limit)):
+            if not 0.0 <= value < np.inf:
+                raise WorldError(f"the {what} of the {self.side} gripper is {value}, but 0 or more is asked for")
+
+
+def _check_side(side: str) -> None:
+    if side not in SIDES:
+        raise WorldError(f"side is {side!r}, but {' or '.join(SIDES)} is asked for")
+
+
+def _check_numbers(what: str, values: np.ndarray, shape: tuple[int, ...]) -> None:
+    if np.shape(values) != shape:
+        raise WorldError(f"{what} has shape {np.shape(values)}, but {shape} is asked for")
+    if not np.isfinite(values).all():
+        raise WorldError(f"{what} holds a number that is not finite")
+
+
+def _check_duration(duration: float) -> None:
+    if not 0.0 <= duration < np.inf:
+        raise WorldError(f"duration is {duration} s, but 0 or more is asked for")
 
 
 Command = JointTrajectory | HandTwist | BaseVelocity | GripperOpening

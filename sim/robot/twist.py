@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
-from ..world import SIDES, HandTwist, Side, WorldError
+from ..world import SIDES, HandTwist, Side
 from . import model
 from .kinematics import Kinematics, planar_pose
 
@@ -37,14 +37,8 @@ class TwistTracker:
         self._time = 0.0
 
     def start(self, command: HandTwist, time: float) -> HandTwist:
-        """Take a new twist; returns it clipped to the hand's speed limits.
-
-        Raises:
-            WorldError: not six finite numbers.
-        """
+        """Take a new twist; returns it clipped to the hand's speed limits."""
         wanted = np.array(command.twist_in_map, float)
-        if wanted.shape != (6,) or not np.isfinite(wanted).all():
-            raise WorldError(f"a hand twist is six finite numbers, got {command.twist_in_map!r}")
         for part, limit in zip((slice(0, 3), slice(3, 6)), model.HAND_VELOCITY, strict=True):
             wanted[part] *= min(1.0, limit / max(float(np.linalg.norm(wanted[part])), 1e-9))
         if self._pose is None:
