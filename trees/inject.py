@@ -15,6 +15,7 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 
 from ..sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld
+from ..sim.record import RunResult
 from ..sim.world import SIDES, World
 from ..skills.context import Perception, Phase
 from ..skills.reasons import Reason, SkillFailure
@@ -91,7 +92,7 @@ class Campaign:
         order: list[str] = []
         run.context.observers.append(lambda node, phase: self._reached.add((node, phase)))
         run.context.observers.append(lambda node, phase: order.append(node) if phase == "step" else None)
-        self.nominal = run.run()
+        self.nominal = _finished(run)
         run.world.close()
         moving = [node for node in order if node in self._movers]
         # to see the safe branch at work, the run is stopped where it is deepest in the task
@@ -121,7 +122,7 @@ class Campaign:
         world = run.world
         assert isinstance(world, FaultyWorld)
         try:
-            result = run.run()
+            result = _finished(run)
             if not world.begun:
                 return Row(node=node, phase=phase, fault=fault, outcome="not_reached")
             return Row(node=node, phase=phase, fault=fault, outcome=result.outcome, reason=result.reason,
@@ -138,6 +139,18 @@ class Campaign:
     def _prepare(self, faults: tuple[FaultSpec, ...]) -> Run:
         inner, perception = self._make_world()
         return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, perception=perception)
+
+
+def _finished(run: Run) -> RunResult:
+    """Run to the end; a run that the operator ended says nothing of the fault.
+
+    Raises:
+        KeyboardInterrupt: it was.
+    """
+    result = run.run()
+    if run.interrupted:
+        raise KeyboardInterrupt
+    return result
 
 
 def _triggers(root: Behaviour, stepped: set[str]) -> dict[str, tuple[str, Reason]]:

@@ -37,6 +37,7 @@ def replay(directory: Path) -> Replay:
 
     Raises:
         CaretreeError: the record is damaged or unfinished, or its task or world is not there.
+        KeyboardInterrupt: the operator ended the second run.
     """
     record = read_finished_run(directory)
     try:
@@ -56,6 +57,8 @@ def replay(directory: Path) -> Replay:
                   params={"stage": stage} if stage else None)
         prepare_stage(inner, stage)
         run.run()
+        if run.interrupted:
+            raise KeyboardInterrupt
     finally:
         inner.close()
     difference = first_difference(before, run.trace.events)

@@ -89,6 +89,8 @@ class Run:
         context: shared by the skills.
         root: the tree.
         trace: what happened.
+        interrupted: somebody pressed Ctrl-C meanwhile; the run then ended in the safe stop, and who started it may
+            want to end too.
     """
 
     def __init__(self, task: Task, world: World, *, seed: int = 0, rate_hz: float = 15.0,
@@ -112,6 +114,7 @@ class Run:
         self._tell = on_progress or (lambda progress: None)
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
+        self.interrupted = False
         self._timing = {"tree": 0.0, "world": 0.0}
         if isinstance(world, FaultyWorld):
             self._check_fault_nodes(world)
@@ -134,6 +137,7 @@ class Run:
         try:
             failure = self._tick_to_end()
         except KeyboardInterrupt:
+            self.interrupted = True
             failure = Failure(Reason.INTERRUPTED, "", "operator")
         except (OSError, CaretreeError) as error:
             if not isinstance(error, WorldError):
@@ -275,6 +279,7 @@ class Run:
                 node.made_safe = self._tick_safe(node.safe)
                 node.entered = not node.made_safe
             except KeyboardInterrupt:  # the operator insists: leave the rest to the last resort
+                self.interrupted = True
                 return
             except Exception as error:
                 self.context.report(error)
@@ -329,6 +334,7 @@ class Run:
         try:
             return action()
         except (Exception, KeyboardInterrupt) as error:
+            self.interrupted |= isinstance(error, KeyboardInterrupt)
             self.context.report(error)
             return default
 

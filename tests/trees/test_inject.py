@@ -159,3 +159,24 @@ def test_a_run_on_a_world_with_faults_repeats_exactly():
                      FaultyWorld(ScriptedWorld(), [parse_fault("lost_command@hand up:start")])).run().trace_hash
               for _ in range(2)}
     assert len(hashes) == 1
+
+
+def test_an_operator_who_ends_a_run_ends_the_campaign():
+    class Pressed(Look):
+        """Ctrl-C in the second run, the first with a fault."""
+
+        def steps(self):
+            if self.world.observe().time > 0.3 and len(begun) > 1:
+                raise KeyboardInterrupt
+            begun.append(1)
+            yield from self.wait(0.5)
+
+    begun = []
+
+    def build(context):
+        return FailSafe("safe", sequence("s", Pressed("a", context, outcomes=[True]),
+                                         Pressed("b", context, outcomes=[True])), Release("let go", context))
+
+    rows = campaign(task_of(build), faults=("occlusion",)).rows()
+    with pytest.raises(KeyboardInterrupt):
+        list(rows)

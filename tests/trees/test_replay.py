@@ -3,6 +3,7 @@ import json
 import pytest
 from caretree.trees.cli import main
 from caretree.trees.replay import first_difference, replay
+from caretree.trees.tasks.wave import Hold
 
 
 @pytest.fixture
@@ -90,3 +91,13 @@ def test_a_damaged_record_is_one_sentence(record, damage, said, capsys):
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_an_operator_who_ends_the_second_run_is_no_difference(record, monkeypatch, capsys):
+    def press(self):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Hold, "steps", press)
+    assert main(["replay", str(record)]) == 130
+    captured = capsys.readouterr()
+    assert (captured.out, captured.err) == ("", "caretree: interrupted\n")

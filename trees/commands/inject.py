@@ -52,6 +52,7 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
     rows = [row for row in read_rows(path) if row.key in set(wanted)]
+    print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
     try:
         with path.open("a", encoding="utf-8") as file:
             done = {row.key for row in rows}
