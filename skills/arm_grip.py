@@ -28,14 +28,15 @@ def over_arm(posture: ArmPosture, place: float, lift: float) -> np.ndarray:
     return hand_pose(path.point(place) + lift * UP, -UP, across)
 
 
-def top_down_reachable(skill: Skill, side: Side, pose: np.ndarray, also_up: Sequence[float] = (0.0,)) -> np.ndarray:
+def top_down_reachable(skill: Skill, side: Side, pose: np.ndarray,
+                       then: Sequence[np.ndarray] = (np.zeros(3),)) -> np.ndarray:
     """`pose`, or the same turned by half a turn about the approach, whichever the arm takes more easily.
 
     Args:
         skill: that asks.
         side: of the robot.
         pose: (4, 4); the two fingers are alike, so the turned one is as good.
-        also_up: heights above it that must be within reach with the same turn [m].
+        then: ways (3,) from there to places that must be within reach with the same turn [m].
 
     Raises:
         Unreachable: neither can be reached.
@@ -48,9 +49,9 @@ def top_down_reachable(skill: Skill, side: Side, pose: np.ndarray, also_up: Sequ
     for turned in (pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))):
         try:
             room, q = np.inf, seen.arm_positions[n]
-            for up in also_up:
+            for way in then:
                 there = turned.copy()
-                there[2, 3] += up
+                there[:3, 3] += way
                 q = solve_ik(kinematics, side, there, seen.pose_base_in_map, q, accept=accept)
                 room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
         except Unreachable as stop:

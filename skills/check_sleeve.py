@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
-from ..perception.estimates import WornSleeve
+from ..perception.estimates import Cover, WornSleeve
 from ..sim.world import Side
 from .context import Context
 from .ports import Input
@@ -19,6 +19,9 @@ from .tracking import watch_arm
 # The cuff of a sleeve with the arm inside shows at least so far down the upper arm.  In recorded runs on seeds 0-8 it
 # showed at 0.40 to 0.66 where the arm was inside, at 0.01, 0.05 and 0.31 where the sleeve had missed it.
 CUFF_AT = 0.34
+# A sleeve drawn up a spread arm shows its cuff at 0.29 when it is over the shoulder.  There the arm is hidden from the
+# shoulder down to the cuff; beside a sleeve that missed it, it shows.
+OVER_SHOULDER, HIDDEN = 0.15, 0.7
 
 
 class CheckSleeve(Skill):
@@ -45,13 +48,26 @@ class CheckSleeve(Skill):
             return
         assert isinstance(seen, WornSleeve)
         self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}")
-        if seen.cuff_at < CUFF_AT:
+        if seen.cuff_at < CUFF_AT and not self._hidden(arm, seen.cuff_at):
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the cuff is at {seen.cuff_at:.2f} of the upper arm")
         away = seen.cuff_at * float(np.linalg.norm(arm[1] - arm[0]))
         if away > self.upto:
             raise SkillFailure(Reason.SLEEVE_LOW, f"the cuff is {away * 100:.0f} cm down the arm, "
                                                   f"{self.upto * 100:.0f} cm at most are asked for")
         yield
+
+    def _hidden(self, arm: np.ndarray, cuff_at: float) -> bool:
+        """Whether something covers the arm (4, 3) from the shoulder down to the cuff."""
+        if cuff_at < OVER_SHOULDER:
+            return False
+        axis = arm[0] + np.outer(np.linspace(0.05, cuff_at - 0.05, 8), arm[1] - arm[0])
+        try:
+            cover = self.context.perceive("hand_cover", self.world.look("head"), points_in_map=axis)
+        except PerceptionFailure:
+            return False
+        assert isinstance(cover, Cover)
+        self.note(f"{cover.share:.0%} of the {self.side} arm above the cuff are hidden")
+        return cover.share > HIDDEN
 
     @classmethod
     def example(cls, context: Context) -> Skill:

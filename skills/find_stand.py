@@ -16,7 +16,7 @@ from .arm_path import UP
 from .bedside import HEADWARD, outwards, stance
 from .context import Context
 from .hands import collision_checker
-from .lift_arm import ABOVE, RISE
+from .lift_arm import ABOVE, PITCH, SPREAD, lifted
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .motion.path import is_free
@@ -69,7 +69,10 @@ class FindStand(Skill):
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""
         arms = model.READY.copy()
         bed = self.world.room.bed
-        lifts = [over_arm(posture, 1.0, lift=lift) for lift in (ABOVE, RISE)]
+        shoulder, elbow = posture.points_in_map[:2]
+        end = over_arm(posture, 1.0, lift=0.0)
+        end[:3, 3] = shoulder + np.linalg.norm(elbow - shoulder) * lifted(posture, self.side, 1.0, PITCH, SPREAD)
+        lifts = [over_arm(posture, 1.0, lift=ABOVE), end]
         views = strap_views(sleeve, self.side, self.pulling, bed)
         approach = -np.cos(_TILT) * outwards(self.side) - np.sin(_TILT) * UP
         strap = sleeve.position_in_map + TO_STRAP - _STRAP_ABOVE * approach

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 
+import numpy as np
+
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .arm_path import ArmPath
 from .context import Context
-from .hands import hand_now, look_towards, move_hands, open_gripper
+from .hands import hand_now, move_hands, open_gripper
 from .holding import holding
 from .motion.errors import MotionError
 from .pinch import back_off, pinch
@@ -19,11 +21,10 @@ from .scripted_person import offer_person
 from .skill import Skill
 from .strap_approach import way_in
 from .strap_grip import StrapGrip, strap_grip
-from .strap_view import find_sleeve, strap_views
+from .strap_view import RESTS, look_for_sleeve, seen_well, strap_views
 from .tracking import Hold, careful, watch_arm
 
-ELBOW, FINGERTIP = 1, 3  # joints of the arm
-WELL = 0.4  # confidence of a sleeve whose strap shows; where it is hidden it has 0.2
+AIMED = 0.05  # a strap that far from the middle of the picture is looked at again [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
 
 
@@ -48,15 +49,15 @@ class GraspSleeve(Skill):
         yield from holding(self, self.hold, self._grasp())
 
     def _grasp(self) -> Iterator[None]:
-        """Look from afar, look from close by, reach in, pinch."""
+        """Look, reach in, pinch."""
         self.note(f"looks for the {self.side} sleeve")
-        far = yield from self._find()
-        strap = yield from self._look_closely(far)
+        strap = yield from self._look()
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
         way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
         yield from move_hands(self, {self.hand: way.before}, speed=careful(self, 0.3), way="either")
         yield from open_gripper(self, self.hand, OPENING)
+        seen_well(self).pop(self.side, None)
         yield from move_hands(self, {self.hand: way.inside}, speed=0.12, way="either")
         pose = hand_now(self, self.hand)
         try:
@@ -68,31 +69,32 @@ class GraspSleeve(Skill):
             raise
         self.grip = strap_grip(self.side, self.hand, strap, pose)
 
-    def _find(self) -> Generator[None, None, SleeveOpening]:
-        """As the head stands, then turned to the hand and to the elbow, until the sleeve shows well; the best of these.
-
-        The robot's own arms hide it from some of these sides.
-        """
-        best: SleeveOpening | None = None
-        lost: PerceptionFailure | None = None
-        for place in (ELBOW,) if self.worn else (None, FINGERTIP, ELBOW):
-            if place is not None:
-                yield from look_towards(self, watch_arm(self, self.side, hold=self.hold).points_in_map[place])
-            try:
-                seen = find_sleeve(self, self.side, watch_arm(self, self.side, hold=self.hold).points_in_map)
-            except PerceptionFailure as stop:
-                lost = lost or stop
-                continue
-            best = seen if best is None or seen.confidence > best.confidence else best
-            if best.confidence > WELL:
-                break
-        if best is None:
-            assert lost is not None
-            raise lost
-        return best
+    def _look(self) -> Generator[None, None, SleeveOpening]:
+        """From afar, then closely; once more where it turns out not to lie where it was seen well before."""
+        far = yield from look_for_sleeve(self, self.side, self.hand, hold=self.hold, worn=self.worn)
+        try:
+            return (yield from self._look_closely(far))
+        except (PerceptionFailure, MotionError):
+            if seen_well(self).pop(self.side, None) is None:
+                raise
+        far = yield from look_for_sleeve(self, self.side, self.hand, hold=self.hold, worn=self.worn)
+        return (yield from self._look_closely(far))
 
     def _look_closely(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
-        """Bring the hand's camera in front of the strap; returns the strap as it is seen from there."""
+        """Bring the hand's camera in front of the strap; returns the strap as it is seen from there.
+
+        A strap that is not where it was aimed at is looked at again, in the middle of the picture.
+        """
+        strap = yield from self._strap_from(far)
+        if np.linalg.norm(strap.position_in_map - far.position_in_map) < AIMED:
+            return strap
+        try:
+            return (yield from self._strap_from(strap))
+        except (PerceptionFailure, MotionError):
+            return strap
+
+    def _strap_from(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
+        """The strap as the hand's camera sees it from the first of the views of `far` in which it shows."""
         problem: PerceptionFailure | MotionError | None = None
         for pose in strap_views(far, self.side, self.hand, self.world.room.bed):
             try:
@@ -100,7 +102,7 @@ class GraspSleeve(Skill):
             except MotionError as stop:
                 problem = problem or stop
                 continue
-            yield from self.wait(0.15)  # the camera comes to rest
+            yield from self.wait(RESTS)
             try:
                 return self.context.perceive("sleeve_strap", self.world.look(f"{self.hand}_hand"), side=self.side,
                                              near_in_map=far.position_in_map)

@@ -1,4 +1,4 @@
-"""Lift one of the person's arms, slowly and square to it, so that a sleeve can be pulled over it."""
+"""Lift one of the person's arms, slowly and square to it, and spread it, so that a sleeve can be pulled over it."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture
 from ..sim.world import SIDES, HandTwist, Side
 from .arc import Arc
 from .arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
 from .arm_path import UP, ArmPath
+from .bedside import HEADWARD, outwards
 from .context import Context
 from .hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
 from .ports import Input, Output
@@ -26,18 +28,23 @@ _GAIN = 1.5  # of the correction towards the arc [1/s]
 _LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
 _TURN = 0.75  # share of the arm's turn that the hand makes with it
 _HEAVY, _HEAVIEST = 26.0, 29.5  # load from which the lift slows down, and at which it stands still [N]
-RISE = 0.25  # of the hand above the arm in a whole lift [m]
+PITCH = float(np.deg2rad(35.0))  # of the whole arm in the end
+# How far the upper arm points away from the body in the end, along the bed.  An armhole stops where arm and trunk part:
+# pulled up arms that were spread by 0.5, 0.6, 0.75, 0.9 rad and let go of, it came to rest at 0.68, 0.75, 0.81, 0.82 of
+# the upper arm (four gowns and persons, both sides).
+SPREAD = 0.85
 ENOUGH = 0.8  # share of the lift that will do when time is up
 
 
 class LiftArm(Skill):
-    """Takes the upper arm just above the elbow from above and swings it up about the shoulder.
+    """Takes the upper arm just above the elbow from above and swings it up and outwards about the shoulder.
 
     The hand moves on an arc: a straight line would pull the arm out of its joint.  Elbow and wrist of a person who
     cannot move keep forearm and hand nearly in line.
 
     Inputs: `side` of the person; `hand` that lifts; `pitch`, how far the whole arm points up in the end [rad];
-    `duration` of the lift of an arm that is not heavy [s]; `place` of the grip along the arm (0 shoulder, 1 elbow).
+    `spread`, how far from the body, if it does not already [rad]; `duration` of the lift of an arm that is not heavy
+    [s]; `place` of the grip along the arm (0 shoulder, 1 elbow).
     Output: `hold`, which hand holds the arm where.
 
     When it fails after the fingers have closed, the arm is still held: recover with `ReleaseArm`.
@@ -45,7 +52,8 @@ class LiftArm(Skill):
 
     side = Input(Side)
     hand = Input(Side)
-    pitch = Input(float, default=float(np.deg2rad(35.0)))
+    pitch = Input(float, default=PITCH)
+    spread = Input(float, default=SPREAD)
     duration = Input(float, default=5.5)
     place = Input(float, default=1.0)
     hold = Output(Hold)
@@ -58,8 +66,9 @@ class LiftArm(Skill):
         posture = watch_arm(self, self.side, period=0.0)
         yield from open_gripper(self, self.hand)
         above = over_arm(posture, self.place, lift=ABOVE)
-        left = max(self.pitch - ArmPath.of(posture).pitch, 0.0) / self.pitch  # less than all where it is up already
-        above = top_down_reachable(self, self.hand, above, (0.0, RISE * left))
+        place = ArmPath.of(posture).point(self.place)
+        arc = Arc(posture.points_in_map[0], place, lifted(posture, self.side, self.place, self.pitch, self.spread))
+        above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.whole)[0] - place))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, 0.5))
         grip = above.copy()
         grip[:3, 3] = ArmPath.of(posture).point(self.place) - DEEPER * UP
@@ -77,8 +86,9 @@ class LiftArm(Skill):
     def _swing(self, posture: ArmPosture) -> Iterator[None]:
         """Follow an arc about the tracked shoulder, a little further on every tick, slower under a heavy arm."""
         n = SIDES.index(self.hand)
-        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3])
-        rise = max(self.pitch - ArmPath.of(posture).pitch, 0.0)
+        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3],
+                  lifted(posture, self.side, self.place, self.pitch, self.spread))
+        rise = arc.whole
         end = self.now() + 4.0 * self.duration
         last, raised = self.now(), 0.0
         while raised < rise:
@@ -118,3 +128,20 @@ class LiftArm(Skill):
         """For the law tests."""
         offer_person(context)
         return cls("lift arm", context, side="right", hand="left")
+
+
+def lifted(posture: ArmPosture, side: Side, place: float, pitch: float, spread: float) -> np.ndarray:
+    """Unit vector (3,) from the shoulder to a place of an arm that points up and away from the body; no less than now.
+
+    Args:
+        posture: of the arm now.
+        side: of the person.
+        place: along the arm, 1 is the elbow.
+        pitch: of the whole arm above the horizontal [rad].
+        spread: of the upper arm away from the body, along the bed [rad].
+    """
+    path = ArmPath.of(posture)
+    now = unit(path.point(place) - path.points[0])
+    up = np.arcsin(now[2]) + max(pitch - path.pitch, 0.0)
+    aside = max(float(np.arctan2(now @ outwards(side), now @ -HEADWARD)), spread)
+    return np.cos(up) * (np.sin(aside) * outwards(side) - np.cos(aside) * HEADWARD) + np.sin(up) * UP

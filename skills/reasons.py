@@ -21,6 +21,7 @@ class Reason(enum.Enum):
     SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
     SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."
     ARM_LOST = "The person's arm is no longer tracked."
+    ARM_COVERED = "The gown lies over the arm that is to be dressed."
     ARM_SLIPPED = "The person's arm slipped out of the grip."
     FORCE_LIMIT = "The load on a hand passed its limit."
     SPEED_LIMIT = "A hand moved faster than is allowed near the person."

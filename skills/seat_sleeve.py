@@ -23,6 +23,7 @@ from .tracking import watch_arm
 
 FARTHEST = 0.12  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]
+EASING, SLOWEST = 2.0, 0.3  # slower over the last newtons before it is taut [N], but not below this share of the speed
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
 ABOVE_BED, TUCKED = 0.04, 5.5  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
 DOWN, TUCKING = 0.06, 3.0  # [m/s], for so long at most [s]
@@ -69,7 +70,8 @@ class SeatSleeve(Skill):
             if gone > FARTHEST or np.linalg.norm(load) > self.taut or stands:
                 return
             self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
-            linear = SPEED * self.law.ease(load) * HEADWARD
+            ease = float(np.clip((self.taut - np.linalg.norm(load)) / EASING, SLOWEST, 1.0)) * self.law.ease(load)
+            linear = SPEED * ease * HEADWARD
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
 

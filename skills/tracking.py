@@ -25,7 +25,7 @@ from .skill import Skill
 
 PERIOD = 0.25  # between two looks [s]
 PATIENCE = 300.0  # an arm under the gown, which its owner cannot move, is taken to stay for this long [s]
-_VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
+VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
 _BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
 NEAR_SPEED, _NEAR = 0.13, 0.34  # of a hand this near to the person; the guard's limits are 0.135 and 0.30 [m/s], [m]
 _ARM_RADIUS, _TRUNK_RADIUS, _HEAD_RADIUS = 0.05, 0.16, 0.11  # [m]
@@ -87,7 +87,7 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
             points = turned_about_shoulder(watch.arms[side].points_in_map, hold.place, _held_at(skill, hold))
             watch.arms[side] = replace(watch.arms[side], points_in_map=points)
         try:
-            if side in watch.arms and visible_share(frame, watch.arms[side]) < _VISIBLE:
+            if side in watch.arms and visible_share(frame, watch.arms[side]) < VISIBLE:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
             _take(skill, frame, side, hold)
         except PerceptionFailure:

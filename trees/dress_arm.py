@@ -3,7 +3,8 @@
 over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the
                  wrist, let the arm go
 to the shoulder  pull on, seat; where that fails, with a new hold of the sleeve, which stays on the arm
-inside?          back off and look; whatever went wrong until here, the arm is put down and all begins again
+inside?          back off and look; whatever went wrong until here, the arm is put down, a stray sleeve, or one under
+                 which the arm lies, is laid out by the hand, and all begins again
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 
 from ..sim.world import Side
-from ..skills.bedside import LIFTING, PULLING, stance
+from ..skills.bedside import LIFTING, PULLING, Stand, stance
+from ..skills.check_laid_out import CheckLaidOut
 from ..skills.check_sleeve import CheckSleeve
 from ..skills.context import Context
 from ..skills.find_stand import FindStand
@@ -21,6 +23,7 @@ from ..skills.grasp_sleeve import GraspSleeve
 from ..skills.lay_sleeve import LaySleeve
 from ..skills.lift_arm import LiftArm
 from ..skills.look_at_person import LookAtPerson
+from ..skills.look_for_sleeve import LookForSleeve
 from ..skills.navigate import Navigate
 from ..skills.ports import Key
 from ..skills.present_sleeve import PresentSleeve
@@ -37,7 +40,7 @@ HEAD_END, SEAT = -0.45, -0.30
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 2.0}
-TAUT_ON: dict[Side, float] = {"right": 5.0, "left": 4.4}
+TAUT_ON: dict[Side, float] = {"right": 4.6, "left": 4.2}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
@@ -59,7 +62,10 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
             f"put the {arm} arm down",
             ReleaseArm(f"lower the {arm} arm", context, hand=LIFTING[arm], lower=True),
             ReleaseArm(f"open the {arm} hold", context, hand=LIFTING[arm]))
-        return sequence(f"begin the {arm} arm again", put_down, back_off(context, f"free hands, {arm}", 0.0))
+        return sequence(f"begin the {arm} arm again", put_down, back_off(context, f"free hands, {arm}", 0.0),
+                        fallback(f"{arm} arm and sleeve laid out",
+                                 CheckLaidOut(f"the {arm} arm is bare, the sleeve at hand", context, side=arm),
+                                 lay_out(context, arm), back_off(context, f"leave the {arm} arm as it lies", 0.0)))
 
     def take_on() -> Behaviour:
         return sequence(
@@ -100,6 +106,7 @@ def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> 
         f"over the {arm} hand",
         Navigate(f"come to the {arm} arm", context, goal=stance(arm, "lift")),
         look("look at"),
+        LookForSleeve(f"look for the {arm} sleeve", context, side=arm, hand=pulling),
         FindStand(f"choose where to stand by the {arm} arm", context, side=arm, lifting=lifting, pulling=pulling,
                   stand=stand),
         Navigate(f"stand by the {arm} arm", context, goal=stand),
@@ -110,6 +117,20 @@ def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> 
         fallback(f"free the lifting hand, {arm}",
                  ReleaseArm(f"let the {arm} arm go", context, hand=lifting, ready=True),
                  ReleaseArm(f"leave the {arm} arm", context, hand=lifting)))
+
+
+def lay_out(context: Context, arm: Side) -> Behaviour:
+    """Take the sleeve by its strap, wherever it is, and lay it beyond the hand: the gown comes along, off the arm."""
+
+    def take(stand: Stand) -> Behaviour:
+        return sequence(f"take the {arm} sleeve from the {stand} stance",
+                        Navigate(f"go to the {stand} stance, {arm}", context, goal=stance(arm, stand)),
+                        grasp_worn(context, arm, f"grasp the stray {arm} sleeve, {stand} stance"))
+
+    return sequence(f"lay the {arm} sleeve out",
+                    fallback(f"take the stray {arm} sleeve", take("lift"), take("shoulder")),
+                    LaySleeve(f"lay the {arm} sleeve beyond the hand", context, grip=Key(f"{arm}_grip")),
+                    back_off(context, f"leave the {arm} sleeve there", 0.0))
 
 
 def grasp_worn(context: Context, arm: Side, name: str) -> GraspSleeve:

@@ -1,0 +1,54 @@
+"""Stage C: whether arm and sleeve lie so that a try to dress the arm can begin, after one that failed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..perception.errors import PerceptionFailure
+from ..sim.world import Side
+from .context import Context
+from .ports import Input
+from .reasons import Reason, SkillFailure
+from .scripted_person import offer_person
+from .skill import Skill
+from .strap_view import find_sleeve
+from .tracking import VISIBLE, visible_share, watch_arm
+
+AT_HAND = 0.36  # how far from the fingertips, along the bed, a sleeve lies at most that is taken from there [m]
+
+
+class CheckLaidOut(Skill):
+    """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
+
+    A sleeve that does not show is let pass.
+
+    Inputs: `side` of the person.
+    """
+
+    commands = False
+    side = Input(Side)
+    reasons = (Reason.ARM_LOST, Reason.ARM_COVERED, Reason.SLEEVE_MISSED)
+
+    def steps(self) -> Iterator[None]:
+        """One look."""
+        posture = watch_arm(self, self.side)
+        share = visible_share(self.world.look("head"), posture)
+        self.note(f"{share:.0%} of the {self.side} arm show")
+        if share < VISIBLE:
+            raise SkillFailure(Reason.ARM_COVERED, f"{share:.0%} of it show")
+        try:
+            sleeve = find_sleeve(self, self.side, posture.points_in_map)
+        except PerceptionFailure:
+            return
+        away = float(np.linalg.norm((sleeve.position_in_map - posture.points_in_map[3])[:2]))
+        if away > AT_HAND:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")
+        yield
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        return cls("check laid out", context, side="right")

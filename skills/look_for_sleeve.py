@@ -1,0 +1,52 @@
+"""Stage C: look for a sleeve while nothing stands before it yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..perception.errors import PerceptionFailure
+from ..sim.world import Side
+from .context import Context
+from .hands import hand_now, move_hands
+from .motion.errors import MotionError
+from .ports import Input
+from .reasons import Reason
+from .scripted_person import offer_person
+from .skill import Skill
+from .strap_view import WELL, look_for_sleeve
+from .tracking import careful
+
+
+class LookForSleeve(Skill):
+    """Looks until the sleeve shows well, from the head and with the hand's camera, so that it is known after the lift.
+
+    A sleeve that shows badly from everywhere is no failure.
+
+    Inputs: `side` of the person; `hand` whose camera may look from above.
+    """
+
+    side = Input(Side)
+    hand = Input(Side)
+    reasons = (Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST)
+
+    def steps(self) -> Iterator[None]:
+        """Look; then the hand goes back to where it was."""
+        self.note(f"looks for the {self.side} sleeve")
+        start = hand_now(self, self.hand)
+        try:
+            seen = yield from look_for_sleeve(self, self.side, self.hand)
+        except PerceptionFailure as hidden:
+            self.note(f"does not see the {self.side} sleeve: {hidden}")
+        else:
+            shows = "shows well" if seen.confidence > WELL else "shows badly"
+            self.note(f"the {self.side} sleeve {shows}, {seen.confidence:.2f}")
+        try:
+            yield from move_hands(self, {self.hand: start}, way="any", speed=careful(self, 0.5))
+        except MotionError:
+            return  # the next motion begins from here
+
+    @classmethod
+    def example(cls, context: Context) -> Skill:
+        """For the law tests."""
+        offer_person(context)
+        return cls("look for the sleeve", context, side="right", hand="right")

@@ -1,0 +1,43 @@
+"""Whether a try to dress an arm can begin again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.scripted import ScriptedWorld
+from caretree.skills.check_laid_out import AT_HAND, CheckLaidOut
+from caretree.skills.context import Context
+from caretree.skills.reasons import Reason
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.skills.scripted_person import laid_strap, lying_posture
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+
+def away(distance):
+    """A sleeve so far from the fingertips, towards the head."""
+    place = lying_posture("left").points_in_map[3] + distance * np.array((0.0, -1.0, 0.0))
+    return replace(laid_strap("left"), position_in_map=place)
+
+
+@pytest.mark.parametrize(("sleeve", "share", "reason"), [
+    (away(AT_HAND - 0.02), 1.0, None),
+    (away(AT_HAND + 0.02), 1.0, Reason.SLEEVE_MISSED),
+    (away(0.1), 0.5, Reason.ARM_COVERED),
+    (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, None),
+])
+def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, share, reason):
+    monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: share)
+    monkeypatch.setattr("caretree.skills.tracking.visible_share", lambda frame, posture: 1.0)
+    world = ScriptedWorld()
+    guard = GuardedWorld(world)
+    perception = scripted_perception({"sleeve_opening": sleeve, "arm": lying_posture("left")})
+    skill = CheckLaidOut("laid out", Context(world=guard, guard=guard, perception=perception), side="left")
+    for _ in range(10):
+        skill.tick_once()
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+        if skill.status != Status.RUNNING:
+            break
+    assert skill.status == (Status.SUCCESS if reason is None else Status.FAILURE)
+    assert (skill.failure and skill.failure.reason) == reason
