@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import time as wall
 from collections import defaultdict
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -37,6 +36,7 @@ from .robot.body import RobotBody
 from .robot.kinematics import default_kinematics
 from .scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
+from .stepped_clock import SteppedClock
 from .truth import TruthFrame, TruthStatic
 from .world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
 
@@ -48,22 +48,6 @@ PICTURE_PERIOD = 2 * FRAME_PERIOD  # of the video [s]
 WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
 SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
 SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
-
-
-class _SteppedClock:
-    """Simulated time: waiting is what makes it pass."""
-
-    def __init__(self, advance: Callable[[float], None]) -> None:
-        self.time = 0.0
-        self._advance = advance
-
-    def now(self) -> float:
-        """Seconds since the world started."""
-        return self.time
-
-    def wait_until(self, time: float) -> None:
-        """Simulate up to `time` [s]."""
-        self._advance(time)
 
 
 class BulletWorld(World):
@@ -94,7 +78,7 @@ class BulletWorld(World):
         if self.scene.gown.air_drag > 0:
             self._effects = with_air(self._effects, self.scene.gown.air_drag)
         self.room = room_map()
-        self.time = _SteppedClock(self._advance_to)
+        self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.kinematics = default_kinematics()
         self.timing: dict[str, float] = defaultdict(float)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .linear_arm import LinearArms
+from .stepped_clock import SteppedClock
 from .world import (
     ARM_JOINTS,
     CAMERAS,
@@ -35,22 +36,6 @@ FINGER_SPEED = 0.1  # [m/s]
 WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
 DEPTH_NOISE = 0.001  # [m]
 STROKE = 0.085  # [m]
-
-
-class VirtualClock:
-    """Time that passes only when somebody waits for it."""
-
-    def __init__(self, advance: Callable[[float], None]) -> None:
-        self.time = 0.0
-        self._advance = advance
-
-    def now(self) -> float:
-        """Seconds since the world started."""
-        return self.time
-
-    def wait_until(self, time: float) -> None:
-        """Let the world advance to `time` [s] at once."""
-        self._advance(time)
 
 
 def scripted_room() -> RoomMap:
@@ -95,7 +80,7 @@ class ScriptedWorld(World):
     def __init__(self, *, seed: int = 0, frames: Callable[[str, float], Frame] | None = None,
                  room: RoomMap | None = None, kinematics: Any = None, stopping_time: float = 0.15,
                  arm_positions: np.ndarray | None = None) -> None:
-        self.time = VirtualClock(self._advance_to)
+        self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.room = room or scripted_room()
         self.kinematics = kinematics or LinearArms()

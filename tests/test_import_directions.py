@@ -11,6 +11,7 @@ LAYERS = {"sim": 0, "perception": 1, "learning": 1, "skills": 2, "trees": 3}
 ALLOWED_SIM = {
     "world", "errors", "scripted", "linear_arm", "faults", "record", "recorder", "robot", "spool",
     "file_lock", "folder_claim",  # of records
+    "stepped_clock",
     "appearance",  # colours of the gown's bindings: known to whoever bought it
 }
 # These read records after a run, or start a world; the tree never calls them.

@@ -14,7 +14,8 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from ..sim.scripted import ScriptedWorld, VirtualClock
+from ..sim.scripted import ScriptedWorld
+from ..sim.stepped_clock import SteppedClock
 from ..skills.context import Context
 from ..skills.ports import Key
 from ..skills.reasons import Failure, Reason
@@ -102,7 +103,7 @@ class Explorer:
         self.findings: list[str] = []
         self._limit = limit
         world = ScriptedWorld()
-        self._clock: VirtualClock = world.time
+        self._clock: SteppedClock = world.time
         self._context = Context(world=world, guard=None)  # type: ignore[arg-type] stubs neither send nor ask the guard
         self._root = self._replace_leaves(root)
         self._nodes = list(self._root.iterate())
