@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 from collections.abc import Iterator
 from typing import Any
@@ -22,15 +23,23 @@ def silence() -> Iterator[None]:
         yield
         return
     nowhere = os.open(os.devnull, os.O_WRONLY)
+    _flush()
     try:
         for target, _ in kept:
             os.dup2(nowhere, target)
         yield
     finally:
+        _flush()
         os.close(nowhere)
         for target, copy in kept:
             os.dup2(copy, target)
             os.close(copy)
+
+
+def _flush() -> None:
+    """Write what compiled code holds back: into a pipe it would come out only at the end."""
+    with contextlib.suppress(OSError, AttributeError, TypeError):  # Windows keeps no library of the program's own
+        ctypes.CDLL(None).fflush(None)
 
 
 with silence():

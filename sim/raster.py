@@ -12,8 +12,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
+
+from .compiled import njit
 
 EXPOSURE = 0.82  # white under full light; the brightest ward (intensity 1.2) just does not burn out
 NEAR = 0.03  # clipping distance [m]: closer than any cloth a hand camera can focus on
@@ -74,7 +75,7 @@ class Picture:
     cosine: np.ndarray
 
 
-@numba.njit(cache=True)
+@njit()
 def _vertex_light(vertices, faces, lamp, ambient, intensity):
     """Light on the front and the back of every vertex, (n, 2), and unit face normals, (m, 3)."""
     n = vertices.shape[0]
@@ -104,7 +105,7 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
     return light, facing
 
 
-@numba.njit(cache=True)
+@njit()
 def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pitch, rgb, depth, owner,
           cosine):
     """Fill the buffers; `points` are in the optical frame."""

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sparse
-from numba import njit
 from scipy.linalg import cholesky_banded
 from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from ...sim.compiled import njit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +53,7 @@ def factor(matrix: sparse.csr_matrix, free: np.ndarray) -> Band:
     return Band(free=chosen, row=row, lower=lower)
 
 
-@njit(cache=True, fastmath=True)
+@njit(fastmath=True)
 def solve(lower, y):
     """Turn y (3, F) into (L L^T)^-1 y in place; `lower` as in `Band`."""
     n, width = lower.shape

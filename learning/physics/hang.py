@@ -14,9 +14,9 @@ parameters.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ...sim.cloth import GRAVITY
+from ...sim.compiled import njit
 from ...sim.gown import GownMesh
 from .band import factor, solve
 from .springs import Springs, laplacian
@@ -46,7 +46,7 @@ def held_start(mesh: GownMesh, held: tuple[int, int]) -> np.ndarray:
     return x
 
 
-@njit(cache=True, fastmath=True)
+@njit(fastmath=True)
 def _turned(x, base, start, other, stiffness, rest, row, out):
     """Right-hand side of the balance into `out` (3, free): held part and weight, and every spring at rest length."""
     out[:] = base
@@ -67,7 +67,7 @@ def _turned(x, base, start, other, stiffness, rest, row, out):
                 out[2, b] -= share * dz
 
 
-@njit(cache=True, fastmath=True)
+@njit(fastmath=True)
 def _search(x, base, start, other, stiffness, rest, row, lower, rounds, momentum):
     now, before, ahead = x.copy(), x.copy(), x.copy()
     out = np.empty_like(base)

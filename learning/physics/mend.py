@@ -7,14 +7,15 @@ closed tells a real camera's clip from a rendered one.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+
+from ...sim.compiled import njit
 
 NEIGHBOURS = 5  # of eight
 TIMES = 4
 
 
-@numba.njit(cache=True)
+@njit()
 def _closed(depth, neighbours, times):
     frames, height, width = depth.shape
     out = depth.copy()

@@ -17,11 +17,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 import scipy.sparse as sparse
 
 from ...sim.cloth import GRAVITY
+from ...sim.compiled import njit
 from ...sim.gown import GownMesh, edge_counts
 from .band import Band, factor, solve
 
@@ -98,7 +98,7 @@ def weave(mesh: GownMesh) -> Weave:
                  rest=length[order], bends=bends[order], area=area)
 
 
-@numba.njit(cache=True, fastmath=True)
+@njit(fastmath=True)
 def _pull(x, start, other, stiffness, rest, force):
     """Force of the springs on every vertex [N], into `force` (V, 3)."""
     force[:] = 0.0
@@ -115,7 +115,7 @@ def _pull(x, start, other, stiffness, rest, force):
             force[j, 2] -= pull * dz
 
 
-@numba.njit(cache=True, fastmath=True)
+@njit(fastmath=True)
 def _advance(x, v, start, other, stiffness, rest, mass, area, row, lower, drag, gravity, dt, steps):
     """`steps` steps in place."""
     n = x.shape[0]
