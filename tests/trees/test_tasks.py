@@ -4,10 +4,11 @@ import pytest
 from caretree.sim.scripted import ScriptedWorld
 from caretree.skills.context import Context
 from caretree.trees import tasks
-from caretree.trees.decorators import Stage
+from caretree.trees.decorators import FailSafe, Stage
 from caretree.trees.guard import GuardedWorld
 from caretree.trees.runner import run
-from caretree.trees.tasks import TaskError, load_task, task_names
+from caretree.trees.tasks import Task, TaskError, load_task, task_names
+from caretree.trees.tasks.wave import LetGo, MoveJoint
 
 GOOD = """
 from __future__ import annotations
@@ -111,3 +112,10 @@ def test_a_folder_is_no_task_file(tmp_path):
     (tmp_path / "task.py").mkdir()
     with pytest.raises(TaskError, match=r"is a folder, but a \.py file is asked for"):
         load_task(str(tmp_path / "task.py"))
+
+
+def test_a_joint_that_is_where_it_should_be_need_not_move():
+    def build(context):
+        return FailSafe("safely", MoveJoint("up", context, side="left", joint="w1", angle=0.0), LetGo("let go", context))
+
+    assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"

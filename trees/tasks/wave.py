@@ -17,6 +17,9 @@ from ..composers import sequence
 from ..decorators import FailSafe, RecoverBy, Stage, Timeout
 
 
+SHORTEST = 0.1  # a trajectory takes time, one that goes nowhere too [s]
+
+
 class MoveJoint(Skill):
     """Turns one joint by `angle` [rad] at `speed` [rad/s]; says where it was before."""
 
@@ -31,7 +34,7 @@ class MoveJoint(Skill):
         """Send one trajectory and see it through."""
         self.note(f"turns {self.joint} by {self.angle:.2f} rad")
         here = float(self.world.observe().arm_positions[SIDES.index(self.side), ARM_JOINTS.index(self.joint)])
-        duration = abs(self.angle) / self.speed
+        duration = max(abs(self.angle) / self.speed, SHORTEST)
         yield from follow(self, JointTrajectory(joints=(f"{self.side}_{self.joint}",), times=np.array((0.0, duration)),
                                                 positions=np.array(((here,), (here + self.angle,)))))
         self.before = here
