@@ -116,6 +116,7 @@ def test_a_folder_is_no_task_file(tmp_path):
 
 def test_a_joint_that_is_where_it_should_be_need_not_move():
     def build(context):
-        return FailSafe("safely", MoveJoint("up", context, side="left", joint="w1", angle=0.0), LetGo("let go", context))
+        move = MoveJoint("up", context, side="left", joint="w1", angle=0.0)
+        return FailSafe("safely", move, LetGo("let go", context))
 
     assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"

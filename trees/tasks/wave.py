@@ -16,7 +16,6 @@ from ...skills.skill import Skill
 from ..composers import sequence
 from ..decorators import FailSafe, RecoverBy, Stage, Timeout
 
-
 SHORTEST = 0.1  # a trajectory takes time, one that goes nowhere too [s]
 
 
