@@ -58,7 +58,7 @@ def _riccati(t: np.ndarray, a: float, b: float, c: float) -> tuple[np.ndarray, n
     rate = 4.0 * a * c / (root - b)  # root + b
     inside = 0.5 * rate / root * np.expm1(-root * t)
     if (
-        np.isrealobj(inside) and inside.min() <= -1.0
+        np.isrealobj(inside) and (inside <= -1.0).any()
     ):  # a drag of the wrong sign, as controls have, speeds it up for ever
         inside = inside + 0j
     return ((0.5 * rate * t + np.log1p(inside)) / c).real, v.real

@@ -31,6 +31,7 @@ def integrated(duration, linear, quadratic, wind):
         (0.0, 0.05, -6.0),  # the air sinks faster at first, then the body overtakes it
         (2.0, 0.05, -6.0),  # the body never overtakes it
         (0.3, 1e-8, -3.0),
+        (0.0, 0.001, -30.0),  # the air is overtaken only after the fall
     ],
 )
 def test_closed_form_is_what_integration_gives(linear, quadratic, wind):
