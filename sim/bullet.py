@@ -173,7 +173,7 @@ class BulletWorld(World):
                 lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
             else:
                 put_on_by_hand(self._cloth, self._person, self._handles, self._client.stepSimulation, TIME_STEP,
-                               self.scene.seed)
+                               np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist())
             self._robot = self._stand(self.room.waypoints["bed_right" if first == "C" else "bed_left"])
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._vertices = self._cloth.vertices()

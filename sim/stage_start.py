@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -75,7 +75,8 @@ def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], t
 
 
 def put_on_by_hand(cloth: Cloth, person: Person, handles: list[Handle], step: Callable[[], None],
-                   time_step: float, seed: int) -> None:
+                   time_step: float, drawn: Sequence[float],
+                   raised: tuple[float, float, float, float] = RAISED) -> None:
     """Raise the person's arms, hang the sleeves over the hands and draw both up by their straps, some less than others.
 
     The arms stay up and spread, as after stage C; how far up them the sleeves come to rest once the straps are let go
@@ -87,11 +88,12 @@ def put_on_by_hand(cloth: Cloth, person: Person, handles: list[Handle], step: Ca
         handles: two handles that hold nothing.
         step: passes one physics step.
         time_step: its length [s].
-        seed: of how far each strap is drawn.
+        drawn: how far the left and the right strap are drawn, 0 for beyond the shoulder to 1 for well before it.
+        raised: joints of both arms [rad].
     """
-    mesh, drawn = cloth.mesh, np.random.default_rng([seed, 4]).uniform(size=2)
+    mesh = cloth.mesh
     for side in SIDES:
-        person.bend_arm(side, RAISED)
+        person.bend_arm(side, raised)
     arms = person.arms()
     cloth.place(_over_hands(mesh, arms, person.bed_top + _OVER_LEGS))
     vertices = cloth.vertices()

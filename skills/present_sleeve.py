@@ -24,6 +24,7 @@ from .strap_grip import StrapGrip, presenting
 from .tracking import Hold, careful, watch_arm
 
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
+_SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
 LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
@@ -54,9 +55,7 @@ class PresentSleeve(Skill):
         arm, hand = self.grip.arm, self.grip.hand
         self.note(f"brings the {arm} sleeve to the fingertips")
         self.context.guard.declare_grip(hand, "cloth")
-        raised = hand_now(self, hand)
-        raised[:3, 3] += RAISE * UP + ASIDE * outwards(arm)
-        yield from holding(self, self.hold, move_hands(self, {hand: raised}, speed=careful(self, SPEED), way="either"))
+        yield from holding(self, self.hold, self._raise())
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
@@ -71,6 +70,19 @@ class PresentSleeve(Skill):
             folded = yield from self._folded(path)
         if folded is not None:
             raise folded
+
+    def _raise(self) -> Iterator[None]:
+        """Off the bed and aside; where that is out of reach, as far as is not."""
+        hand, start = self.grip.hand, hand_now(self, self.grip.hand)
+        for share in _SHARES:
+            raised = start.copy()
+            raised[:3, 3] += share * (RAISE * UP + ASIDE * outwards(self.grip.arm))
+            try:
+                yield from move_hands(self, {hand: raised}, speed=careful(self, SPEED), way="either")
+                return
+            except MotionError:
+                if share == _SHARES[-1]:
+                    raise
 
     def _bring(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Out beyond the fingertips, then back before them."""

@@ -27,12 +27,13 @@ BASE_SPEED = 0.10  # of the base at most [m/s]
 _WAIT = 1.0  # how long a hand that cannot go on lets the base come along alone [s]
 CAUGHT = 5.0  # a sleeve that pulls harder than this and does not come on is caught [N]
 STUCK_FOR = 1.6  # ... for this long [s]
+EASING, SLOWEST = 2.0, 0.3  # slower over the last newtons before it is taut [N], but not below this share of the speed
 ADVANCE = 0.01  # the way that counts as coming on [m]
 LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
 _BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
 _LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
 _ON = -0.1  # a grip beyond this place that stands or pulls hard has the sleeve on
-_LAGGING, _FARTHER = 0.10, 0.20  # a ring seen that far from its place lets the grip go that much farther
+_LAGGING, _FARTHER = 0.10, 0.08  # a ring seen that far from its place lets the grip go that much farther
 _PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
 
 
@@ -41,7 +42,7 @@ class PullAlongArm(Skill):
 
     Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
     0 shoulder, below 0 past it towards the neck); `seat`, place where the armhole itself should end up, which as far as
-    it is seen ends the pull before or up to a fifth of the upper arm after `upto`; `hold`, the hand that holds the arm,
+    it is seen ends the pull before or a little after `upto`; `hold`, the hand that holds the arm,
     or None; `stand`, base pose (3,) to drift to on the way [m, m, rad], or None to stand still; `taut`, the load that
     ends a pull beyond the shoulder [N]; `law`, constants of the pull.
     """
@@ -106,6 +107,8 @@ class PullAlongArm(Skill):
                 along = path.direction(place)  # centre the armhole before the hand enters it
                 linear = linear - (1.0 if place < _BEFORE else 0.8) * (linear @ along) * along
                 window.clear()  # it waits on purpose
+            if place < _ON:  # a hand that is told to stop goes on for centimetres
+                linear = linear * np.clip((self.taut - np.linalg.norm(load)) / EASING, SLOWEST, 1.0)
             wanted = presenting(self.grip, path.direction(place), hand[:3, 3])
             twist = np.concatenate((linear, self.law.turn(wanted, hand)))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))

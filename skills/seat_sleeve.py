@@ -14,6 +14,7 @@ from .bedside import HEADWARD
 from .context import Context
 from .hands import cloth_load
 from .ports import Input
+from .pull_along_arm import EASING, SLOWEST
 from .pull_law import PullLaw
 from .reasons import Reason
 from .scripted_person import offer_person
@@ -21,9 +22,8 @@ from .skill import Skill
 from .strap_grip import StrapGrip
 from .tracking import watch_arm
 
-FARTHEST = 0.12  # the strap is drawn at most this far [m]
+FARTHEST = 0.08  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]
-EASING, SLOWEST = 2.0, 0.3  # slower over the last newtons before it is taut [N], but not below this share of the speed
 WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
 ABOVE_BED, TUCKED = 0.04, 5.5  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
 DOWN, TUCKING = 0.06, 3.0  # [m/s], for so long at most [s]

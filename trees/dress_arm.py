@@ -36,11 +36,11 @@ from .composers import fallback, sequence
 from .decorators import RecoverBy
 
 # Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
-HEAD_END, SEAT = -0.45, -0.30
+HEAD_END, SEAT = -0.45, -0.25
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 2.0}
-TAUT_ON: dict[Side, float] = {"right": 4.6, "left": 4.2}
+TAUT_ON: dict[Side, float] = {"right": 4.2, "left": 3.8}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
 OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
