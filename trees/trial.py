@@ -14,6 +14,7 @@ from typing import Any
 
 from ..sim.errors import CaretreeError, RecordError
 from ..sim.evaluate.verdict import evaluate
+from ..sim.folder_claim import FolderClaim, FolderTakenError
 from ..sim.record import is_finished, read_run
 from ..sim.spool import disk_error
 
@@ -132,13 +133,13 @@ def run_trial(task: str, seed: int, directory: Path, arguments: tuple[str, ...],
         stop: ends the run when set.
 
     Raises:
-        CaretreeError: the child says that its input is bad.
+        CaretreeError: the child says that its input is bad, or another campaign runs this trial.
         InterruptedTrialError: `stop` was set.
     """
     try:
         return _keep(directory, judge_run(directory, seed))
     except RecordError:
-        shutil.rmtree(directory, ignore_errors=True)
+        _clear(directory)
     directory.mkdir(parents=True)
     command = [*CARETREE, "run", task, "--seed", str(seed), "--out", str(directory), *arguments]
     log = directory.with_name(f"{directory.name}.log")
@@ -155,6 +156,21 @@ def run_trial(task: str, seed: int, directory: Path, arguments: tuple[str, ...],
         if status is None:
             return _keep(directory, Trial(seed=seed, outcome="timeout", reason=f"no end within {patience:g} s"))
         return _keep(directory, Trial(seed=seed, outcome="crash", reason=f"exit status {status}: {last}"))
+
+
+def _clear(directory: Path) -> None:
+    """Remove what an earlier run left, unless it still goes on.
+
+    Raises:
+        FolderTakenError: it does.
+    """
+    try:
+        FolderClaim(directory).release()
+    except FolderTakenError:
+        raise
+    except RecordError:  # damaged: the more reason to begin anew
+        pass
+    shutil.rmtree(directory, ignore_errors=True)
 
 
 def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event) -> int | None:

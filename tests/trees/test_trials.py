@@ -6,6 +6,7 @@ import sys
 
 import pytest
 from caretree.sim.errors import CaretreeError
+from caretree.sim.folder_claim import FolderClaim, FolderTakenError
 from caretree.trees import trial as trial_module
 from caretree.trees.trial import Trial, judge_run, read_trial
 from caretree.trees.trials import Plan, run_trials
@@ -161,3 +162,14 @@ def test_command_line(fake_caretree, capsys):
     assert "1/2 = 50%" in capsys.readouterr().out
     assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == [
         "--gown", "small", "--inject", "stale@lift:step"]
+
+
+def test_a_trial_that_another_campaign_runs_is_left_alone(fake_caretree):
+    campaign = plan(fake_caretree, seeds=(0,))
+    theirs = FolderClaim(campaign.folder(0))
+    (campaign.folder(0) / "spool").write_text("their record", encoding="utf-8")
+    with pytest.raises(FolderTakenError, match="another run is writing"):
+        run_trials(campaign, lambda line: None)
+    assert (campaign.folder(0) / "spool").exists()
+    theirs.release()
+    run_trials(campaign, lambda line: None)
