@@ -61,7 +61,7 @@ class LiftArm(Skill):
                Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.TIMEOUT, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
-        """Look, go over the arm, down, take it, swing it up."""
+        """Look, go over the arm, down, take it, swing it up and out."""
         self.note(f"takes the {self.side} arm")
         posture = watch_arm(self, self.side, period=0.0)
         yield from open_gripper(self, self.hand)
@@ -71,7 +71,7 @@ class LiftArm(Skill):
         above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.whole)[0] - place))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, 0.5))
         grip = above.copy()
-        grip[:3, 3] = ArmPath.of(posture).point(self.place) - DEEPER * UP
+        grip[:3, 3] = place - DEEPER * UP
         yield from move_hands(self, {self.hand: grip}, speed=0.12)
         gap = yield from close_gripper(self, self.hand, force=FORCE)
         if gap < ARM_MIN:
@@ -88,25 +88,24 @@ class LiftArm(Skill):
         n = SIDES.index(self.hand)
         arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3],
                   lifted(posture, self.side, self.place, self.pitch, self.spread))
-        rise = arc.whole
         end = self.now() + 4.0 * self.duration
-        last, raised = self.now(), 0.0
-        while raised < rise:
+        last, swung = self.now(), 0.0
+        while swung < arc.whole:
             if lost_arm(self, self.hand):
-                raise SkillFailure(Reason.ARM_SLIPPED, f"{raised / rise:.0%} of the way up")
-            if self.now() > end and raised > ENOUGH * rise:
+                raise SkillFailure(Reason.ARM_SLIPPED, f"{swung / arc.whole:.0%} of the way up")
+            if self.now() > end and swung > ENOUGH * arc.whole:
                 return  # a heavy arm: a few degrees less are no reason to put it down again
             if self.now() > end:
-                raise SkillFailure(Reason.TIMEOUT, f"{raised / rise:.0%} of the way up")
+                raise SkillFailure(Reason.TIMEOUT, f"{swung / arc.whole:.0%} of the way up")
             seen = self.world.observe()
             step, last = seen.time - last, seen.time
             load = seen.wrench_hand_in_map[n, :3]
             ease = float(np.clip((_HEAVIEST - np.linalg.norm(load)) / (_HEAVIEST - _HEAVY), 0.0, 1.0))
-            wanted, tangent = arc.at(raised)
+            wanted, tangent = arc.at(swung)
             behind = wanted + arc.offset - seen.pose_hand_in_map[n, :3, 3]
             ease *= float(np.clip(2.0 - np.linalg.norm(behind) / _LATE, 0.0, 1.0))
-            rate = rise / self.duration * ease * min(1.0, 0.2 + raised / 0.1, 0.2 + (rise - raised) / 0.1)
-            raised += rate * step
+            rate = arc.whole / self.duration * ease * min(1.0, 0.2 + swung / 0.1, 0.2 + (arc.whole - swung) / 0.1)
+            swung += rate * step
             give = arc.give_way(load, tangent, step)
             if np.linalg.norm(behind) > _LAG:
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand is {np.linalg.norm(behind):.2f} m behind")

@@ -106,16 +106,25 @@ class PresentSleeve(Skill):
             return None
         yield from holding(self, self.hold, self.wait(0.3))
         try:
-            seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
-                                         near_in_map=hand_now(self, self.grip.hand)[:3, 3])
-        except PerceptionFailure as hidden:
-            return SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}")
-        assert isinstance(seen, SleeveHeading)
+            seen = self._heading()
+        except PerceptionFailure:  # beside the picture, or truly hidden
+            yield from holding(self, self.hold, look_towards(self, hand_now(self, self.grip.hand)[:3, 3]))
+            try:
+                seen = self._heading()
+            except PerceptionFailure as hidden:
+                return SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}")
         beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
         if beyond >= self.opens:
             return None
         return SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
                                                   f"{self.opens * 100:.0f} cm are asked for")
+
+    def _heading(self) -> SleeveHeading:
+        """Which way the sleeve points, as the head's camera sees it."""
+        seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
+                                     near_in_map=hand_now(self, self.grip.hand)[:3, 3])
+        assert isinstance(seen, SleeveHeading)
+        return seen
 
     def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
