@@ -28,7 +28,7 @@ _SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
 SPEED = 0.30  # [m/s]
 BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
 LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
-HARDER = 1.5  # how much harder a sleeve that does not open is drawn out the second time
+HARDER = 1.2  # how much harder a sleeve that does not open is drawn out the second time
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
 
 

@@ -39,9 +39,15 @@ _ELBOW, _FINGERTIP = 1, 3  # joints of the arm
 
 @dataclass
 class SeenWell:
-    """Sleeves that were seen well and that nobody has taken hold of since, by the person's side."""
+    """Sleeves that were seen well and that nobody has taken hold of since, by the person's side.
+
+    Attributes:
+        sleeves: those.
+        last: where each was seen last, well or badly (3,) [m].
+    """
 
     sleeves: dict[Side, SleeveOpening] = field(default_factory=dict)
+    last: dict[Side, np.ndarray] = field(default_factory=dict)
 
 
 def seen_well(skill: Skill) -> dict[Side, SleeveOpening]:
@@ -50,7 +56,7 @@ def seen_well(skill: Skill) -> dict[Side, SleeveOpening]:
 
 
 def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpening:
-    """The sleeve from afar: below the hand, where it was laid, or by the elbow, where it may be after a miss.
+    """The sleeve from afar: below the hand, where it was laid, by the elbow, after a miss, or where it was seen last.
 
     Where it does not show well, it is taken to lie where it was seen well before.
 
@@ -65,16 +71,19 @@ def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpeni
         SkillFailure: its picture is stale.
     """
     frame, lost = skill.world.look("head"), None
-    for near in (arm_in_map[3] * (1.0, 1.0, 0.0) + skill.world.room.bed[1, 2] * UP, arm_in_map[1]):
+    memory = skill.context.memory.of(SeenWell, SeenWell)
+    nears = [arm_in_map[3] * (1.0, 1.0, 0.0) + skill.world.room.bed[1, 2] * UP, arm_in_map[1]]
+    for near in [*nears, memory.last[side]] if side in memory.last else nears:
         try:
             seen = skill.context.perceive("sleeve_opening", frame, side=side, near_in_map=near)
         except PerceptionFailure as stop:
             lost = lost or stop
             continue
         assert isinstance(seen, SleeveOpening)
+        memory.last[side] = seen.position_in_map
         if seen.confidence > WELL:
-            seen_well(skill)[side] = seen
-        return seen_well(skill).get(side, seen)
+            memory.sleeves[side] = seen
+        return memory.sleeves.get(side, seen)
     if side in seen_well(skill):
         return seen_well(skill)[side]
     assert lost is not None
