@@ -84,8 +84,8 @@ def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpeni
         if seen.confidence > WELL:
             memory.sleeves[side] = seen
         return memory.sleeves.get(side, seen)
-    if side in seen_well(skill):
-        return seen_well(skill)[side]
+    if side in memory.sleeves:
+        return memory.sleeves[side]
     assert lost is not None
     raise lost
 
