@@ -20,8 +20,8 @@ from .tracking import watch_arm
 # showed at 0.40 to 0.66 where the arm was inside, at 0.01, 0.05 and 0.31 where the sleeve had missed it.
 CUFF_AT = 0.34
 # A sleeve drawn up a spread arm shows its cuff at 0.29 when it is over the shoulder.  There the arm is hidden from the
-# shoulder down to the cuff; beside a sleeve that missed it, it shows.  From one sleeve on its arm and one beside it, both
-# with the cuff at 0.29; no run since has come to it, so that how well it tells them apart is not measured.
+# shoulder down to the cuff; beside a sleeve that missed it, it shows.  From one sleeve on its arm and one beside it,
+# both with the cuff at 0.29; no run since has come to it, so that how well it tells them apart is not measured.
 OVER_SHOULDER, HIDDEN = 0.15, 0.7
 
 
