@@ -135,11 +135,13 @@ class WornSleeve(Estimate):
         side: of the person.
         armhole_at: middle of what shows of the armhole's binding, 0 shoulder, 1 elbow.
         cuff_at: the same of the cuff's.
+        round_arm: share of the directions off the arm's axis in which the cuff shows.
     """
 
     side: Side
     armhole_at: float
     cuff_at: float
+    round_arm: float
 
 
 Primitive = Literal["move_left", "direct", "move_right"]

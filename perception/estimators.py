@@ -20,6 +20,7 @@
 | head | | Head |
 | chest_cover | shoulders_in_map | Cover |
 | hand_cover | points_in_map | Cover |
+| cuff_round | points_in_map | Cover: share of the way round an arm |
 | held_armhole | side, near_in_map | SleeveOpening |
 | sleeve_heading | side, near_in_map | SleeveHeading: from the armhole to the cuff |
 | worn_sleeve | side, arm_in_map | WornSleeve: where it shows along the upper arm |
@@ -49,6 +50,7 @@ from .held_armhole import held_armhole
 from .hung_corner import hook, hung_corner, shown_corner
 from .hung_side import hung_side
 from .pregrasp import pregrasp_proposal
+from .round_arm import cuff_round
 from .skin import head_seen
 from .sleeve import sleeve_opening
 from .sleeve_heading import sleeve_heading
@@ -101,5 +103,5 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
             "sleeve_opening": sleeve_opening, "hook": hook, "shown_corner": shown_corner,
             "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole,
             "sleeve_heading": sleeve_heading, "worn_sleeve": worn_sleeve, "hand_cover": hand_cover,
-            "sleeve_strap": sleeve_strap, "collar_near_shoulder": collar_near_shoulder, "head": head,
-            "chest_cover": cover, "arm": arm}
+            "cuff_round": cuff_round, "sleeve_strap": sleeve_strap, "collar_near_shoulder": collar_near_shoulder,
+            "head": head, "chest_cover": cover, "arm": arm}

@@ -79,8 +79,8 @@ class PullAlongArm(Skill):
             if place < _LAST and np.isfinite(self.seat):
                 ring.follow(path, hand[:3, 3])
             if self._there(ring.place, place) or (place < _ON and np.linalg.norm(load) > self.taut):
-                if self.upto > 1.0 and ring.bare(path):
-                    raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} forearm shows beside the sleeve")
+                if self.upto > 1.0 and ring.beside(path):
+                    raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} arm shows beside the cuff")
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
             while window[0][0] < seen.time - STUCK_FOR:

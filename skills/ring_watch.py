@@ -20,9 +20,9 @@ _FARTHEST = 0.14  # that the grip goes to the side for it [m]
 _STEP = 0.03  # by which the grip goes to the side after one look, at most [m]
 _HAND = np.linspace(2.3, 2.95, 10)  # places along the arm that must be under the sleeve
 _COVERED = 0.5  # share of them
-# With the grip half way up the forearm the sleeve hides these.  In recorded pulls their share was 0.6 to 1 with the
-# hand inside, but for two (0.4; 0.3 in a crumpled sleeve), and 0, 0, 0.3 and 1 where the sleeve had missed it.
-_WRIST, _SLEEVED = np.linspace(1.7, 2.15, 10), 0.35
+# With the grip half way up the forearm the cuff is somewhere between the wrist and beyond the fingertips.  In recorded
+# pulls it showed at least so far round these places with the hand inside, 0.25 where the sleeve had missed it.
+_CHAIN, ROUND = (1.2, 2.0, 3.0, 4.4), 0.4
 _STALE = 0.8  # an armhole that was not seen for so long may have moved on [s]
 _SOME = 25  # of the armhole's points are asked for their place
 
@@ -90,18 +90,21 @@ class RingWatch:
 
     def missed(self, path: ArmPath) -> bool:
         """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""
-        return self._cover(path, _HAND, f"{self._hand}_hand") < _COVERED
-
-    def bare(self, path: ArmPath) -> bool:
-        """Whether the head's camera sees the forearm bare where, behind the grip, the sleeve should be."""
-        return self._cover(path, _WRIST, "head") < _SLEEVED
-
-    def _cover(self, path: ArmPath, places: np.ndarray, camera: str) -> float:
-        """Share of `places` of the arm at which a camera sees something else than skin; 1 where it cannot tell."""
-        points = np.array([path.point(float(place)) for place in places])
+        points = np.array([path.point(float(place)) for place in _HAND])
+        camera = self._skill.world.look(f"{self._hand}_hand")
         try:
-            cover = self._skill.context.perceive("hand_cover", self._skill.world.look(camera), points_in_map=points)
+            cover = self._skill.context.perceive("hand_cover", camera, points_in_map=points)
         except PerceptionFailure:
-            return 1.0
+            return False
         assert isinstance(cover, Cover)
-        return cover.share
+        return cover.share < _COVERED
+
+    def beside(self, path: ArmPath) -> bool:
+        """Whether the head's camera sees the cuff on one side of the arm only; False where it cannot tell."""
+        chain = np.array([path.point(place) for place in _CHAIN])
+        try:
+            cover = self._skill.context.perceive("cuff_round", self._skill.world.look("head"), points_in_map=chain)
+        except PerceptionFailure:
+            return False
+        assert isinstance(cover, Cover)
+        return cover.share < ROUND

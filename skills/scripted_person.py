@@ -69,7 +69,8 @@ def offer_person(context: Stage) -> None:
                           approach_in_map=np.array((0.0, 0.0, -1.0)), closing_in_map=np.array((0.0, 1.0, 0.0)))
 
     def worn(frame: Frame, side: Side, **_: Any) -> Estimate:
-        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6)
+        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6,
+                          round_arm=0.8)
 
     def heading(frame: Frame, side: Side, **_: Any) -> Estimate:
         return SleeveHeading(stamp=frame.stamp, confidence=0.9, side=side,
@@ -77,6 +78,6 @@ def offer_person(context: Stage) -> None:
 
     for name, estimator in (("arm", arm), ("sleeve_opening", sleeve), ("sleeve_strap", sleeve),
                             ("sleeve_heading", heading), ("chest_cover", cover),
-                            ("held_armhole", sleeve), ("hand_cover", cover), ("head", head),
+                            ("held_armhole", sleeve), ("hand_cover", cover), ("cuff_round", cover), ("head", head),
                             ("worn_sleeve", worn), ("gripped_cloth", cloth), ("collar_near_shoulder", collar)):
         context.perception.offer(name, estimator)

@@ -21,7 +21,7 @@ class Watcher(Skill):
 
 
 def make(points=None, share=1.0):
-    """A watch that sees an armhole at `points` (n, 3), or none, and a hand covered by `share`."""
+    """A watch that sees an armhole at `points` (n, 3), or none, a hand covered by `share`, a cuff as far round it."""
 
     def ring(frame, **_):
         if points is None:
@@ -32,8 +32,13 @@ def make(points=None, share=1.0):
 
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    estimators = {"held_armhole": ring,
-                  "hand_cover": lambda frame, **_: Cover(stamp=frame.stamp, confidence=0.9, share=share)}
+
+    def cover(frame, **_):
+        if share is None:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "hand")
+        return Cover(stamp=frame.stamp, confidence=0.9, share=share)
+
+    estimators = {"held_armhole": ring, "hand_cover": cover, "cuff_round": cover}
     skill = Watcher("watch", Context(world=guard, guard=guard, perception=Perception(estimators)))
     return RingWatch(skill, GRIP.arm, GRIP.hand), world
 
@@ -61,11 +66,10 @@ def test_the_grip_shifts_until_the_outer_edge_is_in_its_place(outer, wanted):
     assert abs(ring.aside) <= 0.14 + 1e-9
 
 
-def test_a_bare_hand_is_a_miss():
-    assert make(share=0.1)[0].missed(PATH)
-    assert not make(share=0.9)[0].missed(PATH)
-    assert make(share=0.1)[0].bare(PATH)
-    assert not make(share=0.9)[0].bare(PATH)
+@pytest.mark.parametrize(("share", "said"), [(0.1, True), (0.9, False), (None, False)])
+def test_a_bare_hand_and_a_cuff_on_one_side_are_misses(share, said):
+    ring, _ = make(share=share)
+    assert ring.missed(PATH) is ring.beside(PATH) is said
 
 
 def test_the_armhole_is_followed_and_forgotten_when_hidden():
