@@ -171,18 +171,20 @@ def close_gripper(skill: Skill, side: Side, *, opening: float = 0.0, force: floa
         What is left between the fingertips [m]; the caller says by `declare_grip` what that is.
 
     Raises:
-        SkillFailure: COMMAND_LOST when the fingers never moved or never rest.
+        SkillFailure: COMMAND_LOST when the fingers never moved, GRASP_MISSED when they never rest.
     """
     n = SIDES.index(side)
     before = start = float(skill.world.observe().gripper_opening[n])
     skill.world.send(GripperOpening(side=side, opening=opening, force_limit=force))
-    end, calm = skill.now() + timeout, 0
+    end, calm, moved = skill.now() + timeout, 0, False
     while calm < 2:
         if skill.now() >= end:
-            raise SkillFailure(Reason.COMMAND_LOST, f"the {side} fingers do not come to rest")
+            if moved:
+                raise SkillFailure(Reason.GRASP_MISSED, f"the {side} fingers do not come to rest")
+            raise SkillFailure(Reason.COMMAND_LOST, f"the {side} fingers do not close")
         yield
         gap = float(skill.world.observe().gripper_opening[n])
-        moved = gap < start - 0.002 or start <= opening + 0.002
+        moved = moved or gap < start - 0.002 or start <= opening + 0.002
         calm = calm + 1 if abs(gap - before) < _RESTS and moved else 0
         before = gap
     return before

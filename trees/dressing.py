@@ -1,6 +1,6 @@
 """Stages C and D of the dressing tree, and what is owed whenever a stage fails.
 
-C  dress the right arm, drive round the foot of the bed, dress the left arm
+C  dress the right arm, see that the left sleeve is on its side, drive round the foot of the bed, dress the left arm
 D  draw the collar to the neck where the chest shows, and sleeves that have slipped up their arms once more
 """
 
@@ -12,6 +12,7 @@ from py_trees.behaviour import Behaviour
 from ..perception.estimates import Cover
 from ..sim.world import SIDES, Side
 from ..skills.bedside import PULLING, stance
+from ..skills.carry_across import CarryAcross
 from ..skills.context import Context
 from ..skills.look_at_person import LookAtPerson
 from ..skills.navigate import Navigate
@@ -22,7 +23,7 @@ from ..skills.retreat import Retreat
 from ..skills.spread import Spread
 from .composers import fallback, sequence
 from .decorators import Condition, Retry, Stage, Timeout
-from .dress_arm import dress_arm
+from .dress_arm import back_off, dress_arm
 from .settle_sleeve import settle_sleeve
 
 SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
@@ -31,11 +32,14 @@ COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far 
 
 def dress(context: Context) -> Behaviour:
     """Stage C."""
+    bring_across = fallback("bring the left sleeve to its side",
+                            CarryAcross("carry the left sleeve across", context, side="left"),
+                            back_off(context, "leave the left sleeve where it is", 0.0))
     go_round = Navigate("drive round the foot of the bed", context, goal="bed_left")
     return Stage("C dress", None, Timeout("C in time", sequence(
         "dress both arms", Retreat("bring the arms back", context, clear=0.05),
         Navigate("go to the right side", context, goal="bed_right"),
-        dress_arm(context, "right"), go_round, dress_arm(context, "left")), seconds=400.0))
+        dress_arm(context, "right"), bring_across, go_round, dress_arm(context, "left")), seconds=400.0))
 
 
 def spread(context: Context) -> Behaviour:

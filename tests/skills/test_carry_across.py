@@ -1,0 +1,67 @@
+"""The second arm's sleeve: left alone on its own side of the bed, carried back from the other one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import Estimate
+from caretree.sim.robot import model
+from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.sim.world import SIDES
+from caretree.skills.bedside import stance
+from caretree.skills.carry_across import ABOVE, LAID, CarryAcross
+from caretree.skills.context import Context
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.skills.scripted_person import laid_strap
+from caretree.skills.strap_view import SeenWell
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+
+def ran(sleeve, load=(0.0, 0.0, -1.0)):
+    """Skill, world and memory after a run from beside the right shoulder, where the first arm was left."""
+    room = scripted_room()
+    room.waypoints["start"] = tuple(stance("right", "shoulder") + (0.25, 0.0, 0.0))
+    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    guard = GuardedWorld(world)
+    context = Context(world=guard, guard=guard, seed=1, perception=scripted_perception(
+        {"sleeve_opening": sleeve, "gripped_cloth": Estimate(stamp=0.0, confidence=0.9)}))
+    skill = CarryAcross("across", context, side="left")
+    for _ in range(6000):
+        context.lease.advance()
+        skill.tick_once()
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+        if "carries" in skill.feedback_message and not world.observe().gripper_opening[SIDES.index("right")] > 0.01:
+            world.load["right"] = np.append(load, np.zeros(3))
+        if skill.status != Status.RUNNING:
+            break
+    return skill, world, context.memory.of(SeenWell, SeenWell)
+
+
+def at(x, y):
+    return replace(laid_strap("left"), position_in_map=np.array((x, y, 0.72)))
+
+
+@pytest.mark.parametrize("sleeve", [at(-0.3, 0.2), PerceptionFailure(Problem.OUT_OF_REACH, "armhole")])
+def test_a_sleeve_on_its_side_or_out_of_sight_is_left_alone(sleeve):
+    skill, world, memory = ran(sleeve)
+    assert skill.status == Status.SUCCESS, skill.failure
+    assert np.allclose(world.observe().pose_base_in_map, stance("right", "shoulder") + (0.25, 0.0, 0.0), atol=0.01)
+    assert not memory.last
+
+
+def test_a_stray_sleeve_is_laid_beyond_the_arm_it_belongs_to():
+    skill, world, memory = ran(at(0.28, 0.44))
+    assert skill.status == Status.SUCCESS, skill.failure
+    middle = world.room.bed[:, :2].mean(axis=0)
+    assert np.allclose(memory.last["left"][:2], middle + (-LAID[0], LAID[1]), atol=0.03)
+    assert memory.last["left"][2] < world.room.bed[1, 2] + ABOVE
+    assert world.observe().gripper_opening.min() > 0.05, "both hands are open"
+
+
+def test_it_goes_no_farther_than_the_other_sleeve_lets_it():
+    skill, _, memory = ran(at(0.28, 0.44), load=(5.0, 0.0, -2.0))
+    assert skill.status == Status.SUCCESS, skill.failure
+    assert memory.last["left"][0] > 0.0
