@@ -1,0 +1,68 @@
+"""How a gown that was taken askew, or is held taut, is let go of."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.robot import model
+from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.sim.world import SIDES
+from caretree.skills.context import Context
+from caretree.skills.hands import hand_now
+from caretree.skills.lay_gown import AHEAD, BEGIN, BEYOND, BY, FACING, FARTHEST, FOLLOWS, HIDDEN, LANE, LayGown
+from caretree.skills.scripted_perception import scripted_perception
+from caretree.skills.scripted_person import laid_strap
+from caretree.trees.guard import GuardedWorld
+from py_trees.common import Status
+
+WIDTH = 0.84  # [m]
+STRAIGHT_AT = (WIDTH + BEYOND) / 2 - HIDDEN  # where the near armhole shows in a gown that lies straight [m]
+
+
+def armhole(x):
+    seen = laid_strap("right")
+    return replace(seen, ring_points_in_map=seen.ring_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
+
+
+def let_go_at(seen, taut_until=1.0):
+    """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
+    room = scripted_room()
+    room.waypoints["start"] = (LANE, BEGIN + AHEAD, FACING)
+    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    guard = GuardedWorld(world)
+    context = Context(world=guard, guard=guard, seed=1, perception=scripted_perception({"sleeve_opening": seen}))
+    skill = LayGown("lay", context, width=WIDTH)
+    places = []
+    for _ in range(6000):
+        context.lease.advance()
+        skill.tick_once()
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+        x = {side: float(hand_now(skill, side)[0, 3]) for side in SIDES}
+        pull = 1.0 if x["left"] - x["right"] > taut_until + 0.005 else 0.1
+        for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
+            world.load[side] = np.array((-sign * pull, 0.0, -1.0, 0.0, 0.0, 0.0))
+        places.append((x["left"], x["right"]))
+        if "withdraws" in skill.feedback_message or skill.status != Status.RUNNING:
+            break
+    assert skill.failure is None, skill.failure
+    return places[-1]
+
+
+@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.01, 0.0), (-0.04, 0.04 * FOLLOWS), (0.2, -FARTHEST)])
+def test_a_gown_that_lies_askew_is_drawn_across(askew, shift):
+    near, far = let_go_at(armhole(STRAIGHT_AT + askew))
+    middle = max(shift, 0.35 - WIDTH / 2)
+    assert (near + far) / 2 == pytest.approx(middle, abs=0.01)
+    assert near - far == pytest.approx(WIDTH, abs=0.01)
+
+
+def test_one_whose_armhole_is_hidden_is_laid_as_it_is():
+    near, far = let_go_at(PerceptionFailure(Problem.NOTHING_SEEN, "armhole"))
+    assert (near + far) / 2 == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_taut_neckline_is_slackened_before_it_is_let_go():
+    near, far = let_go_at(armhole(STRAIGHT_AT), taut_until=WIDTH - 1.5 * BY)
+    assert near - far == pytest.approx(WIDTH - 2 * BY, abs=0.01)
