@@ -7,6 +7,7 @@ by the lengths of the limb, by its last motion, which dies out, and by the gripp
 
 from __future__ import annotations
 
+import copy
 import itertools
 from typing import Any
 
@@ -25,6 +26,8 @@ from .chain import (
     span_row,
     turned_about_shoulder,
 )
+from .cloud import project
+from .colours import Surface, surfaces
 from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture
 from .skin import (
@@ -62,6 +65,9 @@ _TWIST = 0.2  # share of the way of a turned arm's joints that is not known: it 
 _WELL = 0.04  # deviation of every joint at which the first look has seen a whole arm [m]
 _KNOWN_SIGMA = 0.03  # relative, of lengths that were seen once
 _LOST = 0.10  # standard deviation at which a joint counts as lost [m]
+# An arm that shows at no more of its places than that is not where it was; one looked for afresh shows at half of them.
+_PLACES, _GONE, _SHOWS = np.linspace(0.8, 3.0, 23), 0.2, 0.5
+_THICK = 0.09  # skin that is that much nearer or farther than an arm's axis is not that arm's [m]
 
 
 class ArmTracker:
@@ -143,6 +149,24 @@ class ArmTracker:
         self.seen = frame.stamp
         return fit.used
 
+    def look_afresh(self, frame: Frame) -> bool:
+        """Look for the arm all over a picture in which it does not show where it was.
+
+        Returns:
+            Whether it was found elsewhere, with bare skin all along it; if not, nothing changes.
+        """
+        if self._limb is None or self._bare(frame) > _GONE:
+            return False
+        other = copy.copy(self)
+        try:
+            other._start(frame, other._view(frame))
+        except PerceptionFailure:
+            return False
+        if other._bare(frame) < _SHOWS:
+            return False
+        self.__dict__.update(other.__dict__)
+        return True
+
     def update_grip(self, time: float, point_in_map: np.ndarray, fraction: float, deviation: float = 0.02) -> None:
         """The robot's fingers hold the arm: its axis passes through a known point.
 
@@ -195,6 +219,15 @@ class ArmTracker:
         moved = np.linalg.norm(turned - joints, axis=1)
         self._filter.x[:12] = turned.ravel()
         self._filter.P[:12, :12] += np.diag(np.repeat((_TWIST * moved) ** 2, 3))
+
+    def _bare(self, frame: Frame) -> float:
+        """Share of the arm's places below the upper arm's middle at which a picture shows skin."""
+        u, v, depth = project(frame, np.array([point_along(self._joints(), float(p)) for p in _PLACES])).T
+        height, width = frame.depth.shape
+        inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
+        rows, columns = (np.where(inside, np.round(x), 0).astype(int) for x in (v, u))
+        skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN
+        return float((inside & skin & (np.abs(frame.depth[rows, columns] - depth) < _THICK)).mean())
 
     def _joints(self) -> np.ndarray:
         return self._filter.x[:12].reshape(4, 3).copy()

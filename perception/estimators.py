@@ -24,7 +24,7 @@
 | held_armhole | side, near_in_map | SleeveOpening |
 | sleeve_heading | side, near_in_map | SleeveHeading: from the armhole to the cuff |
 | worn_sleeve | side, arm_in_map | WornSleeve: where it shows along the upper arm |
-| arm | side, grip_in_map, fraction | ArmPosture |
+| arm | side, grip_in_map, fraction, afresh | ArmPosture |
 
 `frames` are earlier views, oldest first; `frame` is the latest.  Every estimator raises PerceptionFailure instead of
 guessing.
@@ -41,6 +41,7 @@ from ..sim.world import SIDES, Frame, RoomMap, Side
 from .arm_tracker import ArmTracker
 from .collar import collar_corner, collar_line, collar_near_shoulder
 from .cover import chest_cover
+from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreGrasp
 from .garment import garment_mask, gown_side
 from .grip import gripped_cloth, layers
@@ -90,9 +91,17 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def cover(frame: Frame, shoulders_in_map: np.ndarray) -> Cover:
         return chest_cover(frame, room.bed, shoulders_in_map)
 
-    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0) -> ArmPosture:
-        """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip."""
+    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0,
+            afresh: bool = False) -> ArmPosture:
+        """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip.
+
+        `afresh`: the arm does not show where it was, so look for it elsewhere.
+        """
         tracker = trackers[side]
+        if afresh:
+            if not tracker.started or not tracker.look_afresh(frame):
+                raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
+            return tracker.estimate(frame.stamp)
         if grip_in_map is not None and tracker.started:  # first: it says where to look
             tracker.update_grip(frame.stamp, grip_in_map, fraction)
         tracker.update(frame)

@@ -24,6 +24,7 @@ from .arm_path import ArmPath
 from .skill import Skill
 
 PERIOD = 0.25  # between two looks [s]
+SEARCHING = 2.0  # between two searches for an arm that does not show where it was, 0.3 s of computing each [s]
 PATIENCE = 300.0  # an arm under the gown, which its owner cannot move, is taken to stay for this long [s]
 VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
 _BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
@@ -48,12 +49,14 @@ class Watch:
         arms: latest posture by the person's side.
         seen: when that arm was last seen or felt [s].
         looked: when the camera was last asked [s].
+        searched: when that arm was last looked for elsewhere than where it was [s].
         parts: what the guard was told, chains of points (n, 3) with a radius [m].
     """
 
     arms: dict[Side, ArmPosture] = field(default_factory=dict)
     seen: dict[Side, float] = field(default_factory=dict)
     looked: float = -np.inf
+    searched: dict[Side, float] = field(default_factory=dict)
     parts: dict[str, tuple[np.ndarray, float]] = field(default_factory=dict)
 
 
@@ -87,9 +90,13 @@ def watch_arm(skill: Skill, side: Side, *, hold: Hold | None = None, period: flo
             points = turned_about_shoulder(watch.arms[side].points_in_map, hold.place, _held_at(skill, hold))
             watch.arms[side] = replace(watch.arms[side], points_in_map=points)
         try:
-            if side in watch.arms and visible_share(frame, watch.arms[side]) < VISIBLE:
+            if side not in watch.arms or visible_share(frame, watch.arms[side]) >= VISIBLE:
+                _take(skill, frame, side, hold)
+            elif hold is not None or now - watch.searched.get(side, -np.inf) < SEARCHING:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
-            _take(skill, frame, side, hold)
+            else:
+                watch.searched[side] = now
+                _take(skill, frame, side, None, afresh=True)
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
@@ -133,9 +140,9 @@ def see_person(skill: Skill) -> list[Side]:
     return found
 
 
-def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
+def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, *, afresh: bool = False) -> None:
     """Update one arm from a frame and tell the guard."""
-    details = {}
+    details: dict[str, object] = {"afresh": True} if afresh else {}
     if hold is not None:
         details = {"grip_in_map": _held_at(skill, hold), "fraction": hold.place}
     posture = skill.context.perceive("arm", frame, side=side, **details)

@@ -161,3 +161,26 @@ def test_never_seen(scenes, bed, black):
         tracker.estimate(1.0)
     with pytest.raises(PerceptionFailure):
         tracker.update_grip(1.0, np.zeros(3), 1.0)
+
+
+def test_an_arm_that_does_not_show_where_it_was_is_looked_for_elsewhere(scenes, bed):
+    for seed in range(3):
+        raised, sunk = scenes.person(seed, lift=0.65), scenes.person(seed, lift=0.1)
+        tracker = ArmTracker("right", bed)
+        for k in range(5):
+            tracker.update(raised.frame(k, stamp=0.1 * k))
+        assert not tracker.look_afresh(raised.frame(9, stamp=1.0)), "it shows where it was"
+        assert tracker.look_afresh(sunk.frame(10, stamp=2.0))
+        assert errors_of(tracker, sunk, 2.0).max() < 0.06
+
+
+def test_an_arm_under_cloth_is_not_found_elsewhere(scenes, bed):
+    scene = scenes.person(1)
+    tracker = ArmTracker("right", bed)
+    for k in range(5):
+        tracker.update(scene.frame(k, stamp=0.1 * k))
+    arm = scene.arms["right"]
+    scene.renderer.add_rigid("sleeve", *cylinder_mesh(arm[0] + 0.4 * (arm[1] - arm[0]), arm[3] + 0.02, 0.12),
+                             scene.look.colours["gown_outside"])
+    assert not tracker.look_afresh(scene.frame(9, stamp=1.0))
+    assert errors_of(tracker, scene, 1.0).max() < 0.05

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
@@ -6,7 +8,7 @@ from caretree.sim.world import Frame
 from caretree.skills.context import Context, Perception
 from caretree.skills.scripted_person import lying_posture
 from caretree.skills.skill import Skill
-from caretree.skills.tracking import NEAR_SPEED, careful, visible_share, watch_arm, watch_of
+from caretree.skills.tracking import NEAR_SPEED, Hold, careful, visible_share, watch_arm, watch_of
 from caretree.trees.guard import GuardedWorld
 
 DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
@@ -50,21 +52,42 @@ def test_an_arm_in_front_of_where_it_was_is_not_hidden():
 
 
 def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
-    covered = []
-    asked = []
-    skill, world = make(lambda frame, side, **_: asked.append(1) or lying_posture(side, frame.stamp),
-                        lambda camera, time: looking_down(time, covered))
+    covered, asked, searched = [], [], []
+
+    def arm(frame, side, afresh=False, **_):
+        (searched if afresh else asked).append(frame.stamp)
+        if afresh:
+            raise PerceptionFailure(Problem.ARM_LOST, "right arm")
+        return lying_posture(side, frame.stamp)
+
+    skill, world = make(arm, lambda camera, time: looking_down(time, covered))
     assert visible_share(looking_down(), lying_posture("right")) == 1.0
     first = watch_arm(skill, "right", period=0.0)
     covered.extend(range(200))
     assert visible_share(looking_down(covered=covered), first) == 0.0
     world.clock.wait_until(5.0)
     assert watch_arm(skill, "right", period=0.0, patience=10.0) is first
+    watch_arm(skill, "right", period=0.0, patience=10.0)
     assert len(asked) == 1, "a tracker would follow what is not the arm"
+    assert searched == [5.0], "looking for it all over the picture takes its time"
     world.clock.wait_until(11.0)
     with pytest.raises(PerceptionFailure) as lost:
         watch_arm(skill, "right", period=0.0, patience=10.0)
     assert lost.value.problem == Problem.ARM_LOST
+
+
+def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():
+    there = lying_posture("right")
+    elsewhere = replace(there, points_in_map=there.points_in_map + (0.2, 0.0, 0.0))
+    covered = []
+    skill, world = make(lambda frame, side, afresh=False, **_: elsewhere if afresh else there,
+                        lambda camera, time: looking_down(time, covered))
+    watch_arm(skill, "right")
+    covered.extend(range(200))
+    world.clock.wait_until(1.0)
+    assert watch_arm(skill, "right", hold=Hold("left", 0.9)).points_in_map[0] == pytest.approx(there.points_in_map[0])
+    world.clock.wait_until(2.0)
+    assert watch_arm(skill, "right") is elsewhere
 
 
 def test_an_arm_never_found_is_not_invented():
