@@ -14,6 +14,9 @@ from ..sim.world import Side
 
 LIFT = (1.05, -0.38)  # from the middle of the bed, for the person's right side [m]
 SHOULDER = (0.97, -0.62)
+# Sliding along the bed: distance of the base from its middle, its deck under the mattress edge, and of the hands before
+# the base's centre [m]; towards the head of the bed [rad].
+LANE, AHEAD, FACING = 0.77, 0.55, -np.pi / 2
 Stand = Literal["lift", "shoulder"]
 LIFTING: dict[Side, Side] = {"right": "left", "left": "right"}  # arm -> the robot's hand on the head side
 PULLING: dict[Side, Side] = {"right": "right", "left": "left"}  # arm -> the robot's hand on the feet side

@@ -11,11 +11,10 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .arm_path import UP
-from .bedside import HEADWARD, LIFTING, outwards
+from .bedside import AHEAD, FACING, HEADWARD, LANE, LIFTING, outwards
 from .context import Context
 from .driving import drive_to
 from .hands import hand_now, look_towards, move_hands, open_gripper, until_taut
-from .lay_gown import AHEAD, FACING, LANE
 from .motion.errors import MotionError
 from .pinch import back_off, pinch, reach_in
 from .ports import Input

@@ -10,6 +10,7 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import SIDES, Side
+from .bedside import AHEAD, FACING, LANE
 from .context import Context
 from .driving import drive_to
 from .hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
@@ -19,9 +20,6 @@ from .reasons import Reason
 from .scripted_person import offer_person
 from .skill import Skill
 
-LANE = 0.77  # x of the base beside the bed, its deck under the mattress edge [m]
-FACING = -np.pi / 2  # towards the head of the bed [rad]
-AHEAD = 0.55  # of the hands before the base's centre [m]
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
 PATH = ((0.80, 1.15), (0.40, 0.98), (0.16, 0.87))
@@ -102,7 +100,10 @@ class LayGown(Skill):
             if (far - near) / 2 < SLACK:
                 return
             self._apart -= BY
-            yield from self._hands_to(*PATH[-1])
+            try:
+                yield from self._hands_to(*PATH[-1])
+            except MotionError:
+                return  # it is as slack as it gets
 
     def _hands_to(self, y: float, z: float, share: float = 1.0) -> Iterator[None]:
         """Both hands to the ends of a neckline at (y, z), or a `share` of the way there, however they turn."""

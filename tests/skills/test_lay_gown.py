@@ -9,9 +9,10 @@ from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.scripted import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
+from caretree.skills.bedside import AHEAD, FACING, LANE
 from caretree.skills.context import Context
 from caretree.skills.hands import hand_now
-from caretree.skills.lay_gown import AHEAD, BEGIN, BEYOND, BY, FACING, FARTHEST, FOLLOWS, HIDDEN, LANE, LayGown
+from caretree.skills.lay_gown import BEGIN, BEYOND, BY, FARTHEST, FOLLOWS, HIDDEN, LayGown
 from caretree.skills.scripted_perception import scripted_perception
 from caretree.skills.scripted_person import laid_strap
 from caretree.trees.guard import GuardedWorld
