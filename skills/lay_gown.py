@@ -62,7 +62,6 @@ class LayGown(Skill):
             before = y
         yield from self._hands_to(*PATH[-1])
         yield from self._centre()
-        yield from self._slacken()
         for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
             yield from open_gripper(self, side)
         self.note("withdraws")
@@ -89,21 +88,20 @@ class LayGown(Skill):
             self._middle = CENTRE + min(-FOLLOWS * askew, FARTHEST)
             with suppress(MotionError):  # then it stays where it is
                 yield from self._hands_to(*PATH[-1])
+                yield from self._slacken()
 
     def _slacken(self) -> Iterator[None]:
         """Bring the hands together until the neckline between them is slack.
 
-        Let go of at one end while it is taut, it draws the whole gown to the other side, where it falls over the edge.
+        Let go of at one end while it is taut, it draws the gown to the other side again.  Only a gown that was askew is
+        slackened: sleeves that do not hang over the edges of the bed may fold inwards.
         """
         for _ in range(NARROWER):
             near, far = (float(cloth_load(self, side)[0]) for side in SIDES)
             if (far - near) / 2 < SLACK:
                 return
             self._apart -= BY
-            try:
-                yield from self._hands_to(*PATH[-1])
-            except MotionError:
-                return  # it is as slack as it gets
+            yield from self._hands_to(*PATH[-1])
 
     def _hands_to(self, y: float, z: float, share: float = 1.0) -> Iterator[None]:
         """Both hands to the ends of a neckline at (y, z), or a `share` of the way there, however they turn."""
