@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from contextlib import suppress
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from .arm_path import UP, ArmPath
-from .bedside import HEADWARD, outwards
+from .bedside import outwards
 from .context import Context
 from .hands import cloth_load, hand_now, look_towards, move_hands, until_taut
 from .holding import holding
@@ -31,12 +30,7 @@ BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and ab
 LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
 HARDER = 1.2  # how much harder a sleeve that does not open is drawn out the second time
 HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
-# The gown hangs on something, such as the other hand.  The hand comes to rest 0.3 N later; 6.2 N and more stretched a
-# hundredth of the threads by a quarter [N].
-CAUGHT = 5.5
-# A gown that hangs over the far edge of the bed catches on the other hand when it is drawn headward.  Drawn away from
-# that hand first, it comes up onto the bed: outwards of the fingertips, feetward, above where it was raised to [m].
-DETOUR, STUCK = np.array((0.20, 0.32, 0.10)), 0.10
+CAUGHT = 6.5  # the gown hangs on something: more stretches a hundredth of its threads by a quarter [N]
 
 
 class PresentSleeve(Skill):
@@ -47,15 +41,13 @@ class PresentSleeve(Skill):
 
     Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
     is carried no farther, lest the gown be drawn off the other arm [N]; `opens`, how far beyond the armhole the cuff
-    has to show in the end, along the hand, -inf for anything [m]; `loose`, whether the gown is on no arm yet: one that
-    does not come along is then drawn over from the other side of the bed.
+    has to show in the end, along the hand, -inf for anything [m].
     """
 
     grip = Input(StrapGrip)
     hold = Input(Hold, default=None)
     taut = Input(float, default=np.inf)
     opens = Input(float, default=-np.inf)
-    loose = Input(bool, default=False)
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
                Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.SLEEVE_FOLDED, Reason.SLEEVE_CAUGHT)
 
@@ -96,10 +88,7 @@ class PresentSleeve(Skill):
     def _bring(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Out beyond the fingertips, then back before them."""
         hand = self.grip.hand
-        goal = yield from self._carry_out(path, taut)
-        if self.loose and np.linalg.norm(goal - hand_now(self, hand)[:3, 3]) > STUCK:
-            yield from self._draw_over(path)
-            yield from self._carry_out(path, CAUGHT)
+        yield from holding(self, self.hold, self._carry_out(path, taut))
         yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
@@ -141,28 +130,19 @@ class PresentSleeve(Skill):
         assert isinstance(seen, SleeveHeading)
         return seen
 
-    def _carry_out(self, path: ArmPath, taut: float) -> Generator[None, None, np.ndarray]:
-        """Carry the sleeve beyond the fingertips, as far as the arm reaches; returns where to (3,) [m]."""
+    def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
+        """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
         problem: MotionError | None = None
         for beyond in BEYOND:
             goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
             try:
                 motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
-                yield from holding(self, self.hold, until_taut(self, self.grip.hand, taut, motion))
-                return goal[:3, 3]
+                yield from until_taut(self, self.grip.hand, taut, motion)
+                return
             except MotionError as stop:
                 problem = stop
         assert problem is not None
         raise problem
-
-    def _draw_over(self, path: ArmPath) -> Iterator[None]:
-        """Draw the gown away from the other hand, low and feetward."""
-        hand = self.grip.hand
-        pose, (out, feetward, up) = hand_now(self, hand), DETOUR
-        pose[:3, 3] = (*(path.points[3] + out * outwards(self.grip.arm) - feetward * HEADWARD)[:2], pose[2, 3] + up)
-        motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")
-        with suppress(MotionError):  # then it is drawn over as far as it comes
-            yield from holding(self, self.hold, until_taut(self, hand, CAUGHT, motion))
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -40,7 +40,6 @@ HEAD_END, SEAT = -0.45, -0.25
 # How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
 # half; the second must not draw the first off its arm [N].
 TAUT: dict[Side, float] = {"right": 4.0, "left": 2.0}
-FIRST: Side = "right"  # the arm that is dressed first
 TAUT_ON: dict[Side, float] = {"right": 4.2, "left": 3.8}
 # How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
 # sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
@@ -98,10 +97,10 @@ def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> 
 
     def again() -> Behaviour:
         return PresentSleeve(f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold,
-                             taut=TAUT[arm], loose=arm == FIRST)
+                             taut=TAUT[arm])
 
     present = PresentSleeve(f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold, taut=TAUT[arm],
-                            opens=OPENS[arm], loose=arm == FIRST)
+                            opens=OPENS[arm])
     pull = PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, upto=PAST_WRIST)
     return sequence(
         f"over the {arm} hand",
