@@ -43,6 +43,7 @@ test: $(READY)
 
 lint: $(READY)
 	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check --quiet
 
 types: $(READY)
 	@$(BIN)/pyright

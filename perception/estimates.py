@@ -9,8 +9,15 @@ import numpy as np
 
 from ..sim.world import Side
 
-GraspTarget = Literal["near_hang", "collar_corner_left", "collar_corner_right", "sleeve_left", "sleeve_right",
-                      "collar_left", "collar_right"]
+GraspTarget = Literal[
+    "near_hang",
+    "collar_corner_left",
+    "collar_corner_right",
+    "sleeve_left",
+    "sleeve_right",
+    "collar_left",
+    "collar_right",
+]
 SLEEVE_OF: dict[Side, GraspTarget] = {"left": "sleeve_left", "right": "sleeve_right"}
 COLLAR_OF: dict[Side, GraspTarget] = {"left": "collar_left", "right": "collar_right"}
 CORNER_OF: dict[Side, GraspTarget] = {"left": "collar_corner_left", "right": "collar_corner_right"}

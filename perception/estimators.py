@@ -38,25 +38,25 @@ from typing import Any
 import numpy as np
 
 from ..sim.world import SIDES, Frame, RoomMap, Side
-from .arm_tracker import ArmTracker
-from .collar import collar_corner, collar_line, collar_near_shoulder
-from .cover import chest_cover
 from .errors import PerceptionFailure, Problem
 from .estimates import ArmPosture, Cover, Estimate, GraspPoint, LayerCount, PreGrasp
-from .garment import garment_mask, gown_side
-from .grip import gripped_cloth, layers
-from .hand_cover import hand_cover
-from .hanging import grasp_near_hang
-from .held_armhole import held_armhole
-from .hung_corner import hook, hung_corner, shown_corner
-from .hung_side import hung_side
-from .pregrasp import pregrasp_proposal
-from .round_arm import cuff_round
-from .skin import head_seen
-from .sleeve import sleeve_opening
-from .sleeve_heading import sleeve_heading
-from .strap import sleeve_strap
-from .worn_sleeve import worn_sleeve
+from .gown.collar import collar_corner, collar_line, collar_near_shoulder
+from .gown.hang_point import grasp_near_hang
+from .gown.hung_corner import hook, hung_corner, shown_corner
+from .gown.hung_side import hung_side
+from .gown.layers import gripped_cloth, layers
+from .gown.pregrasp import pregrasp_proposal
+from .image.garment import garment_mask, gown_side
+from .person.arm_tracker import ArmTracker
+from .person.chest_cover import chest_cover
+from .person.hand_cover import hand_cover
+from .person.skin import head_seen
+from .sleeve.cuff_round_arm import cuff_round
+from .sleeve.held_armhole import held_armhole
+from .sleeve.held_sleeve_heading import sleeve_heading
+from .sleeve.lying_sleeve import sleeve_opening
+from .sleeve.strap import sleeve_strap
+from .sleeve.worn_sleeve import worn_sleeve
 
 Estimator = Callable[..., Estimate]
 
@@ -77,12 +77,14 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def corner(frame: Frame, side: Side, **details: Any) -> GraspPoint:
         return collar_corner(frame, side, **details)
 
-    def pre_grasp(frame: Frame, poses_hand_in_map: Sequence[np.ndarray], frames: Sequence[Frame] = (),
-                  **details: Any) -> PreGrasp:
+    def pre_grasp(
+        frame: Frame, poses_hand_in_map: Sequence[np.ndarray], frames: Sequence[Frame] = (), **details: Any
+    ) -> PreGrasp:
         return pregrasp_proposal([*frames, frame], poses_hand_in_map, **details)
 
-    def count(frame: Frame, side: Side, pose_hand_in_map: np.ndarray, frames: Sequence[Frame] = (),
-              **details: Any) -> LayerCount:
+    def count(
+        frame: Frame, side: Side, pose_hand_in_map: np.ndarray, frames: Sequence[Frame] = (), **details: Any
+    ) -> LayerCount:
         return layers([*frames, frame], side, pose_hand_in_map, **details)
 
     def head(frame: Frame) -> Estimate:
@@ -91,8 +93,9 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
     def cover(frame: Frame, shoulders_in_map: np.ndarray) -> Cover:
         return chest_cover(frame, room.bed, shoulders_in_map)
 
-    def arm(frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0,
-            afresh: bool = False) -> ArmPosture:
+    def arm(
+        frame: Frame, side: Side, grip_in_map: np.ndarray | None = None, fraction: float = 1.0, afresh: bool = False
+    ) -> ArmPosture:
         """Posture now; `grip_in_map` (3,) is where the robot holds the arm, `fraction` 0 shoulder to 3 fingertip.
 
         `afresh`: the arm does not show where it was, so look for it elsewhere.
@@ -107,10 +110,28 @@ def classical_estimators(room: RoomMap, seed: int) -> dict[str, Estimator]:
         tracker.update(frame)
         return tracker.estimate(frame.stamp)
 
-    return {"garment_mask": garment_mask, "gown_side": gown_side, "hang_point": hang_point, "collar_line": collar_line,
-            "collar_corner": corner, "pre_grasp": pre_grasp, "layers": count, "gripped_cloth": gripped_cloth,
-            "sleeve_opening": sleeve_opening, "hook": hook, "shown_corner": shown_corner,
-            "hung_corner": hung_corner, "hung_side": hung_side, "held_armhole": held_armhole,
-            "sleeve_heading": sleeve_heading, "worn_sleeve": worn_sleeve, "hand_cover": hand_cover,
-            "cuff_round": cuff_round, "sleeve_strap": sleeve_strap, "collar_near_shoulder": collar_near_shoulder,
-            "head": head, "chest_cover": cover, "arm": arm}
+    return {
+        "garment_mask": garment_mask,
+        "gown_side": gown_side,
+        "hang_point": hang_point,
+        "collar_line": collar_line,
+        "collar_corner": corner,
+        "pre_grasp": pre_grasp,
+        "layers": count,
+        "gripped_cloth": gripped_cloth,
+        "sleeve_opening": sleeve_opening,
+        "hook": hook,
+        "shown_corner": shown_corner,
+        "hung_corner": hung_corner,
+        "hung_side": hung_side,
+        "held_armhole": held_armhole,
+        "sleeve_heading": sleeve_heading,
+        "worn_sleeve": worn_sleeve,
+        "hand_cover": hand_cover,
+        "cuff_round": cuff_round,
+        "sleeve_strap": sleeve_strap,
+        "collar_near_shoulder": collar_near_shoulder,
+        "head": head,
+        "chest_cover": cover,
+        "arm": arm,
+    }

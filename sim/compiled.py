@@ -14,6 +14,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     Where neither the package's folder nor the user's cache can be written, every process compiles anew, which takes
     seconds, instead of none starting.
     """
+
     def compiled(function: Callable[..., Any]) -> Any:
         try:
             return numba.njit(cache=True, **options)(function)

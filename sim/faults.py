@@ -15,14 +15,23 @@ import numpy as np
 from .errors import CaretreeError
 from .world import SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World
 
-Fault = Literal["grip_slip", "occlusion", "stale_frame", "force_spike", "lost_command", "person_moves", "dead_camera",
-                "dead_sensor"]
+Fault = Literal[
+    "grip_slip", "occlusion", "stale_frame", "force_spike", "lost_command", "person_moves", "dead_camera", "dead_sensor"
+]
 FAULTS: tuple[str, ...] = get_args(Fault)
 PHASES: tuple[str, ...] = ("start", "step", "cancel")
 FOREVER = float("inf")
 # How long each fault lasts [s]; 0 happens at once and is over.
-DURATION: dict[str, float] = {"grip_slip": 0.0, "person_moves": 0.0, "occlusion": 3.0, "stale_frame": 3.0,
-                              "force_spike": 0.5, "lost_command": 1.0, "dead_camera": FOREVER, "dead_sensor": FOREVER}
+DURATION: dict[str, float] = {
+    "grip_slip": 0.0,
+    "person_moves": 0.0,
+    "occlusion": 3.0,
+    "stale_frame": 3.0,
+    "force_spike": 0.5,
+    "lost_command": 1.0,
+    "dead_camera": FOREVER,
+    "dead_sensor": FOREVER,
+}
 SPIKE = np.array((0.0, 0.0, -40.0, 0.0, 0.0, 0.0))  # [N], [N m] above every limit of a load
 OCCLUDER = 0.25  # [m] distance of what stands before the camera
 CLOSED = 0.03  # [m] a hand sent to less than this is taken to hold something

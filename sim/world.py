@@ -100,15 +100,18 @@ class JointTrajectory:
         """Refuse what no robot can do."""
         known = {"head_pan", *(f"{side}_{joint}" for side in SIDES for joint in ARM_JOINTS)}
         if not self.joints or len(set(self.joints)) < len(self.joints) or not set(self.joints) <= known:
-            raise WorldError(f"a trajectory moves {', '.join(self.joints) or 'nothing'}, but different joints out of "
-                             f"head_pan and left_ or right_ with {', '.join(ARM_JOINTS)} are asked for")
+            raise WorldError(
+                f"a trajectory moves {', '.join(self.joints) or 'nothing'}, but different joints out of "
+                f"head_pan and left_ or right_ with {', '.join(ARM_JOINTS)} are asked for"
+            )
         count = len(np.atleast_1d(self.times))
         _check_numbers("times of a trajectory", self.times, (count,))
         _check_numbers("positions of a trajectory", self.positions, (count, len(self.joints)))
         if count < 2 or self.times[0] != 0.0 or not (np.diff(self.times) > 0.0).all():
             shown = np.round(self.times[:4], 3).tolist()
-            raise WorldError(f"times of a trajectory are {shown}, but two and more that begin at 0 and grow are asked "
-                             "for")
+            raise WorldError(
+                f"times of a trajectory are {shown}, but two and more that begin at 0 and grow are asked for"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

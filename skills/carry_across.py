@@ -10,19 +10,19 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
-from .arm_path import UP
-from .bedside import AHEAD, FACING, HEADWARD, LANE, LIFTING, outwards
-from .context import Context
-from .driving import drive_to
-from .hands import hand_now, look_towards, move_hands, open_gripper, until_taut
+from .belief.person_tracking import careful
+from .belief.sleeve_search import SeenWell
+from .control.base import drive_to
+from .control.hands import hand_now, look_towards, move_hands, open_gripper, until_taut
+from .control.pinch import back_off, pinch, reach_in
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import UP
+from .geometry.stances import AHEAD, FACING, HEADWARD, LANE, LIFTING, outwards
 from .motion.errors import MotionError
-from .pinch import back_off, pinch, reach_in
-from .ports import Input
-from .reasons import Reason, SkillFailure
-from .scripted_person import laid_strap, offer_person
-from .skill import Skill
-from .strap_view import SeenWell
-from .tracking import careful
+from .scripted.scripted_person import laid_strap, offer_person
 
 STRAY = (0.28, 0.35)  # about where such a sleeve lies: beyond the bed's middle, feetward of it [m]
 WRONG_SIDE = 0.02  # beyond the bed's middle [m]
@@ -41,8 +41,14 @@ class CarryAcross(Skill):
     """
 
     side = Input(Side)
-    reasons = (Reason.PATH_BLOCKED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
-               Reason.COMMAND_LOST, Reason.TIMEOUT)
+    reasons = (
+        Reason.PATH_BLOCKED,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.COMMAND_LOST,
+        Reason.TIMEOUT,
+    )
 
     def steps(self) -> Iterator[None]:
         """Look; drive, take, carry, let go, drive back."""
@@ -88,8 +94,11 @@ class CarryAcross(Skill):
         memory = self.context.memory.of(SeenWell, SeenWell)
         memory.sleeves.pop(self.side, None)
         out, feetward, above = LAID
-        for there in (hand_now(self, hand)[:3, 3] + ABOVE * UP, self._place(out, feetward, above + ABOVE),
-                      self._place(out, feetward, above)):
+        for there in (
+            hand_now(self, hand)[:3, 3] + ABOVE * UP,
+            self._place(out, feetward, above + ABOVE),
+            self._place(out, feetward, above),
+        ):
             pose = hand_now(self, hand)
             pose[:3, 3] = there
             motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")

@@ -8,13 +8,13 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
-from .context import Context
-from .ports import Input
-from .reasons import Reason, SkillFailure
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_view import find_sleeve
-from .tracking import VISIBLE, visible_share, watch_arm
+from .belief.person_tracking import VISIBLE, visible_share, watch_arm
+from .belief.sleeve_search import find_sleeve
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .scripted.scripted_person import offer_person
 
 AT_HAND = 0.36  # how far from the fingertips, along the bed, a sleeve lies at most that is taken from there [m]
 

@@ -9,12 +9,12 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import WornSleeve
 from ..sim.world import Side
-from .context import Context
-from .ports import Input
-from .reasons import Reason, SkillFailure
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import watch_arm
+from .belief.person_tracking import watch_arm
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .scripted.scripted_person import offer_person
 
 # The cuff of a sleeve with the arm inside shows at least so far down the upper arm: 0.29 to 0.77 of it in recorded
 # runs, 0.01 and 0.05 where the sleeve had missed the arm and lay in a heap at the shoulder.
@@ -47,15 +47,22 @@ class CheckSleeve(Skill):
             self.note(f"cannot see the {self.side} sleeve's bindings")
             return
         assert isinstance(seen, WornSleeve)
-        self.note(f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
-                  f"{seen.round_arm:.0%} round it")
+        self.note(
+            f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
+            f"{seen.round_arm:.0%} round it"
+        )
         if seen.cuff_at < CUFF_AT or seen.round_arm < ROUND:
-            raise SkillFailure(Reason.SLEEVE_MISSED, f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
-                                                     f"{seen.round_arm:.0%} of the way round it")
+            raise SkillFailure(
+                Reason.SLEEVE_MISSED,
+                f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
+                f"{seen.round_arm:.0%} of the way round it",
+            )
         away = seen.cuff_at * float(np.linalg.norm(arm[1] - arm[0]))
         if away > self.upto:
-            raise SkillFailure(Reason.SLEEVE_LOW, f"the cuff is {away * 100:.0f} cm down the arm, "
-                                                  f"{self.upto * 100:.0f} cm at most are asked for")
+            raise SkillFailure(
+                Reason.SLEEVE_LOW,
+                f"the cuff is {away * 100:.0f} cm down the arm, {self.upto * 100:.0f} cm at most are asked for",
+            )
         yield
 
     @classmethod

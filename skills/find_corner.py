@@ -10,12 +10,12 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import CORNER_OF, GraspPoint
 from ..sim.world import Frame, Side
-from .context import Context
-from .driving import drive_to
-from .ports import Output
-from .reasons import Reason
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .control.base import drive_to
+from .core.context import Context
+from .core.ports import Output
+from .core.reasons import Reason
+from .core.skill import Skill
+from .scripted.scripted_gown import offer_gown
 
 STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
 ROUND = tuple(np.deg2rad((0.0, -30.0, 30.0)))  # about the hook, from squarely before the rail [rad]
@@ -56,8 +56,10 @@ class FindCorner(Skill):
         self.note("looks for a corner of the neckline")
         yaw = float(self.world.observe().pose_base_in_map[2])
         waypoints = self.world.room.waypoints
-        sides = sorted((name for name in ("rail", "rail_back") if name in waypoints),
-                       key=lambda name: -np.cos(waypoints[name][2] - yaw))
+        sides = sorted(
+            (name for name in ("rail", "rail_back") if name in waypoints),
+            key=lambda name: -np.cos(waypoints[name][2] - yaw),
+        )
         tried = self.context.memory.of(Tried, Tried).sleeves
         wanted = OTHER[tried[-1]] if tried else None
         hook = self.context.perceive("hook", self.world.look("head"))
@@ -77,8 +79,9 @@ class FindCorner(Skill):
         self.hook, self.found, self.sleeve, self.other = hook, found, sleeve, OTHER[sleeve]
         self.hand, self.other_hand = OTHER[sleeve], sleeve
 
-    def _look_round(self, hook: GraspPoint, front: float,
-                    wanted: Side | None) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
+    def _look_round(
+        self, hook: GraspPoint, front: float, wanted: Side | None
+    ) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
         """Hook and corner, from the first place that shows the wanted one clear of other cloth, or else from the best.
 
         Raises:

@@ -11,22 +11,22 @@ from ..perception.estimates import ArmPosture, SleeveOpening
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import SIDES, Side
-from .arm_grip import over_arm
-from .arm_path import UP
-from .bedside import HEADWARD, outwards, stance
-from .context import Context
-from .hands import collision_checker
+from .belief.person_tracking import watch_arm
+from .belief.sleeve_search import TO_STRAP, find_sleeve, strap_views
+from .control.arm_grip import over_arm
+from .control.hands import collision_checker
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.arm_path import UP
+from .geometry.stances import HEADWARD, outwards, stance
 from .lift_arm import ABOVE, PITCH, SPREAD, lifted
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .motion.path import is_free
 from .motion.trajectory import free_postures
-from .ports import Input, Output
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_view import TO_STRAP, find_sleeve, strap_views
-from .tracking import watch_arm
+from .scripted.scripted_person import offer_person
 
 # Steps off the usual stance that are tried, farther from the bed and towards its head [m].
 _OUT, _HEADWARD = (0.0, 0.08, 0.16, 0.24, -0.08), (0.0, 0.1, -0.1, 0.2, -0.2, 0.3)
@@ -84,8 +84,9 @@ class FindStand(Skill):
             arms[SIDES.index(self.lifting)] = q
         return all(self._posture(self.pulling, poses, base, arms) is not None for poses in (views, grasps))
 
-    def _posture(self, hand: Side, poses: Iterable[np.ndarray], base: np.ndarray,
-                 arms: np.ndarray) -> np.ndarray | None:
+    def _posture(
+        self, hand: Side, poses: Iterable[np.ndarray], base: np.ndarray, arms: np.ndarray
+    ) -> np.ndarray | None:
         """Joint angles (7,) for the first of `poses` that is within reach without touching anything."""
         free = free_postures(collision_checker(self), hand, base, arms)
         for pose in poses:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..perception.estimates import GownSide
-from .context import Context
-from .ports import Input, Output
-from .reasons import Reason
-from .skill import Skill, SkillFailure
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason
+from .core.skill import Skill, SkillFailure
 
 
 class FlipSideCheck(Skill):

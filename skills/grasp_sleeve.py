@@ -9,20 +9,21 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
-from .arm_path import ArmPath
-from .context import Context
-from .hands import hand_now, move_hands, open_gripper
-from .holding import holding
+from .belief.person_tracking import careful, watch_arm
+from .belief.sleeve_search import RESTS, look_for_sleeve, seen_well, strap_views
+from .belief.strap_grasp import way_in
+from .control.compliant_hold import holding
+from .control.hands import hand_now, move_hands, open_gripper
+from .control.pinch import back_off, pinch
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import ArmPath
+from .geometry.hold import Hold
+from .geometry.strap_grip import StrapGrip, strap_grip
 from .motion.errors import MotionError
-from .pinch import back_off, pinch
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_approach import way_in
-from .strap_grip import StrapGrip, strap_grip
-from .strap_view import RESTS, look_for_sleeve, seen_well, strap_views
-from .tracking import Hold, careful, watch_arm
+from .scripted.scripted_person import offer_person
 
 AIMED = 0.05  # a strap that far from the middle of the picture is looked at again [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
@@ -41,8 +42,15 @@ class GraspSleeve(Skill):
     hold = Input(Hold, default=None)
     worn = Input(bool, default=False)
     grip = Output(StrapGrip)
-    reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
-               Reason.ARM_SLIPPED, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.ARM_SLIPPED,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Grasp, easing the hold of the arm on every tick."""
@@ -104,8 +112,12 @@ class GraspSleeve(Skill):
                 continue
             yield from self.wait(RESTS)
             try:
-                return self.context.perceive("sleeve_strap", self.world.look(f"{self.hand}_hand"), side=self.side,
-                                             near_in_map=far.position_in_map)
+                return self.context.perceive(
+                    "sleeve_strap",
+                    self.world.look(f"{self.hand}_hand"),
+                    side=self.side,
+                    near_in_map=far.position_in_map,
+                )
             except PerceptionFailure as stop:
                 problem = stop
         assert problem is not None
@@ -116,4 +128,3 @@ class GraspSleeve(Skill):
         """For the law tests."""
         offer_person(context)
         return cls("grasp sleeve", context, side="right", hand="right")
-

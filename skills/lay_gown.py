@@ -10,15 +10,15 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import SIDES, Side
-from .bedside import AHEAD, FACING, LANE
-from .context import Context
-from .driving import drive_to
-from .hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
+from .control.base import drive_to
+from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.stances import AHEAD, FACING, LANE
 from .motion.errors import MotionError
-from .ports import Input
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
+from .scripted.scripted_person import offer_person
 
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top

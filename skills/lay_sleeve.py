@@ -6,19 +6,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .arm_path import UP
-from .bedside import HEADWARD, outwards
-from .context import Context
-from .hands import hand_now, move_hands, open_gripper, until_taut
-from .holding import holding
+from .belief.person_tracking import careful
+from .control.compliant_hold import holding
+from .control.hands import hand_now, move_hands, open_gripper, until_taut
+from .control.pinch import back_off
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.arm_path import UP
+from .geometry.hold import Hold
+from .geometry.stances import HEADWARD, outwards
+from .geometry.strap_grip import StrapGrip
 from .motion.errors import MotionError
-from .pinch import back_off
-from .ports import Input
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_grip import StrapGrip
-from .tracking import Hold, careful
+from .scripted.scripted_person import offer_person
 
 LAID = np.array((0.36, 0.14, 0.06))  # of the strap: outwards of and feetward from the bed's middle, above it [m]
 ABOVE, ASIDE, BEFORE = 0.30, 0.16, 0.12  # where the way down begins: higher, farther out, farther towards the feet [m]

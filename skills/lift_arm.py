@@ -6,21 +6,22 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture
+from ..perception.image.cloud import unit
 from ..sim.world import SIDES, HandTwist, Side
-from .arc import Arc
-from .arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
-from .arm_path import UP, ArmPath
-from .bedside import HEADWARD, outwards
-from .context import Context
-from .hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import Hold, careful, watch_arm
+from .belief.person_tracking import careful, watch_arm
+from .control.arc import Arc
+from .control.arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
+from .control.hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import UP, ArmPath
+from .geometry.hold import Hold
+from .geometry.stances import HEADWARD, outwards
+from .scripted.scripted_person import offer_person
 
 ABOVE = 0.12  # the open hand waits this far above the arm [m]
 DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
@@ -57,8 +58,17 @@ class LiftArm(Skill):
     duration = Input(float, default=5.5)
     place = Input(float, default=1.0)
     hold = Output(Hold)
-    reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
-               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.TIMEOUT, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.ARM_SLIPPED,
+        Reason.FORCE_LIMIT,
+        Reason.TIMEOUT,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Look, go over the arm, down, take it, swing it up and out."""
@@ -86,8 +96,11 @@ class LiftArm(Skill):
     def _swing(self, posture: ArmPosture) -> Iterator[None]:
         """Follow an arc about the tracked shoulder, a little further on every tick, slower under a heavy arm."""
         n = SIDES.index(self.hand)
-        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3],
-                  lifted(posture, self.side, self.place, self.pitch, self.spread))
+        arc = Arc(
+            posture.points_in_map[0],
+            hand_now(self, self.hand)[:3, 3],
+            lifted(posture, self.side, self.place, self.pitch, self.spread),
+        )
         end = self.now() + 4.0 * self.duration
         last, swung = self.now(), 0.0
         while swung < arc.whole:

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture
 from ..sim.world import Side
-from .context import Context
-from .hands import pan_head
-from .ports import Input, Output
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import see_person, watch_arm
+from .belief.person_tracking import see_person, watch_arm
+from .control.hands import pan_head
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason
+from .core.skill import Skill
+from .scripted.scripted_person import offer_person
 
 _PANS = (0.0, 0.35, -0.35)  # tried one after the other [rad]
 _SETTLED = 0.035  # deviation of every joint at which an arm counts as found [m]
@@ -68,4 +68,3 @@ class LookAtPerson(Skill):
         """For the law tests."""
         offer_person(context)
         return cls("look at person", context, side="right")
-

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
-from .context import Context
-from .hands import hand_now, move_hands
+from .belief.person_tracking import careful
+from .belief.sleeve_search import WELL, look_for_sleeve
+from .control.hands import hand_now, move_hands
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
 from .motion.errors import MotionError
-from .ports import Input
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_view import WELL, look_for_sleeve
-from .tracking import careful
+from .scripted.scripted_person import offer_person
 
 
 class LookForSleeve(Skill):

@@ -9,14 +9,14 @@ import numpy as np
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import JointTrajectory
-from .context import Context
-from .driving import SPEED, drive_to
-from .follow import follow
-from .hands import collision_checker
+from .control.base import SPEED, drive_to
+from .control.follow import follow
+from .control.hands import collision_checker
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
 from .motion.reach import plan_arms
-from .ports import Input
-from .reasons import Reason
-from .skill import Skill
 
 
 class Navigate(Skill):
@@ -39,8 +39,14 @@ class Navigate(Skill):
         arms, arrives = None, self.now()
         if self.arms is not None:
             seen = self.world.observe()
-            arms = plan_arms(default_kinematics(), self.arms, seen.arm_positions, seen.pose_base_in_map,
-                             hand_speed=self.hand_speed, checker=collision_checker(self))
+            arms = plan_arms(
+                default_kinematics(),
+                self.arms,
+                seen.arm_positions,
+                seen.pose_base_in_map,
+                hand_speed=self.hand_speed,
+                checker=collision_checker(self),
+            )
             sent = self.world.send(arms)
             assert isinstance(sent, JointTrajectory)
             arrives = self.now() + float(sent.times[-1])
@@ -48,8 +54,14 @@ class Navigate(Skill):
         if arms is not None:
             yield from self.wait(arrives - self.now())
             seen = self.world.observe()
-            last = plan_arms(default_kinematics(), self.arms, seen.arm_positions, seen.pose_base_in_map,
-                             hand_speed=self.hand_speed, checker=collision_checker(self))
+            last = plan_arms(
+                default_kinematics(),
+                self.arms,
+                seen.arm_positions,
+                seen.pose_base_in_map,
+                hand_speed=self.hand_speed,
+                checker=collision_checker(self),
+            )
             yield from follow(self, last)
 
     @classmethod

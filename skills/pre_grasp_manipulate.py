@@ -8,20 +8,20 @@ from itertools import product
 
 import numpy as np
 
-from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import PreGrasp
+from ..perception.image.cloud import unit
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, Side
-from .context import Context
-from .hands import cloth_load, hand_now, move_hands, open_gripper
+from .control.hands import cloth_load, hand_now, move_hands, open_gripper
+from .control.hold_up import RANGE, present
+from .control.pinch import back_off, grasp_poses, pinch, reach_in
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 from .motion.errors import MotionError, Unreachable
-from .pinch import back_off, grasp_poses, pinch, reach_in
-from .ports import Input, Output
-from .present import RANGE, present
-from .reasons import Reason, SkillFailure
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .scripted.scripted_gown import offer_gown
 from .view_around import Attempts, Views
 
 ATTEMPTS = 3  # corners tried from the same views
@@ -54,8 +54,14 @@ class PreGraspManipulate(Skill):
     holder = Output(Side)
     former = Output(Side)
     corner = Output(PreGrasp)
-    reasons = (Reason.NOTHING_SEEN, Reason.MULTI_LAYER, Reason.GRASP_MISSED, Reason.UNREACHABLE,
-               Reason.MOTION_BLOCKED, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.MULTI_LAYER,
+        Reason.GRASP_MISSED,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Try the best corner, then the next best ones, from the same views."""
@@ -78,9 +84,14 @@ class PreGraspManipulate(Skill):
         views = self.views
         hand: Side = SIDES[1 - SIDES.index(views.side)]
         attempts = self.context.memory.of(Attempts, Attempts, name=views.side)
-        chosen = self.context.perceive("pre_grasp", views.frames[-1], frames=views.frames[:-1],
-                                       poses_hand_in_map=views.poses_hand_in_map, exclude=attempts.given_up(),
-                                       distance=(self.nearest, self.farthest))
+        chosen = self.context.perceive(
+            "pre_grasp",
+            views.frames[-1],
+            frames=views.frames[:-1],
+            poses_hand_in_map=views.poses_hand_in_map,
+            exclude=attempts.given_up(),
+            distance=(self.nearest, self.farthest),
+        )
         if chosen.confidence < self.sure:
             raise SkillFailure(Reason.NOTHING_SEEN, f"the best corner has a confidence of {chosen.confidence:.2f}")
         held = views.poses_hand_in_map[chosen.view]
@@ -90,8 +101,15 @@ class PreGraspManipulate(Skill):
         yield from self.wait(SETTLE)
         try:
             chosen = self._towards(hand, views, self._look_again(chosen, views.side))
-            yield from reach_in(self, hand, chosen.position_in_map, chosen.approach_in_map,
-                                unit(np.cross(chosen.approach_in_map, UP)), opening=self.opening, depth=DEPTH)
+            yield from reach_in(
+                self,
+                hand,
+                chosen.position_in_map,
+                chosen.approach_in_map,
+                unit(np.cross(chosen.approach_in_map, UP)),
+                opening=self.opening,
+                depth=DEPTH,
+            )
             yield from self._take(hand, views, chosen)
         except (SkillFailure, MotionError) as miss:
             missed = isinstance(miss, SkillFailure) and miss.reason == Reason.GRASP_MISSED
@@ -120,8 +138,9 @@ class PreGraspManipulate(Skill):
             rotation = planar_pose(np.array((0.0, 0.0, np.deg2rad(turn if hand == "right" else -turn))))[:3, :3]
             sweep, level = rotation @ chosen.sweep_in_map, rotation @ chosen.approach_in_map
             approach = np.cos(np.deg2rad(pitch)) * level - np.sin(np.deg2rad(pitch)) * UP
-            turned = replace(chosen, approach_in_map=approach, sweep_in_map=sweep,
-                             position_in_map=chosen.corner_in_map - sweep)
+            turned = replace(
+                chosen, approach_in_map=approach, sweep_in_map=sweep, position_in_map=chosen.corner_in_map - sweep
+            )
             across = unit(np.cross(approach, UP))
             try:
                 _, inside = grasp_poses(self, hand, turned.position_in_map, approach, across, sweep=sweep, depth=DEPTH)
@@ -142,8 +161,12 @@ class PreGraspManipulate(Skill):
     def _look_again(self, chosen: PreGrasp, side: Side) -> PreGrasp:
         """The same corner in a fresh frame, or `chosen` where it does not show."""
         try:
-            now = self.context.perceive("pre_grasp", self.world.look("head"), poses_hand_in_map=(hand_now(self, side),),
-                                        distance=(self.nearest, self.farthest))
+            now = self.context.perceive(
+                "pre_grasp",
+                self.world.look("head"),
+                poses_hand_in_map=(hand_now(self, side),),
+                distance=(self.nearest, self.farthest),
+            )
         except PerceptionFailure:
             return chosen
         return now if np.linalg.norm(now.corner_in_map - chosen.corner_in_map) < _SAME else chosen
@@ -176,8 +199,15 @@ class PreGraspManipulate(Skill):
     def _sheets(self, hand: Side, views: Views, pose: np.ndarray) -> int:
         """How many sheets the fingers would take at a pose (4, 4), by everything that was seen of the gown."""
         frames, poses = views.frames[1:], (*views.poses_hand_in_map[1:], hand_now(self, views.side))
-        return self.context.perceive("layers", self.world.look("head"), side=hand, pose_hand_in_map=pose, frames=frames,
-                                     poses_cloth_in_map=poses, opening=self.opening).layers
+        return self.context.perceive(
+            "layers",
+            self.world.look("head"),
+            side=hand,
+            pose_hand_in_map=pose,
+            frames=frames,
+            poses_cloth_in_map=poses,
+            opening=self.opening,
+        ).layers
 
     @classmethod
     def example(cls, context: Context) -> Skill:

@@ -6,22 +6,23 @@ from collections.abc import Generator, Iterator
 
 import numpy as np
 
-from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
-from .arm_path import UP, ArmPath
-from .bedside import outwards
-from .context import Context
-from .hands import cloth_load, hand_now, look_towards, move_hands, until_taut
-from .holding import holding
+from ..perception.image.cloud import unit
+from .belief.person_tracking import careful, watch_arm
+from .belief.strap_grasp import BEYOND, presenting_place
+from .control.compliant_hold import holding
+from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_taut
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import UP, ArmPath
+from .geometry.hold import Hold
+from .geometry.stances import outwards
+from .geometry.strap_grip import StrapGrip, presenting
 from .motion.errors import MotionError
-from .ports import Input
-from .reasons import Reason, SkillFailure
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_approach import BEYOND, presenting_place
-from .strap_grip import StrapGrip, presenting
-from .tracking import Hold, careful, watch_arm
+from .scripted.scripted_person import offer_person
 
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 _SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
@@ -48,8 +49,17 @@ class PresentSleeve(Skill):
     hold = Input(Hold, default=None)
     taut = Input(float, default=np.inf)
     opens = Input(float, default=-np.inf)
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.COMMAND_LOST,
-               Reason.ARM_SLIPPED, Reason.FORCE_LIMIT, Reason.SLEEVE_FOLDED, Reason.SLEEVE_CAUGHT)
+    reasons = (
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.CLOTH_SLIPPED,
+        Reason.ARM_LOST,
+        Reason.COMMAND_LOST,
+        Reason.ARM_SLIPPED,
+        Reason.FORCE_LIMIT,
+        Reason.SLEEVE_FOLDED,
+        Reason.SLEEVE_CAUGHT,
+    )
 
     def steps(self) -> Iterator[None]:
         """Up, then beyond the fingertips."""
@@ -120,13 +130,19 @@ class PresentSleeve(Skill):
         beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
         if beyond >= self.opens:
             return None
-        return SkillFailure(Reason.SLEEVE_FOLDED, f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
-                                                  f"{self.opens * 100:.0f} cm are asked for")
+        return SkillFailure(
+            Reason.SLEEVE_FOLDED,
+            f"the cuff is {beyond * 100:.0f} cm beyond the armhole, {self.opens * 100:.0f} cm are asked for",
+        )
 
     def _heading(self) -> SleeveHeading:
         """Which way the sleeve points, as the head's camera sees it."""
-        seen = self.context.perceive("sleeve_heading", self.world.look("head"), side=self.grip.arm,
-                                     near_in_map=hand_now(self, self.grip.hand)[:3, 3])
+        seen = self.context.perceive(
+            "sleeve_heading",
+            self.world.look("head"),
+            side=self.grip.arm,
+            near_in_map=hand_now(self, self.grip.hand)[:3, 3],
+        )
         assert isinstance(seen, SleeveHeading)
         return seen
 
@@ -150,4 +166,3 @@ class PresentSleeve(Skill):
         offer_person(context)
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
         return cls("present sleeve", context, grip=grip)
-

@@ -8,19 +8,20 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
-from .arm_path import ArmPath
-from .context import Context
-from .hands import hand_now, look_towards
-from .holding import ease_hold, holding
+from .belief.armhole_watch import CENTRED, RingWatch
+from .belief.person_tracking import watch_arm
+from .control.compliant_hold import ease_hold, holding
+from .control.hands import hand_now, look_towards
+from .control.pull_law import PullLaw
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import ArmPath
+from .geometry.hold import Hold
+from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
-from .ports import Input
-from .pull_law import PullLaw
-from .reasons import Reason, SkillFailure
-from .ring_watch import CENTRED, RingWatch
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_grip import StrapGrip, presenting
-from .tracking import Hold, watch_arm
+from .scripted.scripted_person import offer_person
 
 SPEED = 0.08  # along the arm; the guard lets the base come along with what is left of a hand's speed [m/s]
 BASE_SPEED = 0.10  # of the base at most [m/s]
@@ -54,8 +55,16 @@ class PullAlongArm(Skill):
     stand = Input(np.ndarray, default=None)
     taut = Input(float, default=3.7)
     law = Input(PullLaw, default=PullLaw())
-    reasons = (Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.ARM_LOST, Reason.ARM_SLIPPED,
-               Reason.SLEEVE_MISSED, Reason.MOTION_BLOCKED, Reason.FORCE_LIMIT, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.SLEEVE_CAUGHT,
+        Reason.CLOTH_SLIPPED,
+        Reason.ARM_LOST,
+        Reason.ARM_SLIPPED,
+        Reason.SLEEVE_MISSED,
+        Reason.MOTION_BLOCKED,
+        Reason.FORCE_LIMIT,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Steer anew on every tick."""

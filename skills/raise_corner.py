@@ -9,13 +9,13 @@ import numpy as np
 from ..perception.estimates import GraspPoint
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Side
-from .context import Context
-from .hands import cloth_load, hand_now, move_hands
+from .control.hands import cloth_load, hand_now, move_hands
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 from .motion.errors import MotionError
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .scripted.scripted_gown import offer_gown
 
 BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
 AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
@@ -38,8 +38,7 @@ class RaiseCorner(Skill):
     weight = Input(float, default=0.8)
     heavy = Input(float, default=2.6)
     held = Output(float)
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED,
-               Reason.MULTI_LAYER)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.GRASP_MISSED, Reason.MULTI_LAYER)
 
     def steps(self) -> Iterator[None]:
         """Draw, weigh."""

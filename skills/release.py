@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..sim.world import Side
-from .context import Context
-from .hands import open_gripper
+from .control.hands import open_gripper
+from .control.pinch import back_off
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
 from .motion.errors import MotionError
-from .pinch import back_off
-from .ports import Input
-from .reasons import Reason
-from .skill import Skill
 
 
 class Release(Skill):

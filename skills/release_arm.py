@@ -8,17 +8,17 @@ import numpy as np
 
 from ..sim.robot import model
 from ..sim.world import SIDES, HandTwist, Side
-from .arm_grip import lost_arm
-from .arm_path import UP
-from .context import Context
-from .hands import move_arms, open_gripper
-from .holding import FASTEST, giving_way
-from .ports import Input
-from .reasons import Reason
+from .belief.person_tracking import careful
+from .control.arm_grip import lost_arm
+from .control.compliant_hold import FASTEST, giving_way
+from .control.hands import move_arms, open_gripper
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.arm_path import UP
 from .retreat import withdraw
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import careful
+from .scripted.scripted_person import offer_person
 
 _SPEED = 0.04  # of lowering [m/s]
 _RESTS = 4.0  # an arm that loads the hand with less than this lies on the bed [N]
@@ -47,8 +47,7 @@ class ReleaseArm(Skill):
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], _CLEAR)
         if self.ready:
-            yield from move_arms(self, model.READY, sides=(self.hand,), speed=careful(self, 0.5),
-                                 retreat=True)
+            yield from move_arms(self, model.READY, sides=(self.hand,), speed=careful(self, 0.5), retreat=True)
 
     def _lower(self) -> Iterator[None]:
         """Go straight down until the bed carries the arm."""

@@ -9,15 +9,15 @@ import numpy as np
 
 from ..sim.robot import model
 from ..sim.world import SIDES, HandTwist, Side
-from .arm_path import UP
-from .context import Context
-from .driving import drive_to
-from .hands import hand_now, move_arms, open_gripper
-from .ports import Input
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import careful
+from .belief.person_tracking import careful
+from .control.base import drive_to
+from .control.hands import hand_now, move_arms, open_gripper
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.arm_path import UP
+from .scripted.scripted_person import offer_person
 
 Hands = Literal["left", "right", "both"]
 _SPEED = 0.12  # of the hands on their way back [m/s]

@@ -7,20 +7,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
+from ..perception.image.cloud import unit
 from ..sim.world import SIDES, HandTwist
-from .bedside import HEADWARD
-from .context import Context
-from .hands import cloth_load
-from .ports import Input
+from .belief.person_tracking import watch_arm
+from .control.hands import cloth_load
+from .control.pull_law import PullLaw
+from .core.context import Context
+from .core.ports import Input
+from .core.reasons import Reason
+from .core.skill import Skill
+from .geometry.stances import HEADWARD
+from .geometry.strap_grip import StrapGrip
 from .pull_along_arm import EASING, SLOWEST
-from .pull_law import PullLaw
-from .reasons import Reason
-from .scripted_person import offer_person
-from .skill import Skill
-from .strap_grip import StrapGrip
-from .tracking import watch_arm
+from .scripted.scripted_person import offer_person
 
 FARTHEST = 0.08  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 from ..perception.estimates import GraspPoint
 from ..sim.world import Side
-from .context import Context
-from .driving import stand_for
-from .hands import pan_head
-from .pinch import back_off, pinch, reach_in
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .control.base import stand_for
+from .control.hands import pan_head
+from .control.pinch import back_off, pinch, reach_in
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .scripted.scripted_gown import offer_gown
 
 
 class SegmentAndGrasp(Skill):
@@ -26,8 +26,14 @@ class SegmentAndGrasp(Skill):
     side = Input(Side)
     force = Input(float, default=30.0)
     grasp = Output(GraspPoint)
-    reasons = (Reason.NOTHING_SEEN, Reason.PATH_BLOCKED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED,
-               Reason.GRASP_MISSED, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.PATH_BLOCKED,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Look, step to where the hand reaches it, reach in, pinch."""

@@ -6,24 +6,24 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..perception.cloud import unit
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
+from ..perception.image.cloud import unit
 from ..sim.world import SIDES, HandTwist, Side
-from .arm_path import UP, ArmPath
-from .bedside import HEADWARD, outwards
-from .context import Context
-from .hands import cloth_load, hand_now, move_hands, open_gripper
+from .belief.armhole_watch import RingWatch
+from .belief.person_tracking import watch_arm
+from .control.hands import cloth_load, hand_now, move_hands, open_gripper
+from .control.pinch import pinch, reach_in
+from .control.pull_law import PullLaw
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .geometry.arm_path import UP, ArmPath
+from .geometry.stances import HEADWARD, outwards
 from .motion.errors import MotionError
-from .pinch import pinch, reach_in
-from .ports import Input, Output
-from .pull_law import PullLaw
-from .reasons import Reason, SkillFailure
 from .retreat import withdraw
-from .ring_watch import RingWatch
-from .scripted_person import offer_person
-from .skill import Skill
-from .tracking import watch_arm
+from .scripted.scripted_person import offer_person
 
 TUGS = 2  # cloth that is stuck under the arm follows a little each time
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
@@ -47,8 +47,15 @@ class Spread(Skill):
     side = Input(Side)
     hand = Input(Side)
     grasp = Output(GraspPoint)
-    reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.GRASP_MISSED,
-               Reason.FORCE_LIMIT, Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.FORCE_LIMIT,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Draw the collar, and once more."""
@@ -64,8 +71,9 @@ class Spread(Skill):
         """Take the collar, draw it, let it go."""
         self.note(f"looks for the collar near the {self.side} shoulder")
         path = ArmPath.of(watch_arm(self, self.side))
-        point = self.context.perceive("collar_near_shoulder", self.world.look("head"), side=self.side,
-                                      shoulder_in_map=path.points[0])
+        point = self.context.perceive(
+            "collar_near_shoulder", self.world.look("head"), side=self.side, shoulder_in_map=path.points[0]
+        )
         approach = _from_above(point.approach_in_map, outwards(self.side))
         yield from reach_in(self, self.hand, point.position_in_map, approach, point.closing_in_map)
         try:

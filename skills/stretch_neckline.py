@@ -8,11 +8,11 @@ import numpy as np
 
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, HandTwist
-from .context import Context
-from .hands import cloth_load, hand_now, move_hands
-from .ports import Input, Output
-from .reasons import Reason
-from .skill import Skill, SkillFailure
+from .control.hands import cloth_load, hand_now, move_hands
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason
+from .core.skill import Skill, SkillFailure
 
 AHEAD, HEIGHT, START = 0.62, 1.36, 0.22  # where the hands begin: before the base, above the floor, half apart [m]
 SPEED = 0.08  # of each hand when it draws [m/s]

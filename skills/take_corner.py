@@ -12,14 +12,14 @@ from ..perception.estimates import GraspPoint
 from ..sim.robot import model
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import GripperOpening, Side
-from .context import Context
-from .hands import close_gripper, cloth_load, hand_now, move_arms, move_hands, open_gripper
+from .control.hands import close_gripper, cloth_load, hand_now, move_arms, move_hands, open_gripper
+from .control.pinch import back_off, grasp_poses, reach_in
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 from .motion.errors import MotionError
-from .pinch import back_off, grasp_poses, reach_in
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .scripted.scripted_gown import offer_gown
 
 TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the hand's own side [degrees]
 DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
@@ -58,8 +58,14 @@ class TakeCorner(Skill):
     force = Input(float, default=30.0)
     feel = Input(float, default=0.06)
     length = Output(float)
-    reasons = (Reason.NOTHING_SEEN, Reason.GRASP_MISSED, Reason.MULTI_LAYER, Reason.UNREACHABLE, Reason.MOTION_BLOCKED,
-               Reason.COMMAND_LOST)
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.GRASP_MISSED,
+        Reason.MULTI_LAYER,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.COMMAND_LOST,
+    )
 
     def steps(self) -> Iterator[None]:
         """Look, go in, pinch, tug."""
@@ -83,9 +89,14 @@ class TakeCorner(Skill):
 
     def _look(self, hook: GraspPoint) -> GraspPoint:
         found = self.found
-        return self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
-                                     hook_in_map=hook.position_in_map, other_length=self.held,
-                                     near_in_map=None if found is None else found.position_in_map)
+        return self.context.perceive(
+            "hung_corner",
+            self.world.look("head"),
+            side=self.sleeve,
+            hook_in_map=hook.position_in_map,
+            other_length=self.held,
+            near_in_map=None if found is None else found.position_in_map,
+        )
 
     def _look_again(self, hook: GraspPoint, seen: GraspPoint) -> GraspPoint:
         """The same corner where it will be when the fingers close: the gown turns and sways slowly.
@@ -93,8 +104,13 @@ class TakeCorner(Skill):
         As it was where it no longer shows.
         """
         try:
-            now = self.context.perceive("hung_corner", self.world.look("head"), side=self.sleeve,
-                                        hook_in_map=hook.position_in_map, near_in_map=seen.position_in_map)
+            now = self.context.perceive(
+                "hung_corner",
+                self.world.look("head"),
+                side=self.sleeve,
+                hook_in_map=hook.position_in_map,
+                near_in_map=seen.position_in_map,
+            )
         except PerceptionFailure:
             return seen
         passed = now.stamp - seen.stamp
@@ -124,8 +140,9 @@ class TakeCorner(Skill):
                 yield from move_hands(self, {self.hand: before}, speed=SPEED, way="any")
                 now = self._look_again(hook, seen)
                 self._check_clear(now)
-                yield from reach_in(self, self.hand, now.position_in_map, approach, closing, opening=self.opening,
-                                    depth=self.depth)
+                yield from reach_in(
+                    self, self.hand, now.position_in_map, approach, closing, opening=self.opening, depth=self.depth
+                )
                 return now
             except MotionError as stop:
                 failure = stop

@@ -9,13 +9,13 @@ import numpy as np
 from ..perception.estimates import GraspPoint
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES
-from .context import Context
-from .driving import drive_to
-from .hands import cloth_load, hand_now, move_hands
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .scripted_gown import offer_gown
-from .skill import Skill
+from .control.base import drive_to
+from .control.hands import cloth_load, hand_now, move_hands
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
+from .scripted.scripted_gown import offer_gown
 
 ANGLES = (-35.0, -5.0, 10.0, 20.0, 30.0, 40.0)  # of the neckline from the hook to each hand, above level [degrees]
 SLACK = 0.95  # how much of that distance the hands use: the hook may not pull at them

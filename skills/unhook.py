@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..sim.world import Side
-from .context import Context
-from .hands import cloth_load, hand_now, move_hands
-from .ports import Input, Output
-from .reasons import Reason, SkillFailure
-from .skill import Skill
+from .control.hands import cloth_load, hand_now, move_hands
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 
 
 class Unhook(Skill):
@@ -38,7 +38,7 @@ class Unhook(Skill):
         while self.now() < end:
             samples.append(-cloth_load(self, self.side)[2])
             yield
-        load = float(np.mean(samples[len(samples) // 2:]))
+        load = float(np.mean(samples[len(samples) // 2 :]))
         if load < self.weight:
             raise SkillFailure(Reason.GRASP_MISSED, f"{load:.1f} N hang on the {self.side} hand")
 

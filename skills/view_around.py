@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..sim.world import SIDES, Frame, Side
-from .context import Context
-from .hands import hand_now, look_towards
-from .ports import Input, Output
-from .present import plan_turn, present, turned_by
-from .reasons import Reason, SkillFailure
-from .skill import Skill
+from .control.hands import hand_now, look_towards
+from .control.hold_up import plan_turn, present, turned_by
+from .core.context import Context
+from .core.ports import Input, Output
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 
 STEP = np.deg2rad(30.0)  # between two views, from the paper
 PACE = 0.4  # share of the joints' speed: the cloth follows the hand and is not flung out
@@ -32,8 +32,9 @@ class Attempts:
 
     def given_up(self) -> tuple[np.ndarray, ...]:
         """Places that were tried twice."""
-        return tuple(a for n, a in enumerate(self.places)
-                     if any(np.linalg.norm(a - b) < SAME_PLACE for b in self.places[:n]))
+        return tuple(
+            a for n, a in enumerate(self.places) if any(np.linalg.norm(a - b) < SAME_PLACE for b in self.places[:n])
+        )
 
     def forget(self) -> None:
         """Start anew, because the gown hangs differently."""
@@ -66,15 +67,14 @@ class ViewAround(Skill):
     count = Input(int, default=11)
     settle = Input(float, default=0.5)
     views = Output(Views)
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.SENSOR_LOST,
-               Reason.SENSOR_STALE)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.SENSOR_LOST, Reason.SENSOR_STALE)
 
     def steps(self) -> Iterator[None]:
         """Bring the hand up, then turn it to the other end and look on the way."""
         n = SIDES.index(self.side)
         here = turned_by(self.side, self.world.observe().arm_positions[n])
         half = (self.count - 1) * STEP / 2
-        turns = np.linspace(-half, half, self.count)[::1 if here is None or here < 0 else -1]
+        turns = np.linspace(-half, half, self.count)[:: 1 if here is None or here < 0 else -1]
         self.note("looks at the gown from all sides")
         yield from present(self, self.side, float(turns[0]))
         yield from look_towards(self, hand_now(self, self.side)[:3, 3])

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from caretree.sim.record import RunResult, StageResult
-from caretree.sim.recorder import FRAME_PERIOD, Recorder
-from caretree.sim.truth import TruthFrame, TruthStatic
+from caretree.sim.record.record import RunResult, StageResult
+from caretree.sim.record.recorder import FRAME_PERIOD, Recorder
+from caretree.sim.record.truth import TruthFrame, TruthStatic
 
 ARM_X = 0.28  # [m] both arms lie straight along y beside the torso, so a sleeve slides on without touching
 MOVE, HOLD = 60, 32  # frames of the way from the rail and of the worn gown held still
@@ -18,8 +18,9 @@ MOVE, HOLD = 60, 32  # frames of the way from the rail and of the worn gown held
 def tube(x: float, ys: np.ndarray, radius: float = 0.09, count: int = 12) -> np.ndarray:
     """(len(ys) * count, 3) rings around an arm along +y, ordered right-handed about +y [m]."""
     angle = -2 * np.pi * np.arange(count) / count
-    return np.concatenate([np.stack([x + radius * np.cos(angle), np.full(count, y), radius * np.sin(angle)], axis=1)
-                           for y in ys])
+    return np.concatenate(
+        [np.stack([x + radius * np.cos(angle), np.full(count, y), radius * np.sin(angle)], axis=1) for y in ys]
+    )
 
 
 def quads(rows: int, columns: int, start: int, wrap: bool) -> np.ndarray:
@@ -41,10 +42,14 @@ def gown() -> TruthStatic:
     for side, first in (("right", first_right), ("left", first_left)):
         loops[f"armhole_{side}"], loops[f"cuff_{side}"] = first + np.arange(12), first + 48 + np.arange(12)
     return TruthStatic(
-        faces=np.concatenate([quads(15, 11, 0, wrap=False), quads(5, 12, first_right, wrap=True),
-                              quads(5, 12, first_left, wrap=True)]),
-        rest_vertices=np.concatenate([sheet, right, left]), loops=loops,
-        arm_radii=np.tile([0.05, 0.045, 0.04], (2, 1)), person_parts=("torso", "left_arm", "right_arm"))
+        faces=np.concatenate(
+            [quads(15, 11, 0, wrap=False), quads(5, 12, first_right, wrap=True), quads(5, 12, first_left, wrap=True)]
+        ),
+        rest_vertices=np.concatenate([sheet, right, left]),
+        loops=loops,
+        arm_radii=np.tile([0.05, 0.045, 0.04], (2, 1)),
+        person_parts=("torso", "left_arm", "right_arm"),
+    )
 
 
 def frame(static: TruthStatic, index: int) -> TruthFrame:
@@ -56,22 +61,41 @@ def frame(static: TruthStatic, index: int) -> TruthFrame:
     held = index < MOVE + 3
     pose = np.array([[x, 0.1 + 2 * left, 0.15, 0, 0, 0, 1] for x in (-0.2, 0.2)])
     load = np.array([[0, 3.0 + np.sin(index / 5), 1.0]] * 2) * held
-    return TruthFrame(t=index * FRAME_PERIOD, vertices=static.rest_vertices + np.array([0, 2 * left, 0]), arms=arms,
-                      torso_front=torso, gripper_pose=pose, gripper_closed=np.full(2, held), gripper_load=load,
-                      person_force=np.array([0.5, 2.0 * held, 1.0]))
+    return TruthFrame(
+        t=index * FRAME_PERIOD,
+        vertices=static.rest_vertices + np.array([0, 2 * left, 0]),
+        arms=arms,
+        torso_front=torso,
+        gripper_pose=pose,
+        gripper_closed=np.full(2, held),
+        gripper_load=load,
+        person_force=np.array([0.5, 2.0 * held, 1.0]),
+    )
 
 
 RESULT = RunResult(
-    outcome="success", reason="The person is dressed.", sim_time_s=(MOVE + HOLD - 1) * FRAME_PERIOD,
-    stages=tuple(StageResult(name=name, status="success", attempts=k, t_start=2.0 * i, t_end=2.0 * i + 1.9,
-                             reason="sleeve caught on the hand" if k > 1 else "")
-                 for i, (name, k) in enumerate([("A grasp", 1), ("B unfold", 1), ("C dress", 2), ("D spread", 1)])),
-    timing={"physics": 3.0, "camera": 1.0, "perception": 0.5})
+    outcome="success",
+    reason="The person is dressed.",
+    sim_time_s=(MOVE + HOLD - 1) * FRAME_PERIOD,
+    stages=tuple(
+        StageResult(
+            name=name,
+            status="success",
+            attempts=k,
+            t_start=2.0 * i,
+            t_end=2.0 * i + 1.9,
+            reason="sleeve caught on the hand" if k > 1 else "",
+        )
+        for i, (name, k) in enumerate([("A grasp", 1), ("B unfold", 1), ("C dress", 2), ("D spread", 1)])
+    ),
+    timing={"physics": 3.0, "camera": 1.0, "perception": 0.5},
+)
 
 
 @pytest.fixture
 def make_record() -> Callable[..., Path]:
     """Write a whole record into a folder: `make_record(folder, seed=3, pictures=True)`; one cut short if no result."""
+
     def make(directory: Path, *, seed: int = 0, pictures: bool = False, result: RunResult | None = RESULT) -> Path:
         recorder = Recorder(directory, task="dressing", seed=seed, world="bullet", parameters={"gown": "small"})
         static = gown()
@@ -81,10 +105,20 @@ def make_record() -> Callable[..., Path]:
             if index % 10 == 0:
                 stage = "ABCD"[min(3, index // 25)]
                 pulled = "FAILURE" if index == 40 else "SUCCESS"
-                for leaf, status, offset in (("look", "RUNNING", 0.0), ("look", "SUCCESS", 0.2),
-                                             ("pull", "RUNNING", 0.2), ("pull", pulled, 0.7)):
-                    recorder.event({"t": round(index * FRAME_PERIOD + offset, 6), "kind": "node",
-                                    "node": f"dressing/{stage}/{leaf}", "status": status})
+                for leaf, status, offset in (
+                    ("look", "RUNNING", 0.0),
+                    ("look", "SUCCESS", 0.2),
+                    ("pull", "RUNNING", 0.2),
+                    ("pull", pulled, 0.7),
+                ):
+                    recorder.event(
+                        {
+                            "t": round(index * FRAME_PERIOD + offset, 6),
+                            "kind": "node",
+                            "node": f"dressing/{stage}/{leaf}",
+                            "status": status,
+                        }
+                    )
             if pictures and index % 2 == 0:
                 image = np.full((48, 64, 3), 2 * index, dtype=np.uint8)
                 recorder.picture(index * FRAME_PERIOD, image)

@@ -19,8 +19,8 @@ from ..sim.errors import CaretreeError
 BAD_INPUT = 2
 INTERRUPTED = 130
 SELF_PARSED = {
-    "trials": (".trials_command", "run many seeds and count successes, by stage and overall"),
-    "evaluate": (".evaluate_command", "say from the record alone whether the person is dressed"),
+    "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
+    "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed"),
 }
 # said by --help, which must not import what knows them; a test compares
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
@@ -47,8 +47,9 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
-    parser.add_argument("--stage", metavar="NAME",
-                        help="this stage alone, or a span such as C-D, from a world prepared for it")
+    parser.add_argument(
+        "--stage", metavar="NAME", help="this stage alone, or a span such as C-D, from a world prepared for it"
+    )
 
 
 def build_parser(command: str = "") -> argparse.ArgumentParser:
@@ -60,9 +61,13 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     run.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all that varies (default 0)")
     _world_options(run)
-    run.add_argument("--inject", action="append", default=[], metavar="FAULT@NODE:PHASE",
-                     help=f"may be repeated; FAULT: {FAULTS}; NODE: a skill, see `check --tree`; PHASE: start, step or "
-                          "cancel")
+    run.add_argument(
+        "--inject",
+        action="append",
+        default=[],
+        metavar="FAULT@NODE:PHASE",
+        help=f"may be repeated; FAULT: {FAULTS}; NODE: a skill, see `check --tree`; PHASE: start, step or cancel",
+    )
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
@@ -74,8 +79,13 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     inject.add_argument("--seed", type=_seed, default=0, metavar="N", help="of every run (default 0)")
     inject.add_argument("--world", default="scripted", choices=("bullet", "scripted", "ros1"), help="default: scripted")
-    inject.add_argument("--fault", action="append", default=[], metavar="FAULT",
-                        help=f"only this one; may be repeated; there are {FAULTS}")
+    inject.add_argument(
+        "--fault",
+        action="append",
+        default=[],
+        metavar="FAULT",
+        help=f"only this one; may be repeated; there are {FAULTS}",
+    )
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 

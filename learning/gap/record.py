@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import yaml
 
-from ...sim.effects.carriers import spread_vertices
-from ...sim.effects.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
+from ...sim.effects.cloth.carriers import spread_vertices
+from ...sim.effects.cloth.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
 from ...sim.effects.model_file import EffectModel
-from ...sim.gown import GownMesh
+from ...sim.scene.gown import GownMesh
 from .cloth.obj import write_obj
 from .cloth.simulate import QuietClient
 from .errors import GapError
@@ -48,10 +48,10 @@ def record(
         CaretreeError: an unknown gown, or a model file that does not fit one.
         GapError: a duration that is too short to move.
     """
-    from ...sim.bullet import TIME_STEP
-    from ...sim.gown import build_gown
-    from ...sim.scene import named_gown
-    from ...sim.units import PER_SECOND
+    from ...sim.bullet.units import PER_SECOND
+    from ...sim.bullet.world import TIME_STEP
+    from ...sim.scene.gown import build_gown
+    from ...sim.scene.scene import named_gown
 
     if not duration >= 0.5:
         raise GapError(f"--duration is {duration:g} s, at least 0.5 s are needed")
@@ -101,8 +101,8 @@ def _hang(
     mesh: GownMesh, start: np.ndarray, pins: list[int], effects: EffectModel | None, duration: float, time_step: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (T,) [s] and vertices (T, V, 3) [m] of one recording."""
-    from ...sim import units
-    from ...sim.cloth import GRAVITY, Cloth
+    from ...sim.bullet import units
+    from ...sim.bullet.cloth import GRAVITY, Cloth
 
     client: Any = QuietClient()
     try:

@@ -12,8 +12,9 @@ from ...sim.effects.model_file import load_model, save_model
 from .errors import GapError
 from .findings import Verdict, _plain
 from .measurement import load_set
+from .open_study import open_study
 from .report import write_report
-from .study import Study, open_study
+from .study import Study
 
 Say = Callable[[str], None]
 

@@ -71,22 +71,3 @@ class Study(abc.ABC):
             notes=tuple(dict.fromkeys(self.notes)),
             seconds=seconds,
         )
-
-
-def open_study(measured: MeasurementSet, alpha: float = 0.05, cache: Any = None) -> Study:
-    """The study for a set's system.
-
-    Raises:
-        GapError: the set lacks what its system needs.
-    """
-    if measured.system in ("arm", "axis"):
-        from .joints.study import JointStudy
-
-        return JointStudy(measured, alpha)
-    if measured.system == "fall":
-        from .fall.study import FallStudy
-
-        return FallStudy(measured, alpha)
-    from .cloth.study import ClothStudy
-
-    return ClothStudy(measured, alpha, cache=cache)

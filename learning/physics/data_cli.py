@@ -12,8 +12,14 @@ from ...sim.errors import CaretreeError
 if TYPE_CHECKING:
     import numpy as np
 
-SIZES = {"paper": (100, 60), "uniform": (1, 6000), "heldout_gown": (1, 300), "disturbed": (1, 300),
-         "mixed": (1, 24000), "cuts": (1, 4000)}
+SIZES = {
+    "paper": (100, 60),
+    "uniform": (1, 6000),
+    "heldout_gown": (1, 300),
+    "disturbed": (1, 300),
+    "mixed": (1, 24000),
+    "cuts": (1, 4000),
+}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -29,9 +35,12 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("folder", metavar="DIR", help="where it lies; made when it is not there")
     data.add_argument("--kind", choices=tuple(SIZES), default="paper")
     data.add_argument("--classes", type=int, metavar="N", help="of kind paper (default 100)")
-    data.add_argument("--per-class", type=int, metavar="N",
-                      help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 4000, "
-                           "others 300)")
+    data.add_argument(
+        "--per-class",
+        type=int,
+        metavar="N",
+        help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 4000, others 300)",
+    )
     data.add_argument("--seed", type=int, default=0, metavar="N")
     data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")
     data.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
@@ -60,9 +69,9 @@ def parser() -> argparse.ArgumentParser:
 
 def _rows(paths: list[str], clips: int) -> list[tuple[str, np.ndarray]]:
     """(title, depth) of clips and of the first `clips` of each dataset."""
-    from .clip import Clip, unpacked
-    from .dataset import read_index, read_shard
-    from .parameters import NAMES, to_values
+    from .clips.clip import Clip, unpacked
+    from .clips.dataset import read_index, read_shard
+    from .clips.parameters import NAMES, to_values
 
     if clips < 1:
         raise CaretreeError(f"--clips is {clips}, at least 1 is asked for")
@@ -86,19 +95,23 @@ def main(argv: list[str]) -> int:
     """
     options = parser().parse_args(argv)
     if options.command == "data":
-        from .dataset import DatasetSpec
-        from .generate import generate, say_to_stderr
+        from .clips.dataset import DatasetSpec
+        from .clips.generate import generate, say_to_stderr
 
         if options.jobs < 1:
             raise CaretreeError(f"--jobs is {options.jobs}, at least 1 is asked for")
         classes, per_class = SIZES[options.kind]
-        spec = DatasetSpec(kind=options.kind, classes=classes if options.classes is None else options.classes,
-                           per_class=per_class if options.per_class is None else options.per_class, seed=options.seed)
+        spec = DatasetSpec(
+            kind=options.kind,
+            classes=classes if options.classes is None else options.classes,
+            per_class=per_class if options.per_class is None else options.per_class,
+            seed=options.seed,
+        )
         print(generate(options.folder, spec, options.jobs, options.address, say_to_stderr))
     elif options.command == "clip":
-        from ...sim.scene import named_gown
-        from .clip_world import film
-        from .parameters import BASE, NAMES
+        from ...sim.scene.scene import named_gown
+        from .clips.film import film
+        from .clips.parameters import BASE, NAMES
 
         gown = named_gown(options.gown)
         if gown.air_drag <= 0:  # a named gown says nothing of the air it falls in: the usual
@@ -106,24 +119,24 @@ def main(argv: list[str]) -> int:
         clip = film(gown, seed=options.seed, engine=options.engine, disturbed=options.disturbed)
         print(clip.save(options.file))
         if options.strip:
-            from .strip import write_strip
+            from .clips.filmstrip import write_strip
 
             print(write_strip(options.strip, [(gown.name, clip.depth)]))
     elif options.command == "show":
-        from .strip import write_strip
+        from .clips.filmstrip import write_strip
 
         print(write_strip(options.out, _rows(options.path, options.clips)))
     elif options.engines:
-        from .engines import report as compared
+        from .study.engine_comparison import report as compared
 
         print(compared())
     elif options.candidates:
-        from .sixth import candidates
-        from .sixth import report as table
+        from .study.parameter_choice import candidates
+        from .study.parameter_choice import report as table
 
         print(table(candidates()))
     else:
-        from .sensitivity import report, study
+        from .study.sensitivity import report, study
 
         if options.points < 1:
             raise CaretreeError(f"--points is {options.points}, at least 1 is asked for")

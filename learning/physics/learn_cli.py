@@ -12,8 +12,7 @@ from typing import NoReturn
 from ...sim.errors import CaretreeError
 
 STEPS = 1500
-METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random",
-           "class_centre")
+METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random", "class_centre")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -48,10 +47,20 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
         p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")
         p.add_argument("--backbone", default="scores", choices=("scores", "small", "densenet121"))
-        p.add_argument("--simulate", type=_whole, default=100, metavar="N",
-                       help="clips of each test that ours corrects by simulation (default 100, half a second each)")
-        p.add_argument("--calibrate", type=_whole, default=100, metavar="N",
-                       help="clips of each sort that set the intervals' widths (default 100)")
+        p.add_argument(
+            "--simulate",
+            type=_whole,
+            default=100,
+            metavar="N",
+            help="clips of each test that ours corrects by simulation (default 100, half a second each)",
+        )
+        p.add_argument(
+            "--calibrate",
+            type=_whole,
+            default=100,
+            metavar="N",
+            help="clips of each sort that set the intervals' widths (default 100)",
+        )
         p.add_argument("--partial", action="store_true", help="take what is there of unfinished data sets")
     p = sub.add_parser("identify", help="parameters with intervals from one clip; writes a gown file")
     p.add_argument("clip", metavar="CLIP", help="an .npz, as `caretree learn physics clip` writes it")
@@ -81,15 +90,22 @@ def main(argv: list[str]) -> int:
     try:
         import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
-        raise CaretreeError(f"`caretree learn physics {options.command}` needs PyTorch: "
-                            "pip install 'caretree[learn]'") from error
+        raise CaretreeError(
+            f"`caretree learn physics {options.command}` needs PyTorch: pip install 'caretree[learn]'"
+        ) from error
     torch.set_num_threads(1)  # clips are small: more threads only wait for each other
     if options.command == "pictures":
-        from .pictures import draw
-        from .weights import PACKAGED
+        from .methods.weights import PACKAGED
+        from .study.figures import draw
 
-        for path in draw(Path(options.study), Path(options.data), Path(options.out), partial=options.partial,
-                         also=[Path(one) for one in options.also], weights=Path(options.weights or PACKAGED)):
+        for path in draw(
+            Path(options.study),
+            Path(options.data),
+            Path(options.out),
+            partial=options.partial,
+            also=[Path(one) for one in options.also],
+            weights=Path(options.weights or PACKAGED),
+        ):
             print(path)
         return 0
     return _study(options)
@@ -100,10 +116,10 @@ def _say(text: str) -> None:
 
 
 def _study(options: argparse.Namespace) -> int:
-    from .evaluate import table, write_results
-    from .examples import load_examples
-    from .methods import Plan
-    from .study import Study
+    from .methods.examples import load_examples
+    from .study.evaluate import table, write_results
+    from .study.registry import Plan
+    from .study.study import Study
 
     out = Path(options.out)
     data = load_examples(Path(options.data), out, partial=options.partial)
@@ -113,8 +129,15 @@ def _study(options: argparse.Namespace) -> int:
         tests[loaded.kind] = loaded
     plan = Plan(steps=options.steps, backbone=options.backbone, folder=out, say=_say)
     cuts = load_examples(Path(options.cuts), out, partial=options.partial) if options.cuts else None
-    study = Study(data=data, tests=tests, plan=plan, seeds=options.seeds, simulate=options.simulate,
-                  calibrate=options.calibrate, cuts=cuts)
+    study = Study(
+        data=data,
+        tests=tests,
+        plan=plan,
+        seeds=options.seeds,
+        simulate=options.simulate,
+        calibrate=options.calibrate,
+        cuts=cuts,
+    )
     study.run(_say, tuple(options.method))
     path = write_results(study)
     if options.command == "evaluate":
@@ -124,20 +147,23 @@ def _study(options: argparse.Namespace) -> int:
 
 
 def _identify(options: argparse.Namespace) -> int:
-    from .clip import Clip
-    from .identify import identify, write
-    from .weights import PACKAGED, load_weights
+    from .clips.clip import Clip
+    from .methods.weights import PACKAGED, load_weights
+    from .study.identify import identify, write
 
     if options.out and (Path(options.out).is_dir() or not Path(options.out).parent.is_dir()):
-        raise CaretreeError(f"{options.out}: a gown file cannot be written there, it must be a file in a folder that "
-                            "exists")
+        raise CaretreeError(
+            f"{options.out}: a gown file cannot be written there, it must be a file in a folder that exists"
+        )
     clip = Clip.load(options.clip)
     method, _ = load_weights(options.weights or PACKAGED)
     start = time.perf_counter()
     found = identify(clip, method, options.cut, simulate=not options.fast)
     print(found.table())
-    _say(f"{time.perf_counter() - start:.1f} s; a {'camera' if found.rough else 'rendered'} clip, "
-         f"explained {_fit(found.misfit)}")
+    _say(
+        f"{time.perf_counter() - start:.1f} s; a {'camera' if found.rough else 'rendered'} clip, "
+        f"explained {_fit(found.misfit)}"
+    )
     if options.out:
         print(write(found, options.out))
     return 0

@@ -137,8 +137,9 @@ class JointEffect(abc.ABC):
         check_values(self.name, values, (*self.linear, *self.shape), self.optional)
 
 
-def check_values(name: str, values: dict[str, float], needed: tuple[Parameter, ...],
-                 optional: tuple[Parameter, ...] = ()) -> None:
+def check_values(
+    name: str, values: dict[str, float], needed: tuple[Parameter, ...], optional: tuple[Parameter, ...] = ()
+) -> None:
     """Refuse values an effect cannot have.
 
     Args:

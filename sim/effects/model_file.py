@@ -8,10 +8,10 @@ from typing import Any
 
 import yaml
 
-from .body_bank import BODY_EFFECTS
+from .body.body_bank import BODY_EFFECTS
 from .effect import EffectError
-from .joint_bank import JOINT_EFFECTS
-from .link_inertia import BODY_PARAMETERS, BODY_TERMS
+from .joint.joint_bank import JOINT_EFFECTS
+from .joint.link_inertia import BODY_PARAMETERS, BODY_TERMS
 
 FORMAT = "caretree-model-1"
 SYSTEMS = ("arm", "axis", "fall", "cloth")
@@ -118,7 +118,7 @@ def check_effect(system: str, e: EffectEntry) -> None:
     elif system == "fall":
         bank = dict(BODY_EFFECTS)
     else:
-        from .cloth_bank import CLOTH_EFFECTS
+        from .cloth.cloth_bank import CLOTH_EFFECTS
 
         bank = dict(CLOTH_EFFECTS)
     if e.name not in bank:

@@ -45,6 +45,7 @@ def arm_line(arms: np.ndarray) -> np.ndarray:
     Returns:
         (T, 6, 3): inside the shoulder, the four points, past the fingertip.
     """
+
     def direction(start: np.ndarray, end: np.ndarray) -> np.ndarray:
         return (end - start) / (np.linalg.norm(end - start, axis=-1, keepdims=True) + 1e-12)
 

@@ -53,8 +53,9 @@ def depth_inside(vertices: np.ndarray, start: np.ndarray, end: np.ndarray, radiu
     return np.maximum(radius - nearest, 0.0)
 
 
-def motion(t: np.ndarray, vertices: np.ndarray, faces: np.ndarray, rest: np.ndarray, arms: np.ndarray,
-           radii: np.ndarray) -> Motion:
+def motion(
+    t: np.ndarray, vertices: np.ndarray, faces: np.ndarray, rest: np.ndarray, arms: np.ndarray, radii: np.ndarray
+) -> Motion:
     """Measure a whole run.
 
     Args:
@@ -78,8 +79,8 @@ def motion(t: np.ndarray, vertices: np.ndarray, faces: np.ndarray, rest: np.ndar
         p99[part], longest[part] = np.percentile(ratio, 99, axis=1), ratio.max(axis=1)
         path = now if before is None else np.concatenate([before[None], now])
         step = np.linalg.norm(np.diff(path, axis=0), axis=2).max(axis=1)
-        times = t[part.stop - len(path):part.stop]
-        speed[part.stop - len(step):part.stop] = step / np.maximum(np.diff(times), 1e-9)
+        times = t[part.stop - len(path) : part.stop]
+        speed[part.stop - len(step) : part.stop] = step / np.maximum(np.diff(times), 1e-9)
         before = now[-1]
         for arm in range(2):
             points = arms[part, arm].astype(np.float64)

@@ -62,11 +62,17 @@ def read_series(directory: Path) -> Series:
     with np.errstate(invalid="ignore"):  # a record of broken physics is drawn with gaps
         moved = motion(truth.t, truth.vertices, truth.faces, truth.rest_vertices, truth.arms, truth.arm_radii)
         return Series(
-            t=truth.t, load=np.linalg.norm(truth.gripper_load.astype(np.float64), axis=2),
-            holds=truth.gripper_closed.astype(bool), person_force=extra["person_force"],
-            person_parts=tuple(str(name) for name in extra["person_parts"]), distance=_distance(truth, hands),
-            speed=_speed(truth.t, hands), upper_arm=_upper_arm(truth), stretch_p99=moved.stretch_p99,
-            stretch_max=moved.stretch_max)
+            t=truth.t,
+            load=np.linalg.norm(truth.gripper_load.astype(np.float64), axis=2),
+            holds=truth.gripper_closed.astype(bool),
+            person_force=extra["person_force"],
+            person_parts=tuple(str(name) for name in extra["person_parts"]),
+            distance=_distance(truth, hands),
+            speed=_speed(truth.t, hands),
+            upper_arm=_upper_arm(truth),
+            stretch_p99=moved.stretch_p99,
+            stretch_max=moved.stretch_max,
+        )
 
 
 def _chunks(count: int) -> list[np.ndarray]:
@@ -91,8 +97,10 @@ def _distance(truth: Truth, hands: np.ndarray) -> np.ndarray:
             axis = truth.arms[:, arm, k + 1, None] - start
             along = np.clip(((hands - start) * axis).sum(-1) / ((axis * axis).sum(-1) + 1e-12), 0.0, 1.0)
             gaps.append(np.linalg.norm(hands - start - along[..., None] * axis, axis=-1) - truth.arm_radii[arm, k])
-    torso = [np.linalg.norm(hands[frames, :, None] - truth.torso_front[frames, None, :, :3], axis=-1).min(axis=2)
-             for frames in _chunks(len(hands))]
+    torso = [
+        np.linalg.norm(hands[frames, :, None] - truth.torso_front[frames, None, :, :3], axis=-1).min(axis=2)
+        for frames in _chunks(len(hands))
+    ]
     return np.maximum(np.minimum(np.min(gaps, axis=0), np.concatenate(torso)), 0.0)
 
 

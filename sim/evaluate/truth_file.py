@@ -11,15 +11,21 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import RecordError
-from ..record import SPOOL_FOLDER, TRUTH_FILE
-from ..truth import LOOPS
+from ..record.record import SPOOL_FOLDER, TRUTH_FILE
+from ..record.truth import LOOPS
 
 # T frames, V vertices; None is free
 SHAPES: dict[str, tuple[str | int | None, ...]] = {
-    "t": ("T",), "vertices": ("T", "V", 3), "faces": (None, 3), "rest_vertices": ("V", 3),
+    "t": ("T",),
+    "vertices": ("T", "V", 3),
+    "faces": (None, 3),
+    "rest_vertices": ("V", 3),
     **{f"loop_{name}": (None,) for name in LOOPS},
-    "arms": ("T", 2, 4, 3), "arm_radii": (2, 3), "torso_front": ("T", None, 6),
-    "gripper_closed": ("T", 2), "gripper_load": ("T", 2, 3),
+    "arms": ("T", 2, 4, 3),
+    "arm_radii": (2, 3),
+    "torso_front": ("T", None, 6),
+    "gripper_closed": ("T", 2),
+    "gripper_load": ("T", 2, 3),
 }
 DAMAGED = (OSError, ValueError, EOFError, AttributeError, NotImplementedError, zipfile.BadZipFile, zlib.error)
 INDICES = ("faces", *(f"loop_{name}" for name in LOOPS))
@@ -78,7 +84,8 @@ def read_truth(directory: Path) -> Truth:
         given = arrays[name].shape
         fits = len(given) == len(shape) and all(
             want is None or got == (want if isinstance(want, int) else sizes.setdefault(want, got))
-            for want, got in zip(shape, given, strict=True))
+            for want, got in zip(shape, given, strict=True)
+        )
         if not fits:
             asked = ", ".join("any" if want is None else str(sizes.get(str(want), want)) for want in shape)
             raise RecordError(f"{directory / TRUTH_FILE}: {name} has shape {given}, but ({asked}) is asked for")
@@ -87,8 +94,9 @@ def read_truth(directory: Path) -> Truth:
     for name in INDICES:
         index = arrays[name]
         if index.dtype.kind not in "iu" or (index.size and not 0 <= index.min() <= index.max() < sizes["V"]):
-            raise RecordError(f"{directory / TRUTH_FILE}: {name} holds something else than vertex numbers from 0 to "
-                              f"{sizes['V'] - 1}")
+            raise RecordError(
+                f"{directory / TRUTH_FILE}: {name} holds something else than vertex numbers from 0 to {sizes['V'] - 1}"
+            )
     if sizes["T"] < 2:
         raise RecordError(f"{directory / TRUTH_FILE} holds {sizes['T']} frames, but at least 2 are asked for")
     if not sizes["V"] or not len(arrays["faces"]):

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..record import read_run
-from ..truth import TORSO_POINTS_MIN
+from ..record.record import read_run
+from ..record.truth import TORSO_POINTS_MIN
 from ..world import SIDES
 from . import limits
 from .coverage import coverage
@@ -44,8 +44,14 @@ class Verdict:
 
     def as_dict(self) -> dict[str, Any]:
         """For run tables and JSON."""
-        return {"dressed": self.dressed, "problems": list(self.problems), "numbers": dict(self.numbers),
-                "claimed": self.claimed, "seed": self.seed, "agrees": self.agrees}
+        return {
+            "dressed": self.dressed,
+            "problems": list(self.problems),
+            "numbers": dict(self.numbers),
+            "claimed": self.claimed,
+            "seed": self.seed,
+            "agrees": self.agrees,
+        }
 
     def __str__(self) -> str:
         """One line, then one for each problem."""
@@ -63,8 +69,13 @@ def evaluate(directory: Path | str) -> Verdict:
     run = read_run(directory)
     truth = read_truth(directory)
     problems, numbers = judge_truth(truth)
-    return Verdict(dressed=not problems, problems=tuple(problems), numbers=numbers, claimed=run.get("outcome"),
-                   seed=run.get("seed"))
+    return Verdict(
+        dressed=not problems,
+        problems=tuple(problems),
+        numbers=numbers,
+        claimed=run.get("outcome"),
+        seed=run.get("seed"),
+    )
 
 
 def judge_truth(truth: Truth) -> tuple[list[str], dict[str, float]]:
@@ -84,8 +95,15 @@ def judge_truth(truth: Truth) -> tuple[list[str], dict[str, float]]:
 
 def _not_finite(truth: Truth) -> list[str]:
     held = truth.gripper_load[truth.gripper_closed.astype(bool)]  # an open gripper may read nothing
-    checked = {"t": truth.t, "vertices": truth.vertices, "rest_vertices": truth.rest_vertices, "arms": truth.arms,
-               "arm_radii": truth.arm_radii, "torso_front": truth.torso_front[-1], "gripper_load": held}
+    checked = {
+        "t": truth.t,
+        "vertices": truth.vertices,
+        "rest_vertices": truth.rest_vertices,
+        "arms": truth.arms,
+        "arm_radii": truth.arm_radii,
+        "torso_front": truth.torso_front[-1],
+        "gripper_load": held,
+    }
     broken = [name for name, array in checked.items() if not np.isfinite(array).all()]
     return [f"{name} holds a number that is not finite" for name in broken]
 
@@ -96,8 +114,11 @@ def _judge_frames(truth: Truth, problems: list[str], numbers: dict[str, float]) 
         problems.append(f"frames lie up to {gap:.2f} s apart, {limits.FRAME_GAP_MAX} s are allowed")
     if (np.diff(truth.t) <= 0).any():
         problems.append("time does not grow from frame to frame")
-    travel = numbers["gown_travel_m"] = float(np.linalg.norm(
-        truth.vertices[-1].astype(np.float64).mean(axis=0) - truth.vertices[0].astype(np.float64).mean(axis=0)))
+    travel = numbers["gown_travel_m"] = float(
+        np.linalg.norm(
+            truth.vertices[-1].astype(np.float64).mean(axis=0) - truth.vertices[0].astype(np.float64).mean(axis=0)
+        )
+    )
     if travel < limits.TRAVEL_MIN:
         problems.append(f"the gown moved {travel:.2f} m, but from the rail it is at least {limits.TRAVEL_MIN} m")
 
@@ -106,8 +127,10 @@ def sleeves_of(truth: Truth, frames: np.ndarray) -> dict[str, Sleeve]:
     """Both sleeves in the given frames, by the person's side."""
     vertices, arms = truth.vertices[frames].astype(np.float64), truth.arms[frames].astype(np.float64)
     loops = truth.loops
-    return {side: sleeve(vertices[:, loops[f"armhole_{side}"]], vertices[:, loops[f"cuff_{side}"]], arms[:, k])
-            for k, side in enumerate(SIDES)}
+    return {
+        side: sleeve(vertices[:, loops[f"armhole_{side}"]], vertices[:, loops[f"cuff_{side}"]], arms[:, k])
+        for k, side in enumerate(SIDES)
+    }
 
 
 def _judge_sleeves(truth: Truth, problems: list[str], numbers: dict[str, float]) -> None:

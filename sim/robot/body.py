@@ -75,9 +75,18 @@ class RobotBody:
         servo: the controller and its targets.
     """
 
-    def __init__(self, client: Any, pose_base_in_map: np.ndarray, arm_positions: np.ndarray | None = None,
-                 head_pan: float = 0.0, *, gripper_opening: float = model.GRIPPER_STROKE, collision_mask: int = 0,
-                 time: float = 0.0, kinematics: Kinematics | None = None) -> None:
+    def __init__(
+        self,
+        client: Any,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray | None = None,
+        head_pan: float = 0.0,
+        *,
+        gripper_opening: float = model.GRIPPER_STROKE,
+        collision_mask: int = 0,
+        time: float = 0.0,
+        kinematics: Kinematics | None = None,
+    ) -> None:
         self._client = client
         self.kinematics = kinematics or default_kinematics()
         arms = model.READY if arm_positions is None else np.asarray(arm_positions, float)
@@ -148,11 +157,15 @@ class RobotBody:
         closed = (fingers.sum(axis=1) < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
         squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
         return JointReading(
-            arm_positions=q[3:17].reshape(2, 7), arm_velocities=dq[3:17].reshape(2, 7),
-            arm_efforts=torque[3:17].reshape(2, 7), head_pan=float(q[17]),
+            arm_positions=q[3:17].reshape(2, 7),
+            arm_velocities=dq[3:17].reshape(2, 7),
+            arm_efforts=torque[3:17].reshape(2, 7),
+            head_pan=float(q[17]),
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
-            gripper_opening=fingers.sum(axis=1), gripper_force=squeeze)
+            gripper_opening=fingers.sum(axis=1),
+            gripper_force=squeeze,
+        )
 
     def pose_hand_in_map(self, side: Side, reading: JointReading | None = None) -> np.ndarray:
         """Pose (4, 4) of a hand by forward kinematics of the measured joints."""
@@ -163,15 +176,15 @@ class RobotBody:
     def configuration(self, reading: JointReading | None = None) -> np.ndarray:
         """Joint vector (nq,) of the measured joints, for `Kinematics.link_poses`."""
         reading = reading or self.read()
-        return self.kinematics.configuration(reading.pose_base_in_map, reading.arm_positions, reading.head_pan,
-                                             reading.gripper_opening)
+        return self.kinematics.configuration(
+            reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
+        )
 
     def apply_hand_force(self, side: Side, force_in_map: np.ndarray) -> None:
         """Load a hand between the fingertips with a force (3,) [N] for the next physics step."""
         link = self.links[f"{side}_hand"]
         position = self._client.getLinkState(self.body, link)[4]
-        self._client.applyExternalForce(self.body, link, list(map(float, force_in_map)), position,
-                                       pybullet.WORLD_FRAME)
+        self._client.applyExternalForce(self.body, link, list(map(float, force_in_map)), position, pybullet.WORLD_FRAME)
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
         """Motor targets (22,) and their rates, at the middle of the coming control period."""
@@ -190,6 +203,12 @@ class RobotBody:
         self._forces[18:22] = np.repeat(self.servo.gripper_force_limit, 2)
         positions, velocities = self._targets()
         self._client.setJointMotorControlArray(
-            self.body, self._joints, pybullet.POSITION_CONTROL, targetPositions=positions.tolist(),
-            targetVelocities=velocities.tolist(), forces=self._forces.tolist(), positionGains=self._gains,
-            velocityGains=self._velocity_gains)
+            self.body,
+            self._joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=positions.tolist(),
+            targetVelocities=velocities.tolist(),
+            forces=self._forces.tolist(),
+            positionGains=self._gains,
+            velocityGains=self._velocity_gains,
+        )

@@ -57,13 +57,15 @@ class CollisionChecker:
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
         return not self._compute(q, stop_at_first=True)
 
-    def collisions(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray,
-                   head_pan: float = 0.0) -> list[tuple[str, str]]:
+    def collisions(
+        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0
+    ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
         self._compute(q, stop_at_first=False)
-        hit = [pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True)
-               if result.isCollision()]
+        hit = [
+            pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True) if result.isCollision()
+        ]
         return list(dict.fromkeys((self._names[m], self._names[n]) for m, n in hit))
 
     def _compute(self, q: np.ndarray, *, stop_at_first: bool) -> bool:
@@ -84,7 +86,8 @@ def _own_pairs() -> list[tuple[str, str]]:
         other = SIDES[1 - SIDES.index(side)]
         pairs += [(f"{side}_{a}", b) for a in _DISTAL for b in _FIXED]
         pairs += [(f"{side}_{a}", f"{other}_upper_shoulder") for a in _DISTAL]
-        pairs += [(f"{side}_{a}", f"{side}_{b}") for a in ("wrist", "gripper")
-                  for b in ("upper_shoulder", "upper_elbow")]
+        pairs += [
+            (f"{side}_{a}", f"{side}_{b}") for a in ("wrist", "gripper") for b in ("upper_shoulder", "upper_elbow")
+        ]
         pairs += [(f"{side}_lower_elbow", b) for b in ("torso", "head")]
     return pairs

@@ -59,14 +59,18 @@ class Kinematics:
         neutral = pin.neutral(full)
         self._arms: dict[Side, tuple[pin.Model, pin.Data, int]] = {}
         self.limits: dict[Side, ArmLimits] = {}
-        self._arm_index = np.array([[full.joints[full.getJointId(name)].idx_q for name in model.arm_joints(side)]
-                                    for side in SIDES])
-        self._finger_index = np.array([[full.joints[full.getJointId(name)].idx_q for name in model.finger_joints(side)]
-                                       for side in SIDES])
+        self._arm_index = np.array(
+            [[full.joints[full.getJointId(name)].idx_q for name in model.arm_joints(side)] for side in SIDES]
+        )
+        self._finger_index = np.array(
+            [[full.joints[full.getJointId(name)].idx_q for name in model.finger_joints(side)] for side in SIDES]
+        )
         self._base_index = np.array([full.joints[full.getJointId(name)].idx_q for name in model.BASE_JOINTS])
         self._head_index = full.joints[full.getJointId(model.HEAD_JOINT)].idx_q
-        self.head_range = (float(full.lowerPositionLimit[self._head_index]),
-                           float(full.upperPositionLimit[self._head_index]))
+        self.head_range = (
+            float(full.lowerPositionLimit[self._head_index]),
+            float(full.upperPositionLimit[self._head_index]),
+        )
         for n, side in enumerate(SIDES):
             keep = set(model.arm_joints(side))
             locked = [full.getJointId(name) for name in full.names[1:] if name not in keep]
@@ -74,9 +78,12 @@ class Kinematics:
             self._arms[side] = (arm, arm.createData(), arm.getFrameId(f"{side}_hand"))
             index = self._arm_index[n]
             self.limits[side] = ArmLimits(
-                lower=full.lowerPositionLimit[index].copy(), upper=full.upperPositionLimit[index].copy(),
-                velocity=full.velocityLimit[index].copy(), acceleration=model.ARM_ACCELERATION.copy(),
-                effort=full.effortLimit[index].copy())
+                lower=full.lowerPositionLimit[index].copy(),
+                upper=full.upperPositionLimit[index].copy(),
+                velocity=full.velocityLimit[index].copy(),
+                acceleration=model.ARM_ACCELERATION.copy(),
+                effort=full.effortLimit[index].copy(),
+            )
         self._link_frames = {frame.name: n for n, frame in enumerate(full.frames) if frame.type == pin.FrameType.BODY}
 
     def pose_hand_in_base(self, side: Side, q: np.ndarray) -> np.ndarray:
@@ -106,8 +113,13 @@ class Kinematics:
         pin.computeJointJacobians(arm, data, q)  # also places the joints, which computeFrameJacobian does not
         return pin.updateFramePlacement(arm, data, frame), pin.getFrameJacobian(arm, data, frame, pin.LOCAL)
 
-    def configuration(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0,
-                      gripper_opening: np.ndarray | None = None) -> np.ndarray:
+    def configuration(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
         """Joint vector (nq,) of the full model."""
         q = np.zeros(self.model.nq)
         q[self._base_index] = pose_base_in_map
@@ -122,8 +134,9 @@ class Kinematics:
         pin.framesForwardKinematics(self.model, self.data, q)
         return {name: self.data.oMf[n].homogeneous for name, n in self._link_frames.items()}
 
-    def pose_camera_in_map(self, camera: str, pose_base_in_map: np.ndarray, arm_positions: np.ndarray,
-                           head_pan: float) -> np.ndarray:
+    def pose_camera_in_map(
+        self, camera: str, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float
+    ) -> np.ndarray:
         """Optical frame (4, 4) of a camera: x right, y down, z forward.
 
         Raises:

@@ -10,15 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..world import (
-    SIDES,
-    BaseVelocity,
-    Command,
-    GripperOpening,
-    HandTwist,
-    JointTrajectory,
-    WorldError,
-)
+from ..world import SIDES, BaseVelocity, Command, GripperOpening, HandTwist, JointTrajectory, WorldError
 from . import model
 from .kinematics import Kinematics
 from .twist import TwistTracker
@@ -46,8 +38,14 @@ class Servo:
         gripper_force_limit: (2,) [N].
     """
 
-    def __init__(self, kinematics: Kinematics, pose_base_in_map: np.ndarray, arm_positions: np.ndarray,
-                 head_pan: float = 0.0, time: float = 0.0) -> None:
+    def __init__(
+        self,
+        kinematics: Kinematics,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        time: float = 0.0,
+    ) -> None:
         limits = [kinematics.limits[side] for side in SIDES]
         low, high = kinematics.head_range
         self._lower = np.concatenate([*(limit.lower for limit in limits), (low,)])
@@ -70,8 +68,11 @@ class Servo:
     @property
     def moving(self) -> bool:
         """Whether anything but the grippers is still in motion."""
-        return bool(np.abs(self.velocities).max() > 1e-4 or np.abs(self.twist_base).max() > 1e-4
-                    or any(owner is not None for owner in self._owner))
+        return bool(
+            np.abs(self.velocities).max() > 1e-4
+            or np.abs(self.twist_base).max() > 1e-4
+            or any(owner is not None for owner in self._owner)
+        )
 
     def command(self, command: Command) -> Command:
         """Start a command, replacing what the same joints, hand or base were doing.
@@ -101,10 +102,15 @@ class Servo:
             n = SIDES.index(command.side)
             self.gripper_opening[n] = np.clip(command.opening, 0.0, model.GRIPPER_STROKE)
             self.gripper_force_limit[n] = np.clip(command.force_limit, *model.GRIPPER_FORCE)
-            return GripperOpening(side=command.side, opening=float(self.gripper_opening[n]),
-                                  force_limit=float(self.gripper_force_limit[n]))
-        raise WorldError(f"the robot has no command {type(command).__name__}; it takes JointTrajectory, HandTwist, "
-                         "BaseVelocity and GripperOpening")
+            return GripperOpening(
+                side=command.side,
+                opening=float(self.gripper_opening[n]),
+                force_limit=float(self.gripper_force_limit[n]),
+            )
+        raise WorldError(
+            f"the robot has no command {type(command).__name__}; it takes JointTrajectory, HandTwist, "
+            "BaseVelocity and GripperOpening"
+        )
 
     def stop(self) -> None:
         """End every motion: all targets brake at their acceleration limits.  The grippers keep their opening."""
@@ -146,8 +152,9 @@ class Servo:
                 self._owner[joint], wanted[joint] = None, 0.0
         for n, side in enumerate(SIDES):
             part = slice(7 * n, 7 * n + 7)
-            rates = self._twists[side].rates(self._time, self.positions[part], self.velocities[part],
-                                             self.pose_base_in_map, self.twist_base)
+            rates = self._twists[side].rates(
+                self._time, self.positions[part], self.velocities[part], self.pose_base_in_map, self.twist_base
+            )
             if rates is not None:
                 wanted[part] = rates
         wanted = np.clip(wanted, -self._speed, self._speed)

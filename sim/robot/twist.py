@@ -51,8 +51,9 @@ class TwistTracker:
         """Let go: the joints brake by themselves."""
         self._active, self._pose = False, None
 
-    def rates(self, time: float, q: np.ndarray, dq: np.ndarray, pose_base_in_map: np.ndarray,
-              twist_base: np.ndarray) -> np.ndarray | None:
+    def rates(
+        self, time: float, q: np.ndarray, dq: np.ndarray, pose_base_in_map: np.ndarray, twist_base: np.ndarray
+    ) -> np.ndarray | None:
         """Joint rates (7,) [rad/s] for the period that ends at `time`, or None when no twist is active."""
         if not self._active:
             return None

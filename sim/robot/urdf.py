@@ -16,8 +16,17 @@ from ..world import SIDES, Side, WorldError
 from . import model
 from .shapes import Shape, collision_shapes
 
-_ARM_LINKS = ("arm_mount", "upper_shoulder", "lower_shoulder", "upper_elbow", "lower_elbow", "upper_forearm",
-              "lower_forearm", "wrist", "hand_link")
+_ARM_LINKS = (
+    "arm_mount",
+    "upper_shoulder",
+    "lower_shoulder",
+    "upper_elbow",
+    "lower_elbow",
+    "upper_forearm",
+    "lower_forearm",
+    "wrist",
+    "hand_link",
+)
 _ARM_FIXED = ("torso_arm_mount", "hand_joint")
 PLANAR_RANGE = 100.0  # of the planar base joints [m] and [rad]: wide enough never to be met
 
@@ -72,17 +81,26 @@ def compose(*, collisions: bool = True) -> str:
     link("base_x_link", 1.0)
     link("base_y_link", 1.0)
     link("base", model.BASE_MASS, model.BASE_SIZE, (0, 0, model.BASE_SIZE[2] / 2))
-    for name, kind, parent, child, axis in (("base_x", "prismatic", "map", "base_x_link", "1 0 0"),
-                                            ("base_y", "prismatic", "base_x_link", "base_y_link", "0 1 0"),
-                                            ("base_yaw", "revolute", "base_y_link", "base", "0 0 1")):
+    for name, kind, parent, child, axis in (
+        ("base_x", "prismatic", "map", "base_x_link", "1 0 0"),
+        ("base_y", "prismatic", "base_x_link", "base_y_link", "0 1 0"),
+        ("base_yaw", "revolute", "base_y_link", "base", "0 0 1"),
+    ):
         _joint(robot, name, kind, parent, child, axis=axis, limit=(-PLANAR_RANGE, PLANAR_RANGE, 5000.0, 2.0))
     baxter_link("torso")
     _joint(robot, "torso_mount", "fixed", "base", "torso", xyz=model.TORSO_IN_BASE)
     baxter_link("head")
     baxter_joint("head_pan")
     link("head_camera")
-    _joint(robot, "head_camera_joint", "fixed", "head", "head_camera", xyz=model.HEAD_CAMERA_IN_HEAD,
-           rpy=(-np.pi / 2 - model.HEAD_CAMERA_PITCH, 0.0, -np.pi / 2))
+    _joint(
+        robot,
+        "head_camera_joint",
+        "fixed",
+        "head",
+        "head_camera",
+        xyz=model.HEAD_CAMERA_IN_HEAD,
+        rpy=(-np.pi / 2 - model.HEAD_CAMERA_PITCH, 0.0, -np.pi / 2),
+    )
     for side in SIDES:
         for name in _ARM_LINKS:
             baxter_link(f"{side}_{name}")
@@ -136,19 +154,43 @@ def _gripper(robot: ET.Element, link, side: Side) -> None:
     for letter, sign in (("a", 1), ("b", -1)):
         centre = (0, sign * model.FINGER_SIZE[1] / 2, -model.FINGER_SIZE[2] / 2)
         link(f"{side}_finger_{letter}_link", model.FINGER_MASS, model.FINGER_SIZE, centre)
-        _joint(robot, f"{side}_finger_{letter}", "prismatic", f"{side}_hand_link", f"{side}_finger_{letter}_link",
-               xyz=(0, 0, tip_z), axis=f"0 {sign} 0",
-               limit=(0.0, model.GRIPPER_STROKE / 2, model.GRIPPER_FORCE[1], model.GRIPPER_SPEED / 2))
+        _joint(
+            robot,
+            f"{side}_finger_{letter}",
+            "prismatic",
+            f"{side}_hand_link",
+            f"{side}_finger_{letter}_link",
+            xyz=(0, 0, tip_z),
+            axis=f"0 {sign} 0",
+            limit=(0.0, model.GRIPPER_STROKE / 2, model.GRIPPER_FORCE[1], model.GRIPPER_SPEED / 2),
+        )
     link(f"{side}_hand")
     _joint(robot, f"{side}_hand_frame", "fixed", f"{side}_hand_link", f"{side}_hand", xyz=(0, 0, tip_z))
     link(f"{side}_hand_camera")
     # Image right is the hand's -y: seen from behind the palm the fingers close left-right.
-    _joint(robot, f"{side}_hand_camera_joint", "fixed", f"{side}_hand_link", f"{side}_hand_camera",
-           xyz=model.HAND_CAMERA_IN_HAND_LINK, rpy=(model.HAND_CAMERA_TILT, 0.0, -np.pi / 2))
+    _joint(
+        robot,
+        f"{side}_hand_camera_joint",
+        "fixed",
+        f"{side}_hand_link",
+        f"{side}_hand_camera",
+        xyz=model.HAND_CAMERA_IN_HAND_LINK,
+        rpy=(model.HAND_CAMERA_TILT, 0.0, -np.pi / 2),
+    )
 
 
-def _joint(robot: ET.Element, name: str, kind: str, parent: str, child: str, *, xyz=(0, 0, 0), rpy=(0, 0, 0),
-           axis: str | None = None, limit: tuple[float, float, float, float] | None = None) -> None:
+def _joint(
+    robot: ET.Element,
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    *,
+    xyz=(0, 0, 0),
+    rpy=(0, 0, 0),
+    axis: str | None = None,
+    limit: tuple[float, float, float, float] | None = None,
+) -> None:
     element = ET.SubElement(robot, "joint", name=name, type=kind)
     ET.SubElement(element, "origin", xyz=_numbers(xyz), rpy=_numbers(rpy))
     ET.SubElement(element, "parent", link=parent)
@@ -165,8 +207,16 @@ def _inertial(element: ET.Element, mass: float, size, centre) -> None:
     inertial = ET.SubElement(element, "inertial")
     ET.SubElement(inertial, "origin", xyz=_numbers(centre), rpy="0 0 0")
     ET.SubElement(inertial, "mass", value=repr(float(mass)))
-    ET.SubElement(inertial, "inertia", ixx=repr(float(y + z)), iyy=repr(float(x + z)), izz=repr(float(x + y)),
-                  ixy="0", ixz="0", iyz="0")
+    ET.SubElement(
+        inertial,
+        "inertia",
+        ixx=repr(float(y + z)),
+        iyy=repr(float(x + z)),
+        izz=repr(float(x + y)),
+        ixy="0",
+        ixz="0",
+        iyz="0",
+    )
 
 
 def _collisions(element: ET.Element, shapes: tuple[Shape, ...]) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..solids import box_mesh
+from ..render.solids import box_mesh
 from ..world import SIDES
 from .shapes import BLACK, DARK, RED, STEEL, Shape, collision_shapes
 from .urdf import baxter_folder, cache_folder, write_atomically
@@ -50,8 +50,11 @@ def visual_meshes() -> dict[str, Mesh]:
     meshes = _load(path) or _build()
     if not path.exists():
         stream = io.BytesIO()
-        arrays: dict[str, Any] = {f"{name}:{part}": value for name, mesh in meshes.items()
-                                  for part, value in zip(("vertices", "faces", "rgb"), mesh, strict=True)}
+        arrays: dict[str, Any] = {
+            f"{name}:{part}": value
+            for name, mesh in meshes.items()
+            for part, value in zip(("vertices", "faces", "rgb"), mesh, strict=True)
+        }
         np.savez_compressed(stream, **arrays)
         write_atomically(path, stream.getvalue())
     for name, shapes in collision_shapes().items():  # base, column, palm and fingers are drawn as they collide
@@ -69,8 +72,14 @@ def _load(path: Path) -> dict[str, Mesh] | None:
         with np.load(path) as file:
             names = {key.split(":")[0] for key in file.files}
             rgb = {name: file[f"{name}:rgb"] for name in names}
-            return {name: (file[f"{name}:vertices"], file[f"{name}:faces"],
-                           (float(rgb[name][0]), float(rgb[name][1]), float(rgb[name][2]))) for name in sorted(names)}
+            return {
+                name: (
+                    file[f"{name}:vertices"],
+                    file[f"{name}:faces"],
+                    (float(rgb[name][0]), float(rgb[name][1]), float(rgb[name][2])),
+                )
+                for name in sorted(names)
+            }
     except (OSError, ValueError, KeyError):  # damaged: build it again
         path.unlink(missing_ok=True)
         return None
@@ -104,8 +113,9 @@ def _read_mesh(file: str) -> tuple[np.ndarray, np.ndarray]:
     return np.array(mesh.vertices()), np.array([(face[0], face[1], face[2]) for face in faces])
 
 
-def _slice_hulls(vertices: np.ndarray, faces: np.ndarray, axis: int,
-                 slices: int) -> list[tuple[np.ndarray, np.ndarray]]:
+def _slice_hulls(
+    vertices: np.ndarray, faces: np.ndarray, axis: int, slices: int
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """Convex hulls of what lies between equally spaced planes across `axis`."""
     edges = np.linspace(vertices[:, axis].min(), vertices[:, axis].max(), slices + 1)
     points = np.concatenate((vertices, *(_cut(vertices, faces, axis, plane) for plane in edges[1:-1])))
@@ -152,8 +162,10 @@ def _box(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
 
 def _join(parts: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in parts[:-1])])
-    return (np.concatenate([vertices for vertices, _ in parts]),
-            np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)]))
+    return (
+        np.concatenate([vertices for vertices, _ in parts]),
+        np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)]),
+    )
 
 
 def _rotation(rpy) -> np.ndarray:

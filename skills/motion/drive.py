@@ -24,8 +24,9 @@ class PathFollower:
         turn_from: distance to the end at which turning to `yaw` begins [m]; before that the heading is kept.
     """
 
-    def __init__(self, path: np.ndarray, yaw: float, *, speed: float = float(model.BASE_VELOCITY[0]),
-                 turn_from: float = np.inf) -> None:
+    def __init__(
+        self, path: np.ndarray, yaw: float, *, speed: float = float(model.BASE_VELOCITY[0]), turn_from: float = np.inf
+    ) -> None:
         self._path = np.asarray(path, float)
         if self._path.ndim != 2 or self._path.shape[1] != 2 or len(self._path) < 1:
             raise ValueError(f"a path is corner points (k, 2), got {np.shape(path)}")
@@ -37,8 +38,10 @@ class PathFollower:
     def done(self, pose_base_in_map: np.ndarray) -> bool:
         """Whether the base stands within 2 cm and 2 degrees of the end."""
         pose = np.asarray(pose_base_in_map, float)
-        return bool(np.linalg.norm(self._path[-1] - pose[:2]) <= POSITION_TOLERANCE
-                    and abs(_wrap(self._yaw - pose[2])) <= YAW_TOLERANCE)
+        return bool(
+            np.linalg.norm(self._path[-1] - pose[:2]) <= POSITION_TOLERANCE
+            and abs(_wrap(self._yaw - pose[2])) <= YAW_TOLERANCE
+        )
 
     def command(self, pose_base_in_map: np.ndarray) -> BaseVelocity:
         """Velocity for the next moment, given where the base is (3,)."""
@@ -56,8 +59,9 @@ class PathFollower:
         error = _wrap(self._yaw - yaw) if left <= self._turn_from else 0.0
         turn = np.clip(_TURN_GAIN * error, -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
         c, s = np.cos(yaw), np.sin(yaw)
-        return BaseVelocity(velocity=np.array((c * velocity[0] + s * velocity[1], c * velocity[1] - s * velocity[0],
-                                               turn)))
+        return BaseVelocity(
+            velocity=np.array((c * velocity[0] + s * velocity[1], c * velocity[1] - s * velocity[0], turn))
+        )
 
     def _advance(self, here: np.ndarray) -> None:
         """Move the progress mark to the nearest point of the path ahead of it, never back."""

@@ -23,9 +23,18 @@ ROTATION_TOLERANCE = 5e-3  # [rad]
 _STEP = 0.25  # greatest change of a joint in one iteration [rad]
 
 
-def solve_ik(kinematics: Kinematics, side: Side, pose_hand_in_map: np.ndarray, pose_base_in_map: np.ndarray,
-             q_seed: np.ndarray, *, free: FreeAxis = "none", seeds: int = 12, iterations: int = 60,
-             accept=None) -> np.ndarray:
+def solve_ik(
+    kinematics: Kinematics,
+    side: Side,
+    pose_hand_in_map: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    q_seed: np.ndarray,
+    *,
+    free: FreeAxis = "none",
+    seeds: int = 12,
+    iterations: int = 60,
+    accept=None,
+) -> np.ndarray:
     """Joint angles that bring a hand to a pose, near `q_seed` when possible.
 
     Args:
@@ -61,12 +70,22 @@ def solve_ik(kinematics: Kinematics, side: Side, pose_hand_in_map: np.ndarray, p
     if refused:
         raise Unreachable(f"the {side} hand reaches {where} m only in {refused} refused postures", 0.0, 0.0, best[2])
     stand = np.round(pose_base_in_map, 2).tolist()
-    raise Unreachable(f"the {side} hand cannot reach {where} m from base pose {stand}: {best[0] * 1000:.0f} mm and "
-                      f"{np.rad2deg(best[1]):.1f} degrees are left", *best)
+    raise Unreachable(
+        f"the {side} hand cannot reach {where} m from base pose {stand}: {best[0] * 1000:.0f} mm and "
+        f"{np.rad2deg(best[1]):.1f} degrees are left",
+        *best,
+    )
 
 
-def solve_dual_ik(kinematics: Kinematics, poses_hand_in_map: np.ndarray, pose_base_in_map: np.ndarray,
-                  q_seed: np.ndarray, *, free: FreeAxis = "none", accept=None) -> np.ndarray:
+def solve_dual_ik(
+    kinematics: Kinematics,
+    poses_hand_in_map: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    q_seed: np.ndarray,
+    *,
+    free: FreeAxis = "none",
+    accept=None,
+) -> np.ndarray:
     """Both hands at once: poses (2, 4, 4), seed (2, 7); returns (2, 7).
 
     `accept` is asked about pairs (2, 7), so that a check of one arm against the other can refuse.
@@ -117,8 +136,15 @@ def _starts(kinematics: Kinematics, side: Side, q_seed: np.ndarray, count: int) 
         yield limits.clip(0.5 * (ready + random) if n % 2 else random)
 
 
-def _descend(kinematics: Kinematics, side: Side, target: pin.SE3, q: np.ndarray, posture: np.ndarray, free: FreeAxis,
-             iterations: int) -> tuple[np.ndarray, float, float]:
+def _descend(
+    kinematics: Kinematics,
+    side: Side,
+    target: pin.SE3,
+    q: np.ndarray,
+    posture: np.ndarray,
+    free: FreeAxis,
+    iterations: int,
+) -> tuple[np.ndarray, float, float]:
     """Levenberg-Marquardt with clamping, drifting to `posture` where the task leaves it free.
 
     Returns the best angles met and what is left there in [m] and [rad].

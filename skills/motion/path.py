@@ -77,8 +77,9 @@ def _nearest_free(room: RoomMap, position: np.ndarray) -> tuple[int, int]:
     return int(row), int(column)
 
 
-def _astar(free: np.ndarray, cost: np.ndarray, start: tuple[int, int],
-           goal: tuple[int, int]) -> list[tuple[int, int]] | None:
+def _astar(
+    free: np.ndarray, cost: np.ndarray, start: tuple[int, int], goal: tuple[int, int]
+) -> list[tuple[int, int]] | None:
     rows, columns = free.shape
     best = {start: 0.0}
     came: dict[tuple[int, int], tuple[int, int]] = {}
@@ -109,7 +110,7 @@ def _astar(free: np.ndarray, cost: np.ndarray, start: tuple[int, int],
 
 def _straighten(room: RoomMap, points: list[np.ndarray], keep: int) -> list[np.ndarray]:
     """Leave out corners that a straight free line makes unnecessary; the first `keep` segments stay."""
-    result = points[:keep + 1]
+    result = points[: keep + 1]
     n = keep
     while n < len(points) - 1:
         m = len(points) - 1

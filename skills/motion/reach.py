@@ -19,9 +19,17 @@ _LINE_TURN = 0.1  # [rad]
 _JUMP = 0.5  # largest change of a joint from one point of a line to the next [rad]
 
 
-def plan_hand_line(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_positions: np.ndarray,
-                   pose_base_in_map: np.ndarray, *, free: FreeAxis = "none", speed_scale: float = 1.0,
-                   hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None) -> JointTrajectory:
+def plan_hand_line(
+    kinematics: Kinematics,
+    goals: Mapping[Side, np.ndarray],
+    arm_positions: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    *,
+    free: FreeAxis = "none",
+    speed_scale: float = 1.0,
+    hand_speed: HandSpeed | None = None,
+    checker: CollisionChecker | None = None,
+) -> JointTrajectory:
     """Move one or both hands along straight lines, turning evenly on the way.
 
     Args:
@@ -39,8 +47,9 @@ def plan_hand_line(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm
         MotionBlocked: the motion would hit something.
     """
     sides: list[Side] = [side for side in SIDES if side in goals]
-    starts = {side: kinematics.pose_hand_in_map(side, arm_positions[SIDES.index(side)], pose_base_in_map)
-              for side in sides}
+    starts = {
+        side: kinematics.pose_hand_in_map(side, arm_positions[SIDES.index(side)], pose_base_in_map) for side in sides
+    }
     count = max(_line_points(starts[side], goals[side]) for side in sides)
     waypoints: dict[Side, np.ndarray] = {}
     for side in sides:
@@ -50,18 +59,38 @@ def plan_hand_line(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm
             pose = _between(starts[side], np.asarray(goals[side], float), share)
             q = solve_ik(kinematics, side, pose, pose_base_in_map, path[-1], free=free, seeds=1)
             if np.abs(q - path[-1]).max() > _JUMP:
-                raise Unreachable(f"the {side} arm would fold over {share:.0%} along the straight line to "
-                                  f"{np.round(goals[side][:3, 3], 3).tolist()} m", 0.0, 0.0, q)
+                raise Unreachable(
+                    f"the {side} arm would fold over {share:.0%} along the straight line to "
+                    f"{np.round(goals[side][:3, 3], 3).tolist()} m",
+                    0.0,
+                    0.0,
+                    q,
+                )
             path.append(q)
         waypoints[side] = np.array(path)
     other = None if len(sides) == 2 else arm_positions[1 - SIDES.index(sides[0])]
-    return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale, hand_speed=hand_speed,
-                             checker=checker, other_arm=other)
+    return plan_joint_motion(
+        kinematics,
+        waypoints,
+        pose_base_in_map,
+        speed_scale=speed_scale,
+        hand_speed=hand_speed,
+        checker=checker,
+        other_arm=other,
+    )
 
 
-def plan_reach(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_positions: np.ndarray,
-               pose_base_in_map: np.ndarray, *, free: FreeAxis = "none", speed_scale: float = 1.0,
-               hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None) -> JointTrajectory:
+def plan_reach(
+    kinematics: Kinematics,
+    goals: Mapping[Side, np.ndarray],
+    arm_positions: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    *,
+    free: FreeAxis = "none",
+    speed_scale: float = 1.0,
+    hand_speed: HandSpeed | None = None,
+    checker: CollisionChecker | None = None,
+) -> JointTrajectory:
     """Bring one or both hands to poses by any free joint motion: the straight one, or round what blocks it.
 
     Arguments and errors are those of `plan_hand_line`; the way there is not a line.
@@ -73,13 +102,29 @@ def plan_reach(kinematics: Kinematics, goals: Mapping[Side, np.ndarray], arm_pos
         n = SIDES.index(side)
         accept = None if checker is None else free_postures(checker, side, pose_base_in_map, target)
         target[n] = solve_ik(kinematics, side, goals[side], pose_base_in_map, arms[n], free=free, accept=accept)
-    return plan_arms(kinematics, target, arms, pose_base_in_map, sides=tuple(sides), speed_scale=speed_scale,
-                     hand_speed=hand_speed, checker=checker)
+    return plan_arms(
+        kinematics,
+        target,
+        arms,
+        pose_base_in_map,
+        sides=tuple(sides),
+        speed_scale=speed_scale,
+        hand_speed=hand_speed,
+        checker=checker,
+    )
 
 
-def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndarray, pose_base_in_map: np.ndarray, *,
-              sides: tuple[Side, ...] = SIDES, speed_scale: float = 1.0, hand_speed: HandSpeed | None = None,
-              checker: CollisionChecker | None = None) -> JointTrajectory:
+def plan_arms(
+    kinematics: Kinematics,
+    target: np.ndarray,
+    arm_positions: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    *,
+    sides: tuple[Side, ...] = SIDES,
+    speed_scale: float = 1.0,
+    hand_speed: HandSpeed | None = None,
+    checker: CollisionChecker | None = None,
+) -> JointTrajectory:
     """Move the arms on `sides` to joint angles `target` (2, 7): straight in joint space when that is free, else round.
 
     Raises:
@@ -91,9 +136,16 @@ def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndar
     start, goal = np.concatenate([arm_positions[n] for n in index]), np.concatenate([target[n] for n in index])
 
     def timed(points: np.ndarray) -> JointTrajectory:
-        waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n:7 * n + 7] for n, side in enumerate(moving)}
-        return plan_joint_motion(kinematics, waypoints, pose_base_in_map, speed_scale=speed_scale,
-                                 hand_speed=hand_speed, checker=checker, other_arm=other)
+        waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n : 7 * n + 7] for n, side in enumerate(moving)}
+        return plan_joint_motion(
+            kinematics,
+            waypoints,
+            pose_base_in_map,
+            speed_scale=speed_scale,
+            hand_speed=hand_speed,
+            checker=checker,
+            other_arm=other,
+        )
 
     if checker is None:
         return timed(np.stack((start, goal)))
@@ -110,8 +162,13 @@ def plan_arms(kinematics: Kinematics, target: np.ndarray, arm_positions: np.ndar
         return timed(np.stack((start, goal)))
     limits = [kinematics.limits[side] for side in moving]
     try:
-        corners = connect(start, goal, np.concatenate([limit.lower for limit in limits]),
-                          np.concatenate([limit.upper for limit in limits]), free)
+        corners = connect(
+            start,
+            goal,
+            np.concatenate([limit.lower for limit in limits]),
+            np.concatenate([limit.upper for limit in limits]),
+            free,
+        )
     except MotionBlocked as problem:
         hits = checker.collisions(pose_base_in_map, arm_positions)
         if not hits:

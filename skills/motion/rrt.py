@@ -15,8 +15,16 @@ _OUT = 0.25  # farthest step out of a contact, in each joint [rad]
 Test = Callable[[np.ndarray], bool]
 
 
-def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test, *,
-            tries: int = 1500, seed: int = 0) -> np.ndarray:
+def connect(
+    start: np.ndarray,
+    goal: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    free: Test,
+    *,
+    tries: int = 1500,
+    seed: int = 0,
+) -> np.ndarray:
     """Waypoints (k, n) of a free path between two joint vectors (n,).
 
     Arms that have come too near to something under velocity control first take the smallest step that frees them.
@@ -55,8 +63,9 @@ def connect(start: np.ndarray, goal: np.ndarray, lower: np.ndarray, upper: np.nd
     raise MotionBlocked(f"no free way found for the arms in {tries} tries")
 
 
-def _step_out(start: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test,
-              generator: np.random.Generator) -> np.ndarray:
+def _step_out(
+    start: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test, generator: np.random.Generator
+) -> np.ndarray:
     """The free joint vector found nearest to one that is not, within `_OUT`."""
     for radius in np.linspace(0.03, _OUT, 12):
         for _ in range(40):
@@ -124,8 +133,10 @@ def _shorten(path: np.ndarray, free: Test, generator: np.random.Generator, round
         i, j = int(np.searchsorted(lengths, first, "right")) - 1, int(np.searchsorted(lengths, last, "right")) - 1
         if i == j:
             continue
-        a, b = (points[k] + (points[k + 1] - points[k]) * ((at - lengths[k]) / max(lengths[k + 1] - lengths[k], 1e-12))
-                for k, at in ((i, first), (j, last)))
+        a, b = (
+            points[k] + (points[k + 1] - points[k]) * ((at - lengths[k]) / max(lengths[k + 1] - lengths[k], 1e-12))
+            for k, at in ((i, first), (j, last))
+        )
         if segment_free(a, b, free):
-            points = [*points[:i + 1], a, b, *points[j + 1:]]
+            points = [*points[: i + 1], a, b, *points[j + 1 :]]
     return np.array(points)

@@ -18,10 +18,16 @@ _MARGIN = 0.95  # of the limits: between the points where toppra checks them a m
 HandSpeed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one that depends on where the hand is (3,)
 
 
-def plan_joint_motion(kinematics: Kinematics, waypoints: Mapping[Side, np.ndarray],
-                      pose_base_in_map: np.ndarray | None = None, *, speed_scale: float = 1.0,
-                      hand_speed: HandSpeed | None = None, checker: CollisionChecker | None = None,
-                      other_arm: np.ndarray | None = None) -> JointTrajectory:
+def plan_joint_motion(
+    kinematics: Kinematics,
+    waypoints: Mapping[Side, np.ndarray],
+    pose_base_in_map: np.ndarray | None = None,
+    *,
+    speed_scale: float = 1.0,
+    hand_speed: HandSpeed | None = None,
+    checker: CollisionChecker | None = None,
+    other_arm: np.ndarray | None = None,
+) -> JointTrajectory:
     """Time a smooth motion of one or both arms through waypoints, from rest to rest.
 
     Args:
@@ -58,8 +64,13 @@ def plan_joint_motion(kinematics: Kinematics, waypoints: Mapping[Side, np.ndarra
     return JointTrajectory(joints=joints, times=times, positions=samples)
 
 
-def check_motion(checker: CollisionChecker, sides: list[Side], samples: np.ndarray, pose_base_in_map: np.ndarray,
-                 other_arm: np.ndarray | None = None) -> None:
+def check_motion(
+    checker: CollisionChecker,
+    sides: list[Side],
+    samples: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    other_arm: np.ndarray | None = None,
+) -> None:
     """Test samples (k, 7 or 14) of the arms on `sides`.
 
     What touches at the first sample, where velocity control has brought the arms, may touch until it comes free.
@@ -75,28 +86,36 @@ def check_motion(checker: CollisionChecker, sides: list[Side], samples: np.ndarr
     chosen = np.unique(np.append(np.arange(0, len(samples), max(1, len(samples) // 60)), len(samples) - 1))
     for k in chosen:
         for n, side in enumerate(sides):
-            arms[SIDES.index(side)] = samples[k, 7 * n:7 * n + 7]
+            arms[SIDES.index(side)] = samples[k, 7 * n : 7 * n + 7]
         if given is None:
             given = standing_contacts(checker, sides, pose_base_in_map, arms)
-        touching = [] if checker.free(pose_base_in_map, arms) else [
-            hit for hit in checker.collisions(pose_base_in_map, arms) if hit not in given]
+        touching = (
+            []
+            if checker.free(pose_base_in_map, arms)
+            else [hit for hit in checker.collisions(pose_base_in_map, arms) if hit not in given]
+        )
         leaving = set(touching) if k == 0 else leaving & set(touching)
         if not leaving.issuperset(touching) or (touching and k == chosen[-1]):
             a, b = touching[0]
             raise MotionBlocked(f"the motion would bring {a.replace('_', ' ')} against {b.replace('_', ' ')}")
 
 
-def standing_contacts(checker: CollisionChecker, moving: list[Side], pose_base_in_map: np.ndarray,
-                      arms: np.ndarray) -> set[tuple[str, str]]:
+def standing_contacts(
+    checker: CollisionChecker, moving: list[Side], pose_base_in_map: np.ndarray, arms: np.ndarray
+) -> set[tuple[str, str]]:
     """What an arm that stays where it is touches already, which is no reason for the other one not to move."""
     if len(moving) == len(SIDES):
         return set()
-    return {hit for hit in checker.collisions(pose_base_in_map, arms)
-            if not any(name.startswith(side) for side in moving for name in hit)}
+    return {
+        hit
+        for hit in checker.collisions(pose_base_in_map, arms)
+        if not any(name.startswith(side) for side in moving for name in hit)
+    }
 
 
-def free_postures(checker: CollisionChecker, side: Side, pose_base_in_map: np.ndarray,
-                  arms: np.ndarray) -> Callable[[np.ndarray], bool]:
+def free_postures(
+    checker: CollisionChecker, side: Side, pose_base_in_map: np.ndarray, arms: np.ndarray
+) -> Callable[[np.ndarray], bool]:
     """Test of postures (7,) of one arm while the other one of `arms` (2, 7) stays: they touch nothing anew."""
     n, given = SIDES.index(side), standing_contacts(checker, [side], pose_base_in_map, arms)
 
@@ -116,8 +135,14 @@ def _distinct(points: np.ndarray) -> np.ndarray:
     return points[keep]
 
 
-def _retime(kinematics: Kinematics, sides: list[Side], points: np.ndarray, base: np.ndarray, scale: float,
-            hand_speed: HandSpeed | None) -> tuple[np.ndarray, np.ndarray]:
+def _retime(
+    kinematics: Kinematics,
+    sides: list[Side],
+    points: np.ndarray,
+    base: np.ndarray,
+    scale: float,
+    hand_speed: HandSpeed | None,
+) -> tuple[np.ndarray, np.ndarray]:
     import toppra
 
     toppra.setup_logging("ERROR")
@@ -128,8 +153,9 @@ def _retime(kinematics: Kinematics, sides: list[Side], points: np.ndarray, base:
     acceleration = _MARGIN * scale**2 * np.concatenate([limit.acceleration for limit in limits])
     constraints: list[Any] = [
         toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
-        toppra.constraint.JointAccelerationConstraint(np.stack((-acceleration, acceleration), axis=1),
-                                                      toppra.constraint.DiscretizationType.Interpolation),
+        toppra.constraint.JointAccelerationConstraint(
+            np.stack((-acceleration, acceleration), axis=1), toppra.constraint.DiscretizationType.Interpolation
+        ),
     ]
     if hand_speed is not None:
         constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed))
@@ -164,7 +190,7 @@ def _hand_speed_constraint(kinematics: Kinematics, sides: list[Side], base: np.n
             bounds = np.full((len(gridpoints), 2), (0.0, 1e6))
             for n, (q, slope) in enumerate(zip(path(gridpoints), path(gridpoints, 1), strict=True)):
                 for k, side in enumerate(sides):
-                    arm, rate = q[7 * k:7 * k + 7], slope[7 * k:7 * k + 7]
+                    arm, rate = q[7 * k : 7 * k + 7], slope[7 * k : 7 * k + 7]
                     limit = hand_speed
                     if callable(limit):
                         limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])

@@ -4,10 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
-from caretree.skills.skill import Skill
-from caretree.trees.check import check
-from caretree.trees.runner import run
-from caretree.trees.tasks import Task
+from caretree.skills.core.skill import Skill
+from caretree.trees.proof.check import check
+from caretree.trees.run.runner import run
+from caretree.trees.run.task import Task
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from caretree.sim.appearance import Appearance, draw_appearance, gown_colours
-from caretree.sim.camera import HEAD_SIZE, Renderer, camera_intrinsics, looking_at
-from caretree.sim.gown import GOWNS, GownMesh, build_gown
-from caretree.sim.solids import box_mesh, capsule_mesh, cylinder_mesh, join_meshes
+from caretree.sim.render.appearance import Appearance, draw_appearance, gown_colours
+from caretree.sim.render.camera import HEAD_SIZE, Renderer, camera_intrinsics, looking_at
+from caretree.sim.render.solids import box_mesh, capsule_mesh, cylinder_mesh, join_meshes
+from caretree.sim.scene.gown import GOWNS, GownMesh, build_gown
 from caretree.sim.world import Frame
 
 BED = np.array(((-0.45, -1.0, 0.5), (0.45, 1.0, 0.6)))
@@ -52,12 +52,23 @@ def settle(vertices, pins=(), capsules=(), boxes=(), seconds=2.0):
     spec = GOWN.spec
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "gown.obj"
-        path.write_text("".join("v {} {} {}\n".format(*v) for v in vertices)
-                        + "".join("f {} {} {}\n".format(*(f + 1)) for f in GOWN.faces))
+        path.write_text(
+            "".join("v {} {} {}\n".format(*v) for v in vertices)
+            + "".join("f {} {} {}\n".format(*(f + 1)) for f in GOWN.faces)
+        )
         cloth = client.loadSoftBody(
-            str(path), mass=spec.mass, useMassSpring=1, useBendingSprings=1, useNeoHookean=0,
-            springElasticStiffness=spec.elastic, springDampingStiffness=spec.damping, springDampingAllDirections=1,
-            springBendingStiffness=spec.bending, frictionCoeff=spec.friction, collisionMargin=0.006)
+            str(path),
+            mass=spec.mass,
+            useMassSpring=1,
+            useBendingSprings=1,
+            useNeoHookean=0,
+            springElasticStiffness=spec.elastic,
+            springDampingStiffness=spec.damping,
+            springDampingAllDirections=1,
+            springBendingStiffness=spec.bending,
+            frictionCoeff=spec.friction,
+            collisionMargin=0.006,
+        )
     for pin in pins:
         client.createSoftBodyAnchor(cloth, int(pin), -1, -1)
     for _ in range(int(seconds / 0.002)):
@@ -82,8 +93,14 @@ class Scene:
 
     def frame(self, seed: int = 0, stamp: float = 0.0) -> Frame:
         rgb, depth = self.renderer.photograph("head", self.camera, np.random.default_rng(seed))
-        return Frame(camera="head", stamp=stamp, rgb=rgb, depth=depth, intrinsics=camera_intrinsics("head"),
-                     pose_camera_in_map=self.camera)
+        return Frame(
+            camera="head",
+            stamp=stamp,
+            rgb=rgb,
+            depth=depth,
+            intrinsics=camera_intrinsics("head"),
+            pose_camera_in_map=self.camera,
+        )
 
     def dress(self, vertices: np.ndarray) -> None:
         self.vertices = vertices
@@ -112,20 +129,26 @@ class Scenes:
         renderer = Renderer(look.light)
         colours = look.colours
         renderer.add_rigid("floor", *box_mesh((-4, -4, -0.1), (4, 4, 0)), colours["floor"])
-        walls = [box_mesh((-4, 3, 0), (4, 3.1, 2.6)), box_mesh((-4, -3.1, 0), (4, -3, 2.6)),
-                 box_mesh((-3.1, -4, 0), (-3, 4, 2.6)), box_mesh((3, -4, 0), (3.1, 4, 2.6))]
+        walls = [
+            box_mesh((-4, 3, 0), (4, 3.1, 2.6)),
+            box_mesh((-4, -3.1, 0), (4, -3, 2.6)),
+            box_mesh((-3.1, -4, 0), (-3, 4, 2.6)),
+            box_mesh((3, -4, 0), (3.1, 4, 2.6)),
+        ]
         renderer.add_rigid("walls", *join_meshes(walls), colours["wall"])
         renderer.add_rigid("bed", *box_mesh(*BED), colours["sheet"])
         return Scene(renderer=renderer, look=look, camera=camera)
 
     def _hanging(self, pin: int, shape: int) -> np.ndarray:
         """The gown hung by a vertex, which is the origin."""
+
         def make():
             rng = np.random.default_rng(shape)
             v = (GOWN.vertices - GOWN.vertices[pin]) @ turned(rng.uniform(0, 2 * np.pi)).T
             pins = np.argsort(np.linalg.norm(GOWN.vertices - GOWN.vertices[pin], axis=1))[:2]
             v = settle(v + rng.normal(0, 0.002, v.shape), pins=pins)
             return v - v[pins].mean(axis=0)
+
         return self._shape(("hanging", pin, shape), make)
 
     def on_rail(self, seed: int) -> Scene:
@@ -133,9 +156,13 @@ class Scenes:
         hook = np.array((1.6, 1.4, 1.53))
         eye = np.array((1.6 + rng.uniform(-0.1, 0.1), 0.3, 1.55))
         scene = self.room(seed, looking_at(eye, hook - (0, 0, 0.4)))
-        rail = join_meshes([cylinder_mesh((1.0, 1.4, 1.55), (2.2, 1.4, 1.55), 0.015),
-                            cylinder_mesh((1.0, 1.4, 0), (1.0, 1.4, 1.55), 0.02),
-                            cylinder_mesh((2.2, 1.4, 0), (2.2, 1.4, 1.55), 0.02)])
+        rail = join_meshes(
+            [
+                cylinder_mesh((1.0, 1.4, 1.55), (2.2, 1.4, 1.55), 0.015),
+                cylinder_mesh((1.0, 1.4, 0), (1.0, 1.4, 1.55), 0.02),
+                cylinder_mesh((2.2, 1.4, 0), (2.2, 1.4, 1.55), 0.02),
+            ]
+        )
         scene.renderer.add_rigid("rail", *rail, scene.look.colours["rail"])
         pin = int(GOWN.collar[3 + seed % 2 * 6])
         scene.dress(self._hanging(pin, seed % 2) + hook)
@@ -156,9 +183,11 @@ class Scenes:
 
     def stretched(self, seed: int, outside: bool) -> Scene:
         """Held by both collar corners in front of the head camera."""
+
         def make():
             v = GOWN.vertices * (0.96, 1, 1) + np.random.default_rng(1).normal(0, 0.002, GOWN.vertices.shape)
             return settle(v, pins=GOWN.corners, seconds=1.6)
+
         eye = np.array((1.9, -0.3, 1.6))
         scene = self.room(seed, looking_at(eye, eye + np.array((-np.cos(0.5), 0, -np.sin(0.5)))))
         v = self._shape("stretched", make) @ turned(-np.pi / 2 if outside else np.pi / 2).T
@@ -180,9 +209,11 @@ class Scenes:
         def make():
             rng = np.random.default_rng(seed)
             g = GOWN.vertices
-            v = np.stack([g[:, 0] + rng.uniform(-0.05, 0.05), -g[:, 2] - rng.uniform(0.58, 0.66),
-                          0.9 * g[:, 1] + 0.86], axis=1)
+            v = np.stack(
+                [g[:, 0] + rng.uniform(-0.05, 0.05), -g[:, 2] - rng.uniform(0.58, 0.66), 0.9 * g[:, 1] + 0.86], axis=1
+            )
             return settle(v + rng.normal(0, 0.003, v.shape), capsules=capsules, boxes=[BED], seconds=0.8)
+
         scene.dress(self._shape(("lying", seed), make))
         return scene
 
@@ -193,14 +224,18 @@ class Scenes:
         trunk, legs = [((0, -0.55 - 0.08 * s, top + 0.11 * s), (0, -0.55 - 0.22 * s, top + 0.12 * s), 0.09 * s)], []
         for sign in (-1, 1):
             trunk.append(((sign * 0.09 * s, -0.5 * s, top + 0.11 * s), (sign * 0.09 * s, 0, top + 0.11 * s), 0.11 * s))
-            legs.append(((sign * 0.1 * s, 0.02 * s, top + 0.08 * s), (sign * 0.12 * s, 0.8 * s, top + 0.06 * s),
-                         0.075 * s))
+            legs.append(
+                ((sign * 0.1 * s, 0.02 * s, top + 0.08 * s), (sign * 0.12 * s, 0.8 * s, top + 0.06 * s), 0.075 * s)
+            )
         limbs = []
         for side, sign in (("left", -1), ("right", 1)):
             abduction, bend = rng.uniform(0.45, 0.87), rng.uniform(0.1, 1.0)
             points = [np.array((sign * 0.2 * s, -0.55, top + 0.1))]
-            for length, angle, slope in ((0.28, abduction, -0.12), (0.25, abduction - bend, -0.05),
-                                         (0.17, abduction - bend, -0.05)):
+            for length, angle, slope in (
+                (0.28, abduction, -0.12),
+                (0.25, abduction - bend, -0.05),
+                (0.17, abduction - bend, -0.05),
+            ):
                 way = np.array((sign * np.sin(angle), np.cos(angle), 0))
                 points.append(points[-1] + length * s * (np.cos(slope) * way + np.sin(slope) * np.array((0, 0, 1))))
             arm = np.array(points)
@@ -235,6 +270,11 @@ def bed() -> np.ndarray:
 def black() -> Frame:
     """A camera that works and sees nothing at all."""
     width, height = HEAD_SIZE
-    return Frame(camera="head", stamp=1.0, rgb=np.zeros((height, width, 3), np.uint8),
-                 depth=np.zeros((height, width), np.float32), intrinsics=camera_intrinsics("head"),
-                 pose_camera_in_map=BEDSIDE)
+    return Frame(
+        camera="head",
+        stamp=1.0,
+        rgb=np.zeros((height, width, 3), np.uint8),
+        depth=np.zeros((height, width), np.float32),
+        intrinsics=camera_intrinsics("head"),
+        pose_camera_in_map=BEDSIDE,
+    )

@@ -16,10 +16,16 @@ CALLS = {  # name -> scene, type, details from the scene
     "pre_grasp": ("in_hand", estimates.PreGrasp, lambda s: {"poses_hand_in_map": [s.hand]}),
     "layers": ("in_hand", estimates.LayerCount, lambda s: {"side": "left", "pose_hand_in_map": s.hand}),
     "gripped_cloth": ("in_hand", estimates.Estimate, lambda s: {"pose_hand_in_map": s.hand}),
-    "sleeve_opening": ("lying", estimates.SleeveOpening,
-                       lambda s: {"side": "right", "near_in_map": s.arms["right"][0]}),
-    "collar_near_shoulder": ("lying", estimates.GraspPoint,
-                             lambda s: {"side": "right", "shoulder_in_map": s.arms["right"][0]}),
+    "sleeve_opening": (
+        "lying",
+        estimates.SleeveOpening,
+        lambda s: {"side": "right", "near_in_map": s.arms["right"][0]},
+    ),
+    "collar_near_shoulder": (
+        "lying",
+        estimates.GraspPoint,
+        lambda s: {"side": "right", "shoulder_in_map": s.arms["right"][0]},
+    ),
     "head": ("person", estimates.Head, lambda s: {}),
     "arm": ("person", estimates.ArmPosture, lambda s: {"side": "right"}),
 }
@@ -29,8 +35,19 @@ def fresh(bed):
     return classical_estimators(RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed), 0)
 
 
-ELSEWHERE = {"hook", "shown_corner", "hung_corner", "hung_side", "held_armhole", "sleeve_heading", "hand_cover",
-             "cuff_round", "worn_sleeve", "sleeve_strap", "chest_cover"}  # these need a whole scene
+ELSEWHERE = {
+    "hook",
+    "shown_corner",
+    "hung_corner",
+    "hung_side",
+    "held_armhole",
+    "sleeve_heading",
+    "hand_cover",
+    "cuff_round",
+    "worn_sleeve",
+    "sleeve_strap",
+    "chest_cover",
+}  # these need a whole scene
 
 
 def test_all_are_covered(bed):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld, parse_fault
-from caretree.sim.scripted import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
 
 
@@ -22,10 +22,13 @@ def move(world):
 def test_fault_texts():
     assert parse_fault("grip_slip@pull along: slowly:step") == FaultSpec("grip_slip", "pull along: slowly", "step")
     assert str(parse_fault("occlusion@a:cancel")) == "occlusion@a:cancel"
-    for text, said in (("grip_slip", "is not written FAULT@NODE:PHASE"), ("grip_slip@a", "is not written"),
-                       ("slip@a:step", "unknown fault 'slip'; there are grip_slip"),
-                       ("grip_slip@:step", "is not written"),
-                       ("grip_slip@a:end", "unknown phase 'end'; there are start, step, cancel")):
+    for text, said in (
+        ("grip_slip", "is not written FAULT@NODE:PHASE"),
+        ("grip_slip@a", "is not written"),
+        ("slip@a:step", "unknown fault 'slip'; there are grip_slip"),
+        ("grip_slip@:step", "is not written"),
+        ("grip_slip@a:end", "unknown phase 'end'; there are start, step, cancel"),
+    ):
         with pytest.raises(Exception, match=said):
             parse_fault(text)
     assert len(FAULTS) == 8

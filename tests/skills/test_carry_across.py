@@ -8,15 +8,15 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
-from caretree.skills.bedside import stance
+from caretree.skills.belief.sleeve_search import SeenWell
 from caretree.skills.carry_across import ABOVE, LAID, CarryAcross
-from caretree.skills.context import Context
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import laid_strap
-from caretree.skills.strap_view import SeenWell
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.core.context import Context
+from caretree.skills.geometry.stances import stance
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import laid_strap
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 
@@ -26,8 +26,14 @@ def ran(sleeve, load=(0.0, 0.0, -1.0)):
     room.waypoints["start"] = tuple(stance("right", "shoulder") + (0.25, 0.0, 0.0))
     world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, seed=1, perception=scripted_perception(
-        {"sleeve_opening": sleeve, "gripped_cloth": Estimate(stamp=0.0, confidence=0.9)}))
+    context = Context(
+        world=guard,
+        guard=guard,
+        seed=1,
+        perception=scripted_perception(
+            {"sleeve_opening": sleeve, "gripped_cloth": Estimate(stamp=0.0, confidence=0.9)}
+        ),
+    )
     skill = CarryAcross("across", context, side="left")
     for _ in range(6000):
         context.lease.advance()

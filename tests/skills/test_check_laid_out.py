@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.sim.scripted import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_laid_out import AT_HAND, CheckLaidOut
-from caretree.skills.context import Context
-from caretree.skills.reasons import Reason
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import laid_strap, lying_posture
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.core.context import Context
+from caretree.skills.core.reasons import Reason
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 
@@ -21,15 +21,18 @@ def away(distance):
     return replace(laid_strap("left"), position_in_map=place)
 
 
-@pytest.mark.parametrize(("sleeve", "share", "reason"), [
-    (away(AT_HAND - 0.02), 1.0, None),
-    (away(AT_HAND + 0.02), 1.0, Reason.SLEEVE_MISSED),
-    (away(0.1), 0.5, Reason.ARM_COVERED),
-    (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, None),
-])
+@pytest.mark.parametrize(
+    ("sleeve", "share", "reason"),
+    [
+        (away(AT_HAND - 0.02), 1.0, None),
+        (away(AT_HAND + 0.02), 1.0, Reason.SLEEVE_MISSED),
+        (away(0.1), 0.5, Reason.ARM_COVERED),
+        (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, None),
+    ],
+)
 def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, share, reason):
     monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: share)
-    monkeypatch.setattr("caretree.skills.tracking.visible_share", lambda frame, posture: 1.0)
+    monkeypatch.setattr("caretree.skills.belief.person_tracking.visible_share", lambda frame, posture: 1.0)
     world = ScriptedWorld()
     guard = GuardedWorld(world)
     perception = scripted_perception({"sleeve_opening": sleeve, "arm": lying_posture("left")})

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import WornSleeve
-from caretree.sim.scripted import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_sleeve import CheckSleeve
-from caretree.skills.context import Context
-from caretree.skills.reasons import Reason
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import lying_posture
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.core.context import Context
+from caretree.skills.core.reasons import Reason
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 UPPER_ARM = float(np.linalg.norm(np.diff(lying_posture("left").points_in_map[:2], axis=0)))  # [m]
@@ -24,8 +24,9 @@ def ran(seen, **options):
     """The skill after one run."""
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard,
-                      perception=scripted_perception({"worn_sleeve": seen, "arm": lying_posture("left")}))
+    context = Context(
+        world=guard, guard=guard, perception=scripted_perception({"worn_sleeve": seen, "arm": lying_posture("left")})
+    )
     skill = CheckSleeve("inside", context, side="left", **options)
     for _ in range(10):
         skill.tick_once()
@@ -35,16 +36,19 @@ def ran(seen, **options):
     return skill
 
 
-@pytest.mark.parametrize(("seen", "upto", "status", "reason"), [
-    (worn(), None, Status.SUCCESS, None),
-    (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
-    (worn(cuff_at=0.29), None, Status.SUCCESS, None),
-    (worn(round_arm=0.2), None, Status.FAILURE, Reason.SLEEVE_MISSED),
-    (worn(cuff_at=0.9), None, Status.SUCCESS, None),
-    (worn(cuff_at=0.59), 0.60 * UPPER_ARM, Status.SUCCESS, None),
-    (worn(cuff_at=0.61), 0.60 * UPPER_ARM, Status.FAILURE, Reason.SLEEVE_LOW),
-    (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60 * UPPER_ARM, Status.SUCCESS, None),
-])
+@pytest.mark.parametrize(
+    ("seen", "upto", "status", "reason"),
+    [
+        (worn(), None, Status.SUCCESS, None),
+        (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
+        (worn(cuff_at=0.29), None, Status.SUCCESS, None),
+        (worn(round_arm=0.2), None, Status.FAILURE, Reason.SLEEVE_MISSED),
+        (worn(cuff_at=0.9), None, Status.SUCCESS, None),
+        (worn(cuff_at=0.59), 0.60 * UPPER_ARM, Status.SUCCESS, None),
+        (worn(cuff_at=0.61), 0.60 * UPPER_ARM, Status.FAILURE, Reason.SLEEVE_LOW),
+        (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60 * UPPER_ARM, Status.SUCCESS, None),
+    ],
+)
 def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_a_cuff_far_down_is_low(seen, upto, status, reason):
     skill = ran(seen, **({} if upto is None else {"upto": upto}))
     assert skill.status == status

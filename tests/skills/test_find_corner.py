@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import CORNER_OF, GraspPoint
-from caretree.sim.scripted import ScriptedWorld
-from caretree.skills.context import Context
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.skills.core.context import Context
 from caretree.skills.find_corner import ROUND, STAND, FindCorner
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 HOOK = np.array((2.7, 0.4, 1.55))
@@ -16,8 +16,14 @@ NOTHING = PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
 
 
 def grasp(target, place=HOOK):
-    return GraspPoint(stamp=0.0, confidence=0.9, target=target, position_in_map=place,
-                      approach_in_map=np.array((0.0, 1.0, 0.0)), closing_in_map=np.array((1.0, 0.0, 0.0)))
+    return GraspPoint(
+        stamp=0.0,
+        confidence=0.9,
+        target=target,
+        position_in_map=place,
+        approach_in_map=np.array((0.0, 1.0, 0.0)),
+        closing_in_map=np.array((1.0, 0.0, 0.0)),
+    )
 
 
 class Room:
@@ -32,8 +38,12 @@ class Room:
             self.asked.append(details["side"])
             return shown(len(self.asked), details["side"])
 
-        self.context = Context(world=self.guard, guard=self.guard, seed=1, perception=scripted_perception(
-            {"hook": grasp("near_hang"), "shown_corner": corner}))
+        self.context = Context(
+            world=self.guard,
+            guard=self.guard,
+            seed=1,
+            perception=scripted_perception({"hook": grasp("near_hang"), "shown_corner": corner}),
+        )
 
     def run(self):
         skill = FindCorner("find", self.context)
@@ -54,8 +64,11 @@ def test_goes_round_until_one_shows():
     pose = room.world.observe().pose_base_in_map
     ahead = np.array((np.cos(pose[2]), np.sin(pose[2])))
     assert pose[:2] + STAND * ahead == pytest.approx(HOOK[:2], abs=0.06)
-    turns = [abs((pose[2] - room.world.room.waypoints[name][2] - ROUND[1] + np.pi) % (2 * np.pi) - np.pi)
-             for name in ("rail", "rail_back") if name in room.world.room.waypoints]
+    turns = [
+        abs((pose[2] - room.world.room.waypoints[name][2] - ROUND[1] + np.pi) % (2 * np.pi) - np.pi)
+        for name in ("rail", "rail_back")
+        if name in room.world.room.waypoints
+    ]
     assert min(turns) < 0.06
 
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.sim.scripted import ScriptedWorld
-from caretree.skills.bedside import stance
-from caretree.skills.context import Context
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.skills.core.context import Context
 from caretree.skills.find_stand import FindStand
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import laid_strap, lying_posture
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.geometry.stances import stance
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 
@@ -19,8 +19,11 @@ def chosen(sleeve):
     """The base pose (3,) for an arm at rest and a sleeve that is seen, or not."""
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, perception=scripted_perception(
-        {"sleeve_opening": sleeve, "arm": lying_posture("right")}))
+    context = Context(
+        world=guard,
+        guard=guard,
+        perception=scripted_perception({"sleeve_opening": sleeve, "arm": lying_posture("right")}),
+    )
     skill = FindStand("stand", context, side="right", lifting="left", pulling="right")
     for _ in range(60):
         skill.tick_once()

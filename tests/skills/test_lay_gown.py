@@ -7,15 +7,15 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
-from caretree.skills.bedside import AHEAD, FACING, LANE
-from caretree.skills.context import Context
-from caretree.skills.hands import hand_now
+from caretree.skills.control.hands import hand_now
+from caretree.skills.core.context import Context
+from caretree.skills.geometry.stances import AHEAD, FACING, LANE
 from caretree.skills.lay_gown import BEGIN, BEYOND, BY, FARTHEST, FOLLOWS, HIDDEN, LayGown
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import laid_strap
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import laid_strap
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 WIDTH = 0.84  # [m]
@@ -51,8 +51,9 @@ def let_go_at(seen, taut_until=1.0):
     return places[-1]
 
 
-@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.04 * FOLLOWS),
-                                               (-0.2, FARTHEST)])
+@pytest.mark.parametrize(
+    ("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.04 * FOLLOWS), (-0.2, FARTHEST)]
+)
 def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     near, far = let_go_at(armhole(STRAIGHT_AT + askew))
     assert (near + far) / 2 == pytest.approx(shift, abs=0.01)

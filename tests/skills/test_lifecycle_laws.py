@@ -7,11 +7,11 @@ import caretree.skills
 import caretree.trees.tasks
 import numpy as np
 import pytest
-from caretree.sim.scripted import ScriptedWorld
-from caretree.skills.context import Context
-from caretree.skills.reasons import Reason
-from caretree.skills.skill import Skill
-from caretree.trees.guard import GuardedWorld
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.skills.core.context import Context
+from caretree.skills.core.reasons import Reason
+from caretree.skills.core.skill import Skill
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 PERIOD = 1 / 15
@@ -19,8 +19,9 @@ STOPPED_WITHIN = 150  # ticks
 for package in (caretree.skills, caretree.trees.tasks):
     for info in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         importlib.import_module(info.name)
-ALL = sorted((kind for kind in Skill.registry if kind.__module__.startswith("caretree.")),
-             key=lambda kind: kind.__name__)
+ALL = sorted(
+    (kind for kind in Skill.registry if kind.__module__.startswith("caretree.")), key=lambda kind: kind.__name__
+)
 
 
 class Bench:

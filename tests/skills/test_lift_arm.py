@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from caretree.skills.bedside import HEADWARD, outwards
+from caretree.skills.geometry.stances import HEADWARD, outwards
 from caretree.skills.lift_arm import PITCH, SPREAD, lifted
-from caretree.skills.scripted_person import lying_posture
+from caretree.skills.scripted.scripted_person import lying_posture
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

@@ -5,15 +5,15 @@ import pytest
 from caretree.perception.estimates import SleeveHeading
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.sim.scripted import ScriptedWorld, scripted_room
-from caretree.skills.bedside import stance
-from caretree.skills.context import Context
+from caretree.sim.scripted.world import ScriptedWorld, scripted_room
+from caretree.skills.core.context import Context
+from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import stance
+from caretree.skills.geometry.strap_grip import StrapGrip
 from caretree.skills.present_sleeve import CAUGHT, PresentSleeve
-from caretree.skills.reasons import Reason
-from caretree.skills.scripted_perception import scripted_perception
-from caretree.skills.scripted_person import LYING, lying_posture
-from caretree.skills.strap_grip import StrapGrip
-from caretree.trees.guard import GuardedWorld
+from caretree.skills.scripted.scripted_perception import scripted_perception
+from caretree.skills.scripted.scripted_person import LYING, lying_posture
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 ALONG = (LYING[3] - LYING[2]) * (1.0, 1.0, 0.0) / np.linalg.norm((LYING[3] - LYING[2])[:2])  # the right hand
@@ -36,8 +36,12 @@ def ran(seen, load=1.0):
         looks.append(frame.stamp)
         return seen[min(len(looks), len(seen)) - 1]
 
-    context = Context(world=guard, guard=guard, seed=1,
-                      perception=scripted_perception({"arm": lying_posture("right"), "sleeve_heading": answer}))
+    context = Context(
+        world=guard,
+        guard=guard,
+        seed=1,
+        perception=scripted_perception({"arm": lying_posture("right"), "sleeve_heading": answer}),
+    )
     grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
     skill = PresentSleeve("present", context, grip=grip, taut=4.0, opens=0.05)
     for _ in range(3000):
@@ -50,11 +54,14 @@ def ran(seen, load=1.0):
     return skill, len(looks)
 
 
-@pytest.mark.parametrize(("seen", "reason", "asked"), [
-    ([heading(0.09)], None, 1),
-    ([heading(-0.02), heading(0.08)], None, 2),
-    ([heading(-0.02), heading(0.03)], Reason.SLEEVE_FOLDED, 2),
-])
+@pytest.mark.parametrize(
+    ("seen", "reason", "asked"),
+    [
+        ([heading(0.09)], None, 1),
+        ([heading(-0.02), heading(0.08)], None, 2),
+        ([heading(-0.02), heading(0.03)], Reason.SLEEVE_FOLDED, 2),
+    ],
+)
 def test_it_is_brought_twice_at_most(seen, reason, asked):
     skill, looks = ran(seen)
     assert (skill.failure and skill.failure.reason) == reason

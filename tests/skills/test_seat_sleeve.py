@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.sim.scripted import ScriptedWorld, scripted_room
+from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
-from caretree.skills.bedside import stance
-from caretree.skills.context import Context
+from caretree.skills.core.context import Context
+from caretree.skills.geometry.stances import stance
 from caretree.skills.seat_sleeve import ABOVE_BED, DOWN, TUCKED, TUCKING, SeatSleeve
-from caretree.trees.guard import GuardedWorld
+from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 import numpy as np
-from caretree.sim.scripted import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist
-from caretree.skills.ports import Input, Output
-from caretree.skills.reasons import Reason, SkillFailure
-from caretree.skills.skill import Skill
-from caretree.trees.runner import Run
-from caretree.trees.tasks import Task
+from caretree.skills.core.ports import Input, Output
+from caretree.skills.core.reasons import Reason, SkillFailure
+from caretree.skills.core.skill import Skill
+from caretree.trees.run.runner import Run
+from caretree.trees.run.task import Task
 
 
 class Plan(Skill):

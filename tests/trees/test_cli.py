@@ -9,9 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from caretree.sim import faults, scene
-from caretree.sim.file_lock import lock_file
-from caretree.sim.recorder import Recorder
+from caretree.sim import faults
+from caretree.sim.record.file_lock import lock_file
+from caretree.sim.record.recorder import Recorder
+from caretree.sim.scene import scene
 from caretree.trees import cli
 from caretree.trees.cli import main
 
@@ -37,8 +38,23 @@ def test_a_run_shows_progress_outcome_and_paths(tmp_path, capsys):
 
 
 def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
-    assert main(["run", "wave", "--world", "scripted", "--inject", "dead_camera@hold still:start",
-                 "--inject", "occlusion@wait:start", "--out", "r"]) == 1
+    assert (
+        main(
+            [
+                "run",
+                "wave",
+                "--world",
+                "scripted",
+                "--inject",
+                "dead_camera@hold still:start",
+                "--inject",
+                "occlusion@wait:start",
+                "--out",
+                "r",
+            ]
+        )
+        == 1
+    )
     out = capsys.readouterr().out
     assert "safe stop: A sensor gave nothing. [hold still]" in out
     assert re.search(r"^    3\.\d\d s ! dead_camera@hold still:start$", out, re.M)
@@ -49,30 +65,35 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
     assert [stage["status"] for stage in record["stages"]] == ["success", "failure"]
 
 
-@pytest.mark.parametrize(("arguments", "said"), [
-    ([], "required: COMMAND"),
-    (["fly"], "invalid choice: 'fly'"),
-    (["run"], "required: TASK"),
-    (["run", "dance"], "unknown task 'dance'; there are"),
-    (["run", "wave", "--seed", "-1"], "'-1' is no seed"),
-    (["run", "wave", "--seed", "one"], "'one' is no seed: a whole number from 0"),
-    (["run", "wave", "--seed", "4294967296"], "is no seed"),
-    (["run", "wave", "--world", "mars"], "invalid choice: 'mars'"),
-    (["run", "wave", "--world", "ros1"], "ros1 adapter is not in this version"),
-    (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
-    (["run", "wave", "--world", "scripted", "--inject", "slip"], "is not written FAULT@NODE:PHASE"),
-    (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
-    (["run", "wave", "--world", "scripted", "--stage", "C"], "unexpected keyword argument 'stage'"),
-    (["run", "dressing", "--world", "scripted", "--inject", "occlusion@lift the arm:step"],
-     "the nearest are 'lift the left arm', 'lift the right arm'"),
-    (["run", "wave", "--world", "scripted", "--out", "a_file"], "a_file is a file, but a folder"),
-    (["run", "dressing", "--world", "scripted", "--stage", "D-C"], "no stage 'D-C'; it has A, B, C, D, and spans"),
-    (["check", "dance"], "unknown task 'dance'"),
-    (["inject", "wave", "--fault", "rain"], "unknown fault 'rain'; there are"),
-    (["replay", "nowhere"], "nowhere is not a folder"),
-    (["evaluate", "nowhere"], "nowhere"),
-    (["trials", "dance", "-n", "1", "--world", "scripted"], "unknown task 'dance'"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "required: COMMAND"),
+        (["fly"], "invalid choice: 'fly'"),
+        (["run"], "required: TASK"),
+        (["run", "dance"], "unknown task 'dance'; there are"),
+        (["run", "wave", "--seed", "-1"], "'-1' is no seed"),
+        (["run", "wave", "--seed", "one"], "'one' is no seed: a whole number from 0"),
+        (["run", "wave", "--seed", "4294967296"], "is no seed"),
+        (["run", "wave", "--world", "mars"], "invalid choice: 'mars'"),
+        (["run", "wave", "--world", "ros1"], "ros1 adapter is not in this version"),
+        (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
+        (["run", "wave", "--world", "scripted", "--inject", "slip"], "is not written FAULT@NODE:PHASE"),
+        (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
+        (["run", "wave", "--world", "scripted", "--stage", "C"], "unexpected keyword argument 'stage'"),
+        (
+            ["run", "dressing", "--world", "scripted", "--inject", "occlusion@lift the arm:step"],
+            "the nearest are 'lift the left arm', 'lift the right arm'",
+        ),
+        (["run", "wave", "--world", "scripted", "--out", "a_file"], "a_file is a file, but a folder"),
+        (["run", "dressing", "--world", "scripted", "--stage", "D-C"], "no stage 'D-C'; it has A, B, C, D, and spans"),
+        (["check", "dance"], "unknown task 'dance'"),
+        (["inject", "wave", "--fault", "rain"], "unknown fault 'rain'; there are"),
+        (["replay", "nowhere"], "nowhere is not a folder"),
+        (["evaluate", "nowhere"], "nowhere"),
+        (["trials", "dance", "-n", "1", "--world", "scripted"], "unknown task 'dance'"),
+    ],
+)
 def test_a_users_mistake_is_one_sentence_and_status_2(arguments, said, capsys):
     Path("a_file").touch()
     assert main(arguments) == 2
@@ -100,9 +121,9 @@ def test_two_campaigns_do_not_write_one_folder(capsys):
 
 
 def test_an_error_in_a_task_is_kept_with_its_traceback(tmp_path, capsys):
-    (tmp_path / "bad.py").write_text('''
-from caretree.skills.skill import Skill
-from caretree.trees.decorators import FailSafe
+    (tmp_path / "bad.py").write_text("""
+from caretree.skills.core.skill import Skill
+from caretree.trees.nodes.decorators import FailSafe
 from caretree.trees.tasks.wave import LetGo
 
 
@@ -114,7 +135,7 @@ class Bad(Skill):
 
 def build(context):
     return FailSafe("safely", Bad("bad", context), LetGo("let go", context))
-''')
+""")
     assert main(["run", "bad.py", "--world", "scripted", "--out", "r"]) == 1
     assert "r/errors.log" in capsys.readouterr().out.splitlines()
     assert 'bad.py", line 9, in steps' in (tmp_path / "r/errors.log").read_text()
@@ -122,7 +143,7 @@ def build(context):
 
 def test_a_world_that_keeps_time_says_where_it_went(tmp_path):
     (tmp_path / "timed.py").write_text("""
-from caretree.sim.scripted import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.trees.tasks.wave import build
 
 
@@ -207,7 +228,7 @@ def test_inject_keeps_rows_and_goes_on(tmp_path, capsys):
     path.write_text("".join(whole.splitlines(keepends=True)[:4]) + '{"node": "cut sho')
     assert main(["inject", "wave", "--fault", "occlusion", "--out", "i"]) == 0
     second = capsys.readouterr().out
-    assert first[first.index("node "):] == second[second.index("node "):]
+    assert first[first.index("node ") :] == second[second.index("node ") :]
     assert second.count("[") < first.count("[")
 
 
@@ -224,6 +245,7 @@ def test_a_sample_of_a_campaign_is_drawn_by_the_seed(capsys):
 
 def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
     import types
+
     given = []
     monkeypatch.setitem(sys.modules, "caretree.learning.gap", types.ModuleType("caretree.learning.gap"))
     module = types.ModuleType("caretree.learning.gap.cli")
@@ -240,12 +262,14 @@ def test_help_names_what_there_is():
 
 
 def test_help_is_instant_because_nothing_heavy_is_imported():
-    code = ("import sys; from caretree.trees.cli import main\n"
-            "try: main(['--help'])\n"
-            "except SystemExit: pass\n"
-            "heavy = {'numpy', 'scipy', 'pybullet', 'pinocchio', 'toppra', 'numba', 'cv2', 'matplotlib', 'torch', "
-            "'av', 'py_trees'}\n"
-            "print(sorted(heavy & set(sys.modules)))")
+    code = (
+        "import sys; from caretree.trees.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'pybullet', 'pinocchio', 'toppra', 'numba', 'cv2', 'matplotlib', 'torch', "
+        "'av', 'py_trees'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
     for command in ("run", "check", "inject", "replay", "trials", "evaluate", "gap", "learn"):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from ..check import check, fresh_tree
-from ..draw import drawn
-from ..tasks import load_task
+from ..proof.check import check, fresh_tree
+from ..proof.draw import drawn
+from ..run.task import load_task
 
 
 def main(options: argparse.Namespace) -> int:
@@ -24,8 +24,10 @@ def main(options: argparse.Namespace) -> int:
         print(f"fault: {finding}")
     for note in report.notes:
         print(f"note: {note}")
-    followed = (f"{_count(report.skills, 'skill')}, {_count(report.situations, 'situation')} in "
-                f"{_count(report.executions, 'execution')} with stubs")
+    followed = (
+        f"{_count(report.skills, 'skill')}, {_count(report.situations, 'situation')} in "
+        f"{_count(report.executions, 'execution')} with stubs"
+    )
     if report.ok:
         print(f"{options.task} holds: every input is written before it is read, every failure ends safely ({followed})")
         return 0

@@ -11,11 +11,11 @@ import numpy as np
 
 from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS
-from ...sim.file_lock import lock_file
-from ...sim.spool import disk_error
-from ..inject import Campaign, FaultKey, Row, table
-from ..tasks import Task, load_task
-from ..worlds import make_world
+from ...sim.record.file_lock import lock_file
+from ...sim.record.spool import disk_error
+from ..campaign.inject import Campaign, FaultKey, Row, table
+from ..run.task import Task, load_task
+from ..run.worlds import make_world
 
 ROWS = "inject.jsonl"
 
@@ -46,8 +46,12 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
-    campaign = Campaign(task, lambda: make_world(options.world, task, seed=options.seed), seed=options.seed,
-                        faults=tuple(options.fault) or FAULTS)
+    campaign = Campaign(
+        task,
+        lambda: make_world(options.world, task, seed=options.seed),
+        seed=options.seed,
+        faults=tuple(options.fault) or FAULTS,
+    )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..replay import replay
+from ..campaign.replay import replay
 
 
 def main(options: argparse.Namespace) -> int:

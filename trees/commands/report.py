@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 
 from ...sim.errors import CaretreeError
-from ...sim.folder_claim import FolderClaim
-from ...sim.record import RUN_FILE, SPOOL_FOLDER, TRUTH_FILE, is_finished, read_run
-from ...sim.spool import write_npz
+from ...sim.record.folder_claim import FolderClaim
+from ...sim.record.record import RUN_FILE, SPOOL_FOLDER, TRUTH_FILE, is_finished, read_run
+from ...sim.record.spool import write_npz
 
 
 def main(options: argparse.Namespace) -> int:
@@ -25,7 +25,7 @@ def main(options: argparse.Namespace) -> int:
                 write_npz(directory / SPOOL_FOLDER, directory / TRUTH_FILE)
         finally:
             claim.release()
-    from ..report import write_report  # matplotlib is needed only here
+    from ..report.page import write_report  # matplotlib is needed only here
 
     try:
         print(write_report(directory))

@@ -11,14 +11,14 @@ from typing import Any
 
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
-from ...sim.folder_claim import FolderClaim, claim_free
-from ...sim.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
-from ...sim.recorder import Recorder
+from ...sim.record.folder_claim import FolderClaim, claim_free
+from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
+from ...sim.record.recorder import Recorder
 from ...sim.world import World
-from ...skills.context import Perception
-from ..runner import Progress, Run
-from ..tasks import Task, load_task
-from ..worlds import make_world, prepare_stage
+from ...skills.core.context import Perception
+from ..run.runner import Progress, Run
+from ..run.task import Task, load_task
+from ..run.worlds import make_world, prepare_stage
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
 RATE_HZ = 15.0
@@ -39,16 +39,32 @@ def main(options: argparse.Namespace) -> int:
     """
     task = load_task(options.task)
     faults = [parse_fault(text) for text in options.inject]
-    parameters = {"gown": options.gown, "person": options.person, "model": options.model, "inject": options.inject,
-                  "rate_hz": RATE_HZ, "stage": options.stage}
+    parameters = {
+        "gown": options.gown,
+        "person": options.person,
+        "model": options.model,
+        "inject": options.inject,
+        "rate_hz": RATE_HZ,
+        "stage": options.stage,
+    }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [])}
     # claimed before the world is built, which takes a while: two runs begun together get a folder each
-    claim = FolderClaim(Path(options.out)) if options.out else claim_free(
-        Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
+    claim = (
+        FolderClaim(Path(options.out))
+        if options.out
+        else claim_free(Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
+    )
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # being told to end is being interrupted
     try:
-        inner, perception = make_world(options.world, task, seed=options.seed, gown=options.gown, person=options.person,
-                                       model=options.model, view=options.view)
+        inner, perception = make_world(
+            options.world,
+            task,
+            seed=options.seed,
+            gown=options.gown,
+            person=options.person,
+            model=options.model,
+            view=options.view,
+        )
         try:
             return _run(options, task, inner, perception, faults, parameters, claim)
         finally:
@@ -58,12 +74,27 @@ def main(options: argparse.Namespace) -> int:
         claim.release()
 
 
-def _run(options: argparse.Namespace, task: Task, inner: World, perception: Perception | None,
-         faults: list[FaultSpec], parameters: dict[str, Any], claim: FolderClaim) -> int:
+def _run(
+    options: argparse.Namespace,
+    task: Task,
+    inner: World,
+    perception: Perception | None,
+    faults: list[FaultSpec],
+    parameters: dict[str, Any],
+    claim: FolderClaim,
+) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
     events = _Events()
-    run = Run(task, world, seed=options.seed, rate_hz=RATE_HZ, recorder=events, on_progress=show, perception=perception,
-              params={"stage": options.stage} if options.stage else None)
+    run = Run(
+        task,
+        world,
+        seed=options.seed,
+        rate_hz=RATE_HZ,
+        recorder=events,
+        on_progress=show,
+        perception=perception,
+        params={"stage": options.stage} if options.stage else None,
+    )
     prepare_stage(inner, options.stage)
     directory = claim.directory
     recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
@@ -119,7 +150,8 @@ def _timing(of_run: Mapping[str, float], of_world: Mapping[str, float]) -> Mappi
 def _report(directory: Path) -> Path | None:
     """The page for the operator; the run counts even when it cannot be drawn."""
     try:
-        from ..report import write_report  # matplotlib is needed only here
+        from ..report.page import write_report  # matplotlib is needed only here
+
         return write_report(directory)
     except (ImportError, CaretreeError, ValueError) as error:
         print(f"no report: {error}")

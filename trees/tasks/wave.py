@@ -8,13 +8,13 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 
 from ...sim.world import ARM_JOINTS, SIDES, GripperOpening, JointTrajectory, Side
-from ...skills.context import Context
-from ...skills.follow import follow
-from ...skills.ports import Input, Key, Output
-from ...skills.reasons import Reason
-from ...skills.skill import Skill
-from ..composers import sequence
-from ..decorators import FailSafe, RecoverBy, Stage, Timeout
+from ...skills.control.follow import follow
+from ...skills.core.context import Context
+from ...skills.core.ports import Input, Key, Output
+from ...skills.core.reasons import Reason
+from ...skills.core.skill import Skill
+from ..nodes.composers import sequence
+from ..nodes.decorators import FailSafe, RecoverBy, Stage, Timeout
 
 SHORTEST = 0.1  # a trajectory takes time, one that goes nowhere too [s]
 
@@ -34,8 +34,14 @@ class MoveJoint(Skill):
         self.note(f"turns {self.joint} by {self.angle:.2f} rad")
         here = float(self.world.observe().arm_positions[SIDES.index(self.side), ARM_JOINTS.index(self.joint)])
         duration = max(abs(self.angle) / self.speed, SHORTEST)
-        yield from follow(self, JointTrajectory(joints=(f"{self.side}_{self.joint}",), times=np.array((0.0, duration)),
-                                                positions=np.array(((here,), (here + self.angle,)))))
+        yield from follow(
+            self,
+            JointTrajectory(
+                joints=(f"{self.side}_{self.joint}",),
+                times=np.array((0.0, duration)),
+                positions=np.array(((here,), (here + self.angle,))),
+            ),
+        )
         self.before = here
 
     @classmethod
@@ -55,8 +61,14 @@ class ReturnJoint(Skill):
     def steps(self) -> Iterator[None]:
         """Send one trajectory and see it through."""
         here = float(self.world.observe().arm_positions[SIDES.index(self.side), ARM_JOINTS.index(self.joint)])
-        yield from follow(self, JointTrajectory(joints=(f"{self.side}_{self.joint}",), times=np.array((0.0, 1.0)),
-                                                positions=np.array(((here,), (self.angle,)))))
+        yield from follow(
+            self,
+            JointTrajectory(
+                joints=(f"{self.side}_{self.joint}",),
+                times=np.array((0.0, 1.0)),
+                positions=np.array(((here,), (self.angle,))),
+            ),
+        )
 
     @classmethod
     def example(cls, context: Context) -> Skill:
@@ -103,8 +115,11 @@ def build(context: Context, side: Side = "left") -> Behaviour:
     again = RecoverBy("wave, again if lost", wave, {Reason.COMMAND_LOST: lambda: Hold("wait", context)}, attempts=3)
     body = sequence(
         "greet",
-        Stage("wave", lambda context: context.world.observe().gripper_opening.min() > 0.0,
-              Timeout("wave in time", again, seconds=60.0)),
+        Stage(
+            "wave",
+            lambda context: context.world.observe().gripper_opening.min() > 0.0,
+            Timeout("wave in time", again, seconds=60.0),
+        ),
         Stage("hold", None, Hold("hold still", context, seconds=2.0)),
     )
     return FailSafe("wave safely", body, LetGo("let go", context))

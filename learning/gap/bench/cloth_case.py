@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from ....sim.effects.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
 from ..cloth.obj import write_obj
 from ..cloth.scene import ClothEpisode, read_scene

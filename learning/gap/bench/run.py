@@ -56,7 +56,7 @@ def solve(system: str, seed: int, out: Path, again: bool = False) -> list[Path]:
 
 def _verdict(out: Path, name: str) -> dict[str, Any]:
     from ..measurement import load_set
-    from ..study import open_study
+    from ..open_study import open_study
 
     started = time.monotonic()
     study = open_study(load_set(out / "sets" / name), cache=out / "cache" / name)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....sim.effects.adhesion import surface
-from ....sim.effects.carriers import spread_vertices
+from ....sim.effects.cloth.adhesion import surface
+from ....sim.effects.cloth.carriers import spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothModel, Free
 from .scene import ClothEpisode, ClothScene
@@ -120,9 +120,7 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
     spots = [{a: float(x) for a, x in zip("xyz", p, strict=True)} for p in places]
     for place, t1 in [(p, t1) for p in (caught, worst) for t1 in (short, long)] + [(p, long) for p in spots]:
         span = {**place, "t0": t0, "t1": t1}
-        out.append(
-            _effect("snag", "region", {"stiffness": 0.0, **span}, {"stiffness": PULL, **span}, ("stiffness",))
-        )
+        out.append(_effect("snag", "region", {"stiffness": 0.0, **span}, {"stiffness": PULL, **span}, ("stiffness",)))
     if any(e.pins for e in episodes):
         for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
             slip = _effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",))

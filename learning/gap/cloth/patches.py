@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....sim.effects.carriers import carrier_count, spread_vertices
+from ....sim.effects.cloth.carriers import carrier_count, spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled_to
 from .scene import ClothScene

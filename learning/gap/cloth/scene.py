@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ....sim.effects.carriers import CARRIER_MASS, carrier_count
+from ....sim.effects.cloth.carriers import CARRIER_MASS, carrier_count
 from ..errors import GapError
 from ..measurement import Episode, MeasurementSet, require_columns
 from ..table import read_table

@@ -81,9 +81,7 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
     worth = rows / memory(plain.residuals)
     after = before
     loads = [e.load for e in episodes]
-    while len(chosen) < MOST and (
-        _shares(after) or load_misfit(fit.residuals, loads, m) < 0.01
-    ):
+    while len(chosen) < MOST and (_shares(after) or load_misfit(fit.residuals, loads, m) < 0.01):
         pool = candidates(scene, episodes, fitter.residuals(replace(fit.model, carried=True)))
         taken = {c.name for c in chosen}
         pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ....sim.effects.carriers import ClothPatch
-from ....sim.effects.cloth_bank import CLOTH_EFFECTS
-from ....sim.effects.cloth_effect import ClothSettings
+from ....sim.effects.cloth.carriers import ClothPatch
+from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_effect import ClothSettings
 from ....sim.effects.model_file import EffectEntry
 from .obj import write_obj
 from .scene import ClothEpisode, ClothScene

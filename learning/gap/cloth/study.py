@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....sim.effects.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
 from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
 from ..measurement import MeasurementSet
@@ -155,7 +155,7 @@ class ClothStudy(Study):
 
     def _state(self, e: ClothEpisode, energy: np.ndarray) -> str:
         """Fast or slow cloth, near or away from the body: where the energy is."""
-        from ....sim.effects.adhesion import surface
+        from ....sim.effects.cloth.adhesion import surface
 
         speed = np.linalg.norm(np.gradient(e.markers, e.t, axis=0), axis=2).mean(axis=1)
         bins = {"fast motion": speed > np.quantile(speed, 0.75), "slow motion": speed < np.quantile(speed, 0.25)}

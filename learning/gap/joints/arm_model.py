@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ....sim.effects.effect import Parameter
-from ....sim.effects.link_inertia import with_point_mass, with_scaled_mass
+from ....sim.effects.joint.link_inertia import with_point_mass, with_scaled_mass
 from ..errors import GapError
 from .rigid import BodyTerm, RigidModel
 

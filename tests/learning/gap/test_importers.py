@@ -7,7 +7,7 @@ import pytest
 from caretree.learning.gap.catalogue import CATALOGUE, fetch
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import load_set
-from caretree.learning.gap.study import open_study
+from caretree.learning.gap.open_study import open_study
 
 DATA = Path(os.environ.get("CARETREE_DATA", Path(__file__).parents[4] / "shared" / "data"))
 real = pytest.mark.skipif(not (DATA / "emps").is_dir(), reason=f"no local copy of the real measurements at {DATA}")

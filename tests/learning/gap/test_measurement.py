@@ -3,7 +3,7 @@ import pytest
 import yaml
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import load_set
-from caretree.learning.gap.study import open_study
+from caretree.learning.gap.open_study import open_study
 
 
 def edit(folder, **changes):

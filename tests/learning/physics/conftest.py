@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import pytest
-from caretree.sim.gown import GownSpec
+from caretree.sim.scene.gown import GownSpec
 
 
 @pytest.fixture(scope="session")

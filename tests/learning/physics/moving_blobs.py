@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from caretree.learning.physics.method import Examples
+from caretree.learning.physics.methods.method import Examples
 
 FRAMES, SIZE = 5, 16
 

@@ -3,12 +3,12 @@ import json
 
 import numpy as np
 import pytest
-from caretree.learning.physics import generate
 from caretree.learning.physics.cli import COMMANDS
-from caretree.learning.physics.clip import Clip
-from caretree.learning.physics.dataset import Dataset
-from caretree.sim.gown import GOWNS
-from caretree.sim.gown_file import GownFile, write_gown
+from caretree.learning.physics.clips import generate
+from caretree.learning.physics.clips.clip import Clip
+from caretree.learning.physics.clips.dataset import Dataset
+from caretree.sim.scene.gown import GOWNS
+from caretree.sim.scene.gown_file import GownFile, write_gown
 from caretree.trees.cli import main
 
 
@@ -37,8 +37,21 @@ def test_data_makes_a_dataset_and_says_how_far_it_is(tmp_path, capsys):
 
 
 def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
-    assert main(["learn", "physics", "clip", str(tmp_path / "a.npz"), "--engine", "fast",
-                 "--strip", str(tmp_path / "a.png")]) == 0
+    assert (
+        main(
+            [
+                "learn",
+                "physics",
+                "clip",
+                str(tmp_path / "a.npz"),
+                "--engine",
+                "fast",
+                "--strip",
+                str(tmp_path / "a.png"),
+            ]
+        )
+        == 0
+    )
     file = write_gown(tmp_path / "g.yaml", GownFile(base="medium", values={"mass": 0.2}, intervals={}))
     assert main(["learn", "physics", "clip", str(tmp_path / "b.npz"), "--engine", "fast", "--gown", str(file)]) == 0
     one, other = (Clip.load(tmp_path / name) for name in ("a.npz", "b.npz"))
@@ -50,8 +63,20 @@ def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
 def test_show_draws_clips_and_datasets(tmp_path):
     assert main(["learn", "physics", "clip", str(tmp_path / "a.npz"), "--engine", "fast"]) == 0
     assert main(["learn", "physics", "data", str(tmp_path / "set"), "--kind", "disturbed", "--per-class", "2"]) == 0
-    assert main(["learn", "physics", "show", str(tmp_path / "a.npz"), str(tmp_path / "set"),
-                 "--out", str(tmp_path / "b.png")]) == 0
+    assert (
+        main(
+            [
+                "learn",
+                "physics",
+                "show",
+                str(tmp_path / "a.npz"),
+                str(tmp_path / "set"),
+                "--out",
+                str(tmp_path / "b.png"),
+            ]
+        )
+        == 0
+    )
     assert (tmp_path / "b.png").stat().st_size > 10000
 
 
@@ -61,20 +86,23 @@ def test_sensitivity_prints_its_table(tmp_path, capsys):
     assert json.loads((tmp_path / "s.json").read_text())["gowns"] == 1
 
 
-@pytest.mark.parametrize(("arguments", "sentence"), [
-    (["policies"], "`caretree learn` has no part 'policies', it has physics"),
-    (["physics", "dance"], "has no command 'dance', it has data, clip"),
-    (["physics", "data"], "the following arguments are required: DIR"),
-    (["physics", "data", "x", "--kind", "blender"], "invalid choice: 'blender'"),
-    (["physics", "data", "x", "--kind", "uniform", "--classes", "4"], "has no classes, 4 were asked for"),
-    (["physics", "data", "x", "--jobs", "0"], "--jobs is 0, at least 1"),
-    (["physics", "data", "x", "--per-class", "0"], "counts start at 1"),
-    (["physics", "clip", "x.npz", "--gown", "silk"], "unknown gown 'silk'"),
-    (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),
-    (["physics", "show", "x.npz", "--out", "x.png"], "x.npz: there is no such clip"),
-    (["physics", "show", "x.npz", "--out", "x.png", "--clips", "0"], "--clips is 0, at least 1"),
-    (["physics", "sensitivity", "--points", "0"], "--points is 0, at least 1"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["policies"], "`caretree learn` has no part 'policies', it has physics"),
+        (["physics", "dance"], "has no command 'dance', it has data, clip"),
+        (["physics", "data"], "the following arguments are required: DIR"),
+        (["physics", "data", "x", "--kind", "blender"], "invalid choice: 'blender'"),
+        (["physics", "data", "x", "--kind", "uniform", "--classes", "4"], "has no classes, 4 were asked for"),
+        (["physics", "data", "x", "--jobs", "0"], "--jobs is 0, at least 1"),
+        (["physics", "data", "x", "--per-class", "0"], "counts start at 1"),
+        (["physics", "clip", "x.npz", "--gown", "silk"], "unknown gown 'silk'"),
+        (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),
+        (["physics", "show", "x.npz", "--out", "x.png"], "x.npz: there is no such clip"),
+        (["physics", "show", "x.npz", "--out", "x.png", "--clips", "0"], "--clips is 0, at least 1"),
+        (["physics", "sensitivity", "--points", "0"], "--points is 0, at least 1"),
+    ],
+)
 def test_a_mistake_is_one_sentence_and_status_2(tmp_path, monkeypatch, capsys, arguments, sentence):
     monkeypatch.chdir(tmp_path)
     assert main(["learn", *arguments]) == 2

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
-from caretree.learning.physics.training import Budget, Objective, fit  # noqa: E402
-from caretree.sim.errors import CaretreeError  # noqa: E402
+from caretree.learning.physics.networks.training import Budget, Objective, fit
+from caretree.sim.errors import CaretreeError
 
 
 class Line(Objective):

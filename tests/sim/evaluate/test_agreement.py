@@ -47,7 +47,7 @@ def evaluated(directory: Path) -> int:
 def shift_sleeve(z: Arrays, side: str, offset: tuple[float, float, float]) -> None:
     """Move the 60 vertices of one sleeve in the last ten frames."""
     first = int(z[f"loop_armhole_{side}"].min())
-    z["vertices"][-10:, first:first + 60] += np.array(offset, dtype=np.float32)
+    z["vertices"][-10:, first : first + 60] += np.array(offset, dtype=np.float32)
 
 
 def sleeve_off(z: Arrays) -> None:
@@ -57,7 +57,7 @@ def sleeve_off(z: Arrays) -> None:
 def sleeve_snaps_back(z: Arrays) -> None:
     """On at the end, but off two frames within the last two seconds."""
     first = int(z["loop_armhole_left"].min())
-    z["vertices"][-12:-10, first:first + 60] += np.float32([0.0, 0.3, 0.0])
+    z["vertices"][-12:-10, first : first + 60] += np.float32([0.0, 0.3, 0.0])
 
 
 def wrong_way_in(z: Arrays) -> None:
@@ -173,13 +173,35 @@ def nothing(z: Arrays) -> None:
 
 
 DAMAGE: list[tuple[Callable[[Arrays], None], int]] = [
-    (nothing, 0), (load_on_open_gripper, 0), (gripped_long_ago, 0),
-    (sleeve_off, 1), (sleeve_snaps_back, 1), (wrong_way_in, 1), (reversed_loop, 1), (armhole_short, 1), (uncovered, 1),
-    (inside_out, 1), (still_gripped, 1), (nan_vertex, 1), (nan_arm_at_end, 1), (teleport, 1), (overstretched, 1),
-    (one_long_edge, 1), (penetrates, 1), (frame_gap, 1), (heavy_load, 1), (dressed_at_once, 1), (never_moved, 1),
+    (nothing, 0),
+    (load_on_open_gripper, 0),
+    (gripped_long_ago, 0),
+    (sleeve_off, 1),
+    (sleeve_snaps_back, 1),
+    (wrong_way_in, 1),
+    (reversed_loop, 1),
+    (armhole_short, 1),
+    (uncovered, 1),
+    (inside_out, 1),
+    (still_gripped, 1),
+    (nan_vertex, 1),
+    (nan_arm_at_end, 1),
+    (teleport, 1),
+    (overstretched, 1),
+    (one_long_edge, 1),
+    (penetrates, 1),
+    (frame_gap, 1),
+    (heavy_load, 1),
+    (dressed_at_once, 1),
+    (never_moved, 1),
     (time_runs_back, 1),
-    (missing_array, 2), (three_points_per_arm, 2), (too_few_frames_of_vertices, 2), (one_frame, 2), (no_frames, 2),
-    (face_out_of_range, 2), (faces_of_floats, 2),
+    (missing_array, 2),
+    (three_points_per_arm, 2),
+    (too_few_frames_of_vertices, 2),
+    (one_frame, 2),
+    (no_frames, 2),
+    (face_out_of_range, 2),
+    (faces_of_floats, 2),
 ]
 
 
@@ -216,9 +238,13 @@ def test_same_numbers(make_record, tmp_path, judge):
     directory = make_record(tmp_path / "run")
     ours, theirs = evaluate(directory).numbers, judge.judge(directory)
     for name, value in {
-        "upper_arm_left": theirs["upper_arm_ratio"]["left"], "upper_arm_right": theirs["upper_arm_ratio"]["right"],
-        "coverage": theirs["coverage"], "outside_out": theirs["outside_out"], "stretch_p99": theirs["stretch_p99"],
-        "stretch_max": theirs["stretch_max"], "arm_depth_max_m": theirs["arm_depth_max_m"],
+        "upper_arm_left": theirs["upper_arm_ratio"]["left"],
+        "upper_arm_right": theirs["upper_arm_ratio"]["right"],
+        "coverage": theirs["coverage"],
+        "outside_out": theirs["outside_out"],
+        "stretch_p99": theirs["stretch_p99"],
+        "stretch_max": theirs["stretch_max"],
+        "arm_depth_max_m": theirs["arm_depth_max_m"],
     }.items():
         assert ours[name] == pytest.approx(value, abs=6e-4), name
     assert ours["vertex_speed_max_m_per_s"] == pytest.approx(theirs["vertex_speed_max"], abs=6e-3)

@@ -63,8 +63,9 @@ def test_bullet_and_pinocchio_agree_on_every_link(rig):
 def test_motors_hold_and_track_within_half_a_degree(rig):
     start = rig.robot.read().arm_positions.ravel()
     goal = start + 0.3 * np.tile((1, 1, -1, 1, 1, -1, 1), 2)
-    rig.robot.command(JointTrajectory(joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 1.5)),
-                                      positions=np.stack((start, goal))))
+    rig.robot.command(
+        JointTrajectory(joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 1.5)), positions=np.stack((start, goal)))
+    )
     assert rig.run(1.8) < 0.1
     np.testing.assert_allclose(rig.robot.read().arm_positions.ravel(), goal, atol=1e-3)
 
@@ -96,8 +97,9 @@ def test_base_goes_where_it_is_driven_and_stops_by_itself(rig):
     rig.run(1.5)
     reading = rig.robot.read()
     c, s = np.cos(2.5), np.sin(2.5)
-    np.testing.assert_allclose(reading.pose_base_in_map,
-                               (1.0 + 0.16 * c - 0.08 * s, 0.2 + 0.16 * s + 0.08 * c, 2.5), atol=3e-3)
+    np.testing.assert_allclose(
+        reading.pose_base_in_map, (1.0 + 0.16 * c - 0.08 * s, 0.2 + 0.16 * s + 0.08 * c, 2.5), atol=3e-3
+    )
     assert np.abs(reading.twist_base).max() < 1e-3
 
 
@@ -111,8 +113,11 @@ def test_gripper_closes_and_squeezes_with_the_force_asked_for(rig):
 
 def test_stop_ends_every_motion(rig):
     start = rig.robot.read().arm_positions.ravel()
-    rig.robot.command(JointTrajectory(joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 2.0)),
-                                      positions=np.stack((start, start + 0.4))))
+    rig.robot.command(
+        JointTrajectory(
+            joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 2.0)), positions=np.stack((start, start + 0.4))
+        )
+    )
     rig.robot.command(BaseVelocity(velocity=np.array((0.3, 0.0, 0.2)), duration=5.0))
     rig.run(0.8)
     assert rig.robot.servo.moving

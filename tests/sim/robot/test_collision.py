@@ -23,8 +23,14 @@ def test_ready_and_stretched_postures_are_free(kinematics):
 def test_hands_clapped_together_collide(kinematics):
     from caretree.skills.motion.ik import hand_pose, solve_ik
 
-    arms = np.stack([solve_ik(kinematics, side, hand_pose((0.6, 0.0, 1.2), (1, 0, 0)), np.zeros(3), model.READY[n],
-                              free="approach") for n, side in enumerate(SIDES)])
+    arms = np.stack(
+        [
+            solve_ik(
+                kinematics, side, hand_pose((0.6, 0.0, 1.2), (1, 0, 0)), np.zeros(3), model.READY[n], free="approach"
+            )
+            for n, side in enumerate(SIDES)
+        ]
+    )
     pairs = CollisionChecker(kinematics).collisions(np.zeros(3), arms)
     assert ("left_gripper", "right_gripper") in pairs
 

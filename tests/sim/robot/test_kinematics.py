@@ -46,8 +46,9 @@ def test_arm_models_agree_with_the_whole_robot(kinematics):
             hand = kinematics.pose_hand_in_map(side, arms[n], base)
             np.testing.assert_allclose(hand, poses[f"{side}_hand"], atol=1e-9)
         for camera in CAMERAS:
-            np.testing.assert_allclose(kinematics.pose_camera_in_map(camera, base, arms, 0.3),
-                                       poses[f"{camera}_camera"], atol=1e-9)
+            np.testing.assert_allclose(
+                kinematics.pose_camera_in_map(camera, base, arms, 0.3), poses[f"{camera}_camera"], atol=1e-9
+            )
 
 
 def test_mounting_is_what_the_document_says(kinematics):

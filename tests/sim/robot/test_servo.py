@@ -26,8 +26,11 @@ def play(servo, seconds, start=0.0, watch=lambda: None):
 
 def test_trajectory_arrives_on_time_and_stays(servo):
     goal = servo.positions[:14] + 0.2
-    servo.command(JointTrajectory(joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 1.0)),
-                                  positions=np.stack((servo.positions[:14], goal))))
+    servo.command(
+        JointTrajectory(
+            joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 1.0)), positions=np.stack((servo.positions[:14], goal))
+        )
+    )
     play(servo, 1.0)
     np.testing.assert_allclose(servo.positions[:14], goal, atol=1e-3)
     play(servo, 0.5, 1.0)
@@ -38,8 +41,11 @@ def test_trajectory_arrives_on_time_and_stays(servo):
 def test_too_fast_a_trajectory_is_slowed_to_the_speed_limit(servo, kinematics):
     speeds = []
     start = servo.positions[:7].copy()
-    sent = servo.command(JointTrajectory(joints=model.arm_joints("left"), times=np.array((0.0, 0.1)),
-                                         positions=np.stack((start, start + 0.5))))
+    sent = servo.command(
+        JointTrajectory(
+            joints=model.arm_joints("left"), times=np.array((0.0, 0.1)), positions=np.stack((start, start + 0.5))
+        )
+    )
     assert sent.times[-1] > 0.3
     play(servo, 1.5, watch=lambda: speeds.append(np.abs(servo.velocities[:7]).copy()))
     assert (np.max(speeds, axis=0) <= kinematics.limits["left"].velocity + 1e-9).all()
@@ -47,8 +53,11 @@ def test_too_fast_a_trajectory_is_slowed_to_the_speed_limit(servo, kinematics):
 
 
 def test_positions_are_clipped_to_the_joint_limits_and_the_sent_command_says_so(servo, kinematics):
-    sent = servo.command(JointTrajectory(joints=("left_e1", "head_pan"), times=np.array((0.0, 3.0)),
-                                         positions=np.array(((1.65, 0.0), (9.0, -9.0)))))
+    sent = servo.command(
+        JointTrajectory(
+            joints=("left_e1", "head_pan"), times=np.array((0.0, 3.0)), positions=np.array(((1.65, 0.0), (9.0, -9.0)))
+        )
+    )
     assert sent.positions[-1, 0] == pytest.approx(kinematics.limits["left"].upper[3])
     assert sent.positions[-1, 1] == pytest.approx(kinematics.head_range[0])
 
@@ -63,8 +72,11 @@ def test_a_jump_at_the_start_is_approached_at_the_speed_limit(servo, kinematics)
 
 def test_a_new_command_takes_over_only_its_own_joints(servo):
     start = servo.positions[:14].copy()
-    servo.command(JointTrajectory(joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 2.0)),
-                                  positions=np.stack((start, start + 0.3))))
+    servo.command(
+        JointTrajectory(
+            joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 2.0)), positions=np.stack((start, start + 0.3))
+        )
+    )
     play(servo, 1.0)
     servo.command(HandTwist(side="left", twist_in_map=np.zeros(6), duration=0.2))
     play(servo, 1.5, 1.0)
@@ -138,8 +150,11 @@ def test_base_keeps_speed_and_acceleration_limits_and_stops_when_the_command_exp
 def test_stop_brakes_everything_within_the_acceleration_limits(servo, kinematics):
     servo.command(HandTwist(side="left", twist_in_map=np.array((0, 0, 0.2, 0, 0, 0)), duration=9.0))
     start = servo.positions[7:14].copy()
-    servo.command(JointTrajectory(joints=model.arm_joints("right"), times=np.array((0.0, 2.0)),
-                                  positions=np.stack((start, start + 0.6))))
+    servo.command(
+        JointTrajectory(
+            joints=model.arm_joints("right"), times=np.array((0.0, 2.0)), positions=np.stack((start, start + 0.6))
+        )
+    )
     play(servo, 1.0)
     assert servo.moving
     servo.stop()

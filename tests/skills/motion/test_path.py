@@ -45,9 +45,14 @@ def test_a_base_half_under_the_bed_backs_out_first():
     assert abs(path[1, 1]) < 0.1
 
 
-@pytest.mark.parametrize(("start", "goal", "message"), [
-    ((1.2, 0.0), (0.0, 0.0), "obstacle"), ((1.2, 0.0), (9.0, 0.0), "obstacle"),
-    ((0.0, 0.0), (1.2, 0.0), "any free space")])
+@pytest.mark.parametrize(
+    ("start", "goal", "message"),
+    [
+        ((1.2, 0.0), (0.0, 0.0), "obstacle"),
+        ((1.2, 0.0), (9.0, 0.0), "obstacle"),
+        ((0.0, 0.0), (1.2, 0.0), "any free space"),
+    ],
+)
 def test_impossible_goals_are_told_in_one_sentence(start, goal, message):
     with pytest.raises(PathBlocked, match=message):
         plan_path(room(), np.array(start), np.array(goal))

@@ -26,7 +26,7 @@ def rates(trajectory):
 
 def hand_path(kinematics, trajectory, side):
     n = trajectory.joints.index(f"{side}_s0")
-    return np.array([kinematics.pose_hand_in_map(side, q[n:n + 7], BASE)[:3, 3] for q in trajectory.positions])
+    return np.array([kinematics.pose_hand_in_map(side, q[n : n + 7], BASE)[:3, 3] for q in trajectory.positions])
 
 
 def hand_speed(kinematics, trajectory, side):
@@ -36,9 +36,15 @@ def hand_speed(kinematics, trajectory, side):
 
 def random_waypoints(kinematics, count, seed):
     generator = np.random.default_rng(seed)
-    return {side: np.vstack((model.READY[n], generator.uniform(0.6 * kinematics.limits[side].lower,
-                                                               0.6 * kinematics.limits[side].upper, (count, 7))))
-            for n, side in enumerate(SIDES)}
+    return {
+        side: np.vstack(
+            (
+                model.READY[n],
+                generator.uniform(0.6 * kinematics.limits[side].lower, 0.6 * kinematics.limits[side].upper, (count, 7)),
+            )
+        )
+        for n, side in enumerate(SIDES)
+    }
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.4])
@@ -119,8 +125,9 @@ def test_a_line_out_of_reach_or_through_the_bed_is_refused(kinematics):
     low = kinematics.pose_hand_in_map("left", model.READY[0], BASE)
     low[:3, 3] += (0.0, 0.0, -0.3)
     with pytest.raises(MotionBlocked, match="box 0"):
-        plan_hand_line(kinematics, {"left": low}, model.READY, BASE, free="approach",
-                       checker=CollisionChecker(kinematics, BED))
+        plan_hand_line(
+            kinematics, {"left": low}, model.READY, BASE, free="approach", checker=CollisionChecker(kinematics, BED)
+        )
 
 
 def test_reaching_goes_round_what_is_in_the_way(kinematics):

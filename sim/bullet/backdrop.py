@@ -1,0 +1,107 @@
+"""What the cameras see of a scene: room, bed, rail, person, robot and gown as triangles with colours."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..render.appearance import draw_appearance, gown_colours
+from ..render.camera import Renderer, looking_at
+from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
+from ..robot.kinematics import Kinematics
+from ..robot.visual import visual_meshes
+from ..scene.person_spec import trunk_capsules
+from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
+from .cloth import Cloth
+from .person import Person
+
+SPECTATOR = looking_at(np.array((0.2, -2.85, 2.7)), np.array((0.75, 0.6, 0.65)))  # the video's camera
+SPECTATOR_SIZE = (480, 360)
+
+
+class Backdrop:
+    """Keeps a `Renderer` in step with the bodies of one world.
+
+    Args:
+        scene: what was drawn for this run.
+        cloth: the gown.
+        person: the manikin.
+        kinematics: of the robot.
+    """
+
+    def __init__(self, scene: Scene, cloth: Cloth, person: Person, kinematics: Kinematics) -> None:
+        look = draw_appearance(np.random.default_rng([scene.seed, 1]))
+        self.renderer, self.person, self.kinematics = Renderer(look.light), person, kinematics
+        self._colours = look.colours
+        self._room(scene)
+        self._body(scene)
+        for name, (vertices, faces, rgb) in visual_meshes().items():
+            self.renderer.add_rigid(f"robot_{name}", vertices, faces, 255.0 * np.asarray(rgb))
+        self._links = list(visual_meshes())
+        self.renderer.set_cloth(cloth.mesh.vertices, cloth.mesh.faces, *gown_colours(cloth.mesh, look))
+
+    def update(self, vertices: np.ndarray, configuration: np.ndarray) -> Renderer:
+        """Move everything to where it is now; returns the renderer, ready to draw."""
+        self.renderer.move_cloth(vertices)
+        arms = self.person.arms()
+        for arm in range(2):
+            for part in range(3):
+                self.renderer.set_pose(f"arm{arm}{part}", _along(arms[arm, part], arms[arm, part + 1]))
+        poses = self.kinematics.link_poses(configuration)
+        for name in self._links:
+            self.renderer.set_pose(f"robot_{name}", poses[name])
+        return self.renderer
+
+    def _room(self, scene: Scene) -> None:
+        add, colour = self.renderer.add_rigid, self._colours
+        add("floor", *box_mesh(np.array((-3.0, -3.0, -0.05)), np.array((4.0, 3.5, 0.0))), colour["floor"])
+        add("wall_back", *box_mesh(np.array((-3.0, 3.5, 0.0)), np.array((4.0, 3.55, 2.6))), colour["wall"])
+        add("wall_side", *box_mesh(np.array((-3.05, -3.0, 0.0)), np.array((-3.0, 3.5, 2.6))), colour["wall"])
+        middle = np.array((*scene.bed_xy, 0.0))
+        half = np.array((*BED_HALF, 0.0))
+        for name, low, high, tint in (
+            ("mattress", BED_TOP - 0.09, BED_TOP, "sheet"),
+            ("bed_frame", BED_TOP - BED_THICKNESS, BED_TOP - 0.09, "bed_frame"),
+        ):
+            add(name, *box_mesh(middle - half + (0, 0, low), middle + half + (0, 0, high)), colour[tint])
+        for k, (x, y) in enumerate(((-0.3, -0.9), (0.3, -0.9), (-0.3, 0.9), (0.3, 0.9))):
+            foot = middle + (x, y, 0.0)
+            add(f"bed_leg{k}", *cylinder_mesh(foot, foot + (0, 0, BED_TOP - BED_THICKNESS), 0.03), colour["bed_frame"])
+        x, y = scene.rail_xy
+        bar = RAIL_HEIGHT + 0.05
+        ends = np.array(((x - 0.8, y + 0.03, bar), (x + 0.8, y + 0.03, bar)))
+        add("rail_bar", *cylinder_mesh(ends[0], ends[1], 0.015), colour["rail"])
+        for k, end in enumerate((-0.8, 0.8)):
+            foot = np.array((x + end, y + 0.03, 0.0))
+            add(f"rail_post{k}", *cylinder_mesh(foot, foot + (0, 0, bar), 0.02), colour["rail"])
+        hook = np.array((x, y, RAIL_HEIGHT))
+        add("hook", *cylinder_mesh(hook, hook + (0, 0.03, 0.05), 0.008), colour["rail"])
+
+    def _body(self, scene: Scene) -> None:
+        add, skin = self.renderer.add_rigid, self._colours["skin"]
+        spec = scene.person
+        chest_left, leg_left, chest_right, leg_right, head = trunk_capsules(spec, BED_TOP, scene.bed_xy)
+        for name, (a, b, radius) in (("chest_left", chest_left), ("chest_right", chest_right), ("neck_head", head)):
+            add(name, *capsule_mesh(a, b, radius), skin)
+        for name, (a, b, radius) in (("leg_left", leg_left), ("leg_right", leg_right)):
+            knee = a + 0.45 * (b - a)
+            add(f"{name}_thigh", *capsule_mesh(a, knee, radius * 1.01), self._colours["shorts"])
+            add(f"{name}_shin", *capsule_mesh(knee, b, radius), skin)
+        bed = np.array((*scene.bed_xy, BED_TOP))
+        add("pillow", *box_mesh(bed + (-0.25, -0.98, 0.0), bed + (0.25, -0.66, 0.03)), self._colours["sheet"])
+        lengths = np.array(spec.lengths) * spec.scale
+        for arm in range(2):
+            radii = self.person.radii()[arm]
+            for part in range(3):
+                tip = np.array((0.0, 0.0, lengths[part]))
+                add(f"arm{arm}{part}", *capsule_mesh(np.zeros(3), tip, radii[part]), skin)
+            add(f"shoulder{arm}", *sphere_mesh(self.person.arms()[arm, 0], radii[0] * 1.15), skin)
+
+
+def _along(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Pose (4, 4) at a with z towards b."""
+    z = (b - a) / np.linalg.norm(b - a)
+    x = np.cross((0.0, 1.0, 0.1), z)
+    x /= np.linalg.norm(x)
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = x, np.cross(z, x), z, a
+    return pose

@@ -1,0 +1,122 @@
+"""What a hand holds things with: a light body on six stiff motors that follows the hand.
+
+Cloth anchored to kinematic bodies can explode (FACTS); a dynamic link behind three prismatic and three
+revolute motors does not, and turns what it holds.  Its motors feel an arm that hangs on it; cloth loads are
+read in the cloth itself (`Cloth.load`).
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from . import units
+from .cloth import GRAVITY
+
+MASS, LINK_MASS = 3.0, 1.0  # of the last link and of the five before it [kg]; lighter ones shake what they hold
+_LINK = 5
+_AXES = (
+    ("prismatic", "1 0 0"),
+    ("prismatic", "0 1 0"),
+    ("prismatic", "0 0 1"),
+    ("revolute", "0 0 1"),
+    ("revolute", "0 1 0"),
+    ("revolute", "1 0 0"),
+)
+_LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
+_SMOOTHING = 0.05  # share of a new reading: about 40 ms at a 2 ms step
+
+
+class Handle:
+    """A body that goes where a hand goes and measures what pulls on it.
+
+    Args:
+        client: BulletClient of the room.
+        pose_in_map: (4, 4) where to start.
+    """
+
+    def __init__(self, client: Any, pose_in_map: np.ndarray) -> None:
+        self.client = client
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "handle.urdf"
+            path.write_text(_urdf())
+            self.body: int = client.loadURDF(str(path), useFixedBase=True)
+        self.link = _LINK
+        for link in range(-1, 6):
+            client.changeDynamics(
+                self.body,
+                link,
+                activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0,
+            )
+        self._load = np.zeros(3)
+        self._turn_at_reset = np.eye(3)
+        self.reset(pose_in_map)
+
+    def reset(self, pose_in_map: np.ndarray) -> None:
+        """Jump to a pose and call its orientation zero; only while nothing is held."""
+        self._turn_at_reset = pose_in_map[:3, :3].copy()
+        self._target = np.concatenate([pose_in_map[:3, 3], np.zeros(3)])
+        for joint, value in enumerate(self._target):
+            self.client.resetJointState(self.body, joint, float(value))
+        self._load = np.zeros(3)
+
+    def follow(self, pose_in_map: np.ndarray) -> None:
+        """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
+        turn = pose_in_map[:3, :3] @ self._turn_at_reset.T
+        angles = _nearest(Rotation.from_matrix(turn).as_euler("ZYX"), self._target[3:])
+        self._target = np.concatenate([pose_in_map[:3, 3], angles])
+        self.client.setJointMotorControlArray(
+            self.body,
+            range(6),
+            self.client.POSITION_CONTROL,
+            targetPositions=self._target.tolist(),
+            positionGains=[0.3] * 6,
+            velocityGains=[1.0] * 6,
+            forces=[units.force(300.0)] * 3 + [units.force(20.0)] * 3,
+        )
+
+    def feel(self) -> None:
+        """Take a load reading; once per physics step, after it."""
+        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))]) / units.force(1.0)
+        motor[2] -= _LIFTED * GRAVITY
+        self._load += _SMOOTHING * (-motor - self._load)
+
+    @property
+    def load(self) -> np.ndarray:
+        """(3,) force that an arm held by a constraint exerts on the hand, map frame, own weight removed [N]."""
+        return self._load.copy()
+
+    def position(self) -> np.ndarray:
+        """(3,) where it really is [m]."""
+        return np.array(self.client.getLinkState(self.body, self.link)[4])
+
+
+def _nearest(angles: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """The turn of `angles` (3,) about z, y, x without a jump from `last`: the motors would spin the cloth round."""
+    ways = [angles, np.array((angles[0] + np.pi, np.pi - angles[1], angles[2] + np.pi))]
+    ways = [way + 2 * np.pi * np.round((last - way) / (2 * np.pi)) for way in ways]
+    return min(ways, key=lambda way: float(np.abs(way - last).max()))
+
+
+def _urdf() -> str:
+    # below 1e-3 kg m^2 the turning motors do not hold against the anchors
+    inertia = '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/>'
+    parts = [f'<link name="room"><inertial><mass value="0"/>{inertia}</inertial></link>']
+    parent = "room"
+    for k, (kind, axis) in enumerate(_AXES):
+        mass = MASS if k == _LINK else LINK_MASS
+        parts.append(f'<link name="l{k}"><inertial><mass value="{mass}"/>{inertia}</inertial></link>')
+        # lower > upper: no limit, hence no limit constraint to solve for
+        parts.append(
+            f'<joint name="j{k}" type="{kind}"><parent link="{parent}"/><child link="l{k}"/>'
+            f'<axis xyz="{axis}"/><limit lower="1" upper="-1" effort="1000" velocity="10"/></joint>'
+        )
+        parent = f"l{k}"
+    return f'<robot name="handle">{"".join(parts)}</robot>'

@@ -1,0 +1,243 @@
+"""The person: a life-sized manikin, supine, with arms that nothing but contact and the robot's grip moves.
+
+174 cm and 18 kg as the patient-care manikin of the paper.  The trunk rests on the bed and stays there (the
+robot could not move it); each arm is a passive chain of a three-axis shoulder and an elbow, with dry and
+viscous friction and joint limits, and a stiff hand.
+
+Joint zero: the arm points along the body towards the feet, palm to the thigh.  Angles of both sides have
+the same meaning: `abduction` swings the arm away from the body in the plane of the bed, `elevation` lifts
+it off the bed, `rotation` turns it about the upper arm, `flexion` bends the elbow (towards the front of
+the body at rotation 0, towards the midline at rotation -90 degrees).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from ..scene.person_spec import ARM_AXES, PersonSpec, shoulder_in_map, trunk_capsules
+from ..world import SIDES, Side
+from . import units
+
+PERSON_PARTS = (
+    "trunk",
+    "left_upper_arm",
+    "left_forearm",
+    "left_hand",
+    "right_upper_arm",
+    "right_forearm",
+    "right_hand",
+)
+BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
+ARM_SHARE = 0.05  # of body mass, upper arm + forearm + hand (Winter, Biomechanics of Human Movement, table 4.1)
+
+
+_LIMITS = {"abduction": (-0.2, 1.9), "elevation": (-0.35, 1.6), "rotation": (-1.8, 1.8), "flexion": (0.0, 2.4)}
+
+
+class Person:
+    """The manikin in a PyBullet client.  Truth: skills, trees and perception never see this object."""
+
+    def __init__(self, client: Any, spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float] = (0.0, 0.0)):
+        """Load the body and set its arm pose.
+
+        Args:
+            client: PyBullet module or BulletClient with a deformable world.
+            spec: who.
+            bed_top: height of the mattress [m].
+            bed_xy: middle of the bed in the map frame [m].
+        """
+        self.client, self.spec = client, spec
+        self.bed_top, self.bed_xy = bed_top, bed_xy
+        self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
+        self.trunk = [self._trunk_capsule(a, b, radius) for a, b, radius in trunk_capsules(spec, bed_top, bed_xy)]
+        self.body = self._load()
+        names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
+        self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
+        self.links = {
+            side: [names[f"{side}_rotation"], names[f"{side}_flexion"], names[f"{side}_wrist"]] for side in SIDES
+        }
+        for side in SIDES:
+            for j, angle in zip(self.joints[side], spec.pose[side], strict=True):
+                client.resetJointState(self.body, j, angle)
+        for link in range(-1, client.getNumJoints(self.body)):
+            client.changeDynamics(self.body, link, lateralFriction=0.5, linearDamping=0.0, angularDamping=0.0)
+            client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
+            client.changeDynamics(self.body, link, jointDamping=0.0)
+        self._swing = 0.0
+        self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
+        self.resist()
+
+    def resist(self) -> None:
+        """Set the joints' friction for their present angles and speeds; every 10 ms or so.
+
+        Dry friction as a bristle: each joint is held at an angle with a bounded torque, and the angle is dragged
+        along when the joint is forced away from it.  The bound grows with the speed, which adds the viscous part.
+        (A velocity motor would creep by one step of gravity, 0.16 rad/s at the elbow; Bullet's own joint damping
+        is explicit and shakes these light arms apart.)
+        """
+        joints = [j for side in SIDES for j in self.joints[side]]
+        states = self.client.getJointStates(self.body, joints)
+        angles = np.array([state[0] for state in states])
+        speeds = np.array([state[1] for state in states]) / units.rate(1.0)
+        dry = np.array([self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)])
+        torques = dry + self.spec.viscous * np.abs(speeds)
+        if self._swing:
+            torques, self._stuck[::4] = 3.0 * torques, angles[::4] + 0.02 * np.sign(self._swing)
+        self._stuck = np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE)
+        self.client.setJointMotorControlArray(
+            self.body,
+            joints,
+            self.client.POSITION_CONTROL,
+            targetPositions=self._stuck.tolist(),
+            positionGains=[0.2] * 8,
+            velocityGains=[1.0] * 8,
+            forces=[units.force(t) for t in torques],
+        )
+
+    def bend_arm(self, side: Side, angles: tuple[float, float, float, float]) -> None:
+        """Put an arm somewhere else at once, where its friction then holds it; only before a run.
+
+        Args:
+            side: which arm.
+            angles: in the order of `ARM_AXES` [rad].
+        """
+        for j, angle in zip(self.joints[side], angles, strict=True):
+            self.client.resetJointState(self.body, j, angle)
+        first = 4 * SIDES.index(side)
+        self._stuck[first : first + 4] = angles
+        self.resist()
+
+    def swing(self, speed: float) -> None:
+        """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
+        self._swing = speed
+        self.resist()
+
+    def arms(self) -> np.ndarray:
+        """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""
+        out = np.empty((2, 4, 3))
+        for i, side in enumerate(SIDES):
+            upper, fore, hand = self.client.getLinkStates(self.body, self.links[side], computeForwardKinematics=1)
+            out[i, 0], out[i, 1], out[i, 2] = upper[4], fore[4], hand[4]
+            turn = np.array(self.client.getMatrixFromQuaternion(hand[5])).reshape(3, 3)
+            out[i, 3] = out[i, 2] + turn @ (0.0, self.spec.lengths[2] * self.spec.scale, 0.0)
+        return out
+
+    def torso_front(self) -> np.ndarray:
+        """(m, 6) points on the front of the trunk with outward normals, chest to waist, map frame [m]."""
+        s = self.spec.scale
+        out = []
+        for y in np.linspace(-0.50, -0.06, 12):
+            for x in np.linspace(-0.15, 0.15, 11) * s:
+                centre = np.copysign(0.09 * s, x) if abs(x) > 0.09 * s else x
+                lift = np.sqrt((0.11 * s) ** 2 - (x - centre) ** 2)
+                normal = np.array([x - centre, 0.0, lift]) / (0.11 * s)
+                out.append((self.bed_xy[0] + x, self.bed_xy[1] + y, self.bed_top + 0.11 * s + lift, *normal))
+        return np.array(out)
+
+    def radii(self) -> np.ndarray:
+        """(2, 3) capsule radii of upper arm, forearm, hand, left then right [m]."""
+        return np.tile(np.array(self.spec.radii) * self.spec.scale, (2, 1))
+
+    def joint_angles(self) -> dict[str, np.ndarray]:
+        """Side -> (4,) angles in the order of `ARM_AXES` [rad]."""
+        return {
+            side: np.array([s[0] for s in self.client.getJointStates(self.body, self.joints[side])]) for side in SIDES
+        }
+
+    def _trunk_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> int:
+        c = self.client
+        middle, length, turn = _along(a, b)
+        shape = c.createCollisionShape(c.GEOM_CAPSULE, radius=radius, height=length)
+        # maximal coordinates: a plain rigid body, whose cloth contacts cost half of a multibody's
+        body = c.createMultiBody(
+            0,
+            shape,
+            basePosition=middle.tolist(),
+            useMaximalCoordinates=1,
+            baseOrientation=c.getQuaternionFromEuler(turn),
+        )
+        c.changeDynamics(body, -1, lateralFriction=0.5)
+        return body
+
+    def _load(self) -> int:
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "person.urdf"
+            path.write_text(ET.tostring(self._urdf(), encoding="unicode"))
+            return self.client.loadURDF(str(path), useFixedBase=True)
+
+    def _urdf(self) -> ET.Element:
+        spec, s = self.spec, self.spec.scale
+        robot = ET.Element("robot", name="person")
+        _link(robot, "trunk", spec.mass * (1 - 2 * ARM_SHARE))
+        share = np.array([0.54, 0.32, 0.14]) * spec.mass * ARM_SHARE  # upper arm, forearm, hand (Winter)
+        for side in SIDES:
+            sign = -1.0 if side == "left" else 1.0
+            # the arm's own frame: y along the arm, x away from the body (mirrored on the left by the joint axes)
+            axes = {"abduction": (0, 0, -sign), "elevation": (1, 0, 0), "rotation": (0, sign, 0), "flexion": (1, 0, 0)}
+            parent, offset = "trunk", self.shoulders[side]
+            lengths = np.array(spec.lengths) * s
+            for name, mass, length, radius in (
+                ("abduction", 0.02, 0, 0),
+                ("elevation", 0.02, 0, 0),
+                ("rotation", share[0], lengths[0], spec.radii[0] * s),
+                ("flexion", share[1], lengths[1], spec.radii[1] * s),
+            ):
+                link = _link(robot, f"{side}_{name}", mass, length)
+                if length:
+                    _capsule(link, (0, 0, 0), (0, length, 0), radius)
+                _joint(robot, f"{side}_{name}", parent, f"{side}_{name}", offset, axes[name], _LIMITS[name])
+                parent, offset = f"{side}_{name}", np.array([0.0, length, 0.0])
+            hand = _link(robot, f"{side}_hand", share[2], lengths[2])
+            _capsule(hand, (0, 0, 0), (0, lengths[2], 0), spec.radii[2] * s)
+            _joint(robot, f"{side}_wrist", parent, f"{side}_hand", offset)
+        return robot
+
+
+def _link(robot: ET.Element, name: str, mass: float, length: float = 0.0) -> ET.Element:
+    link = ET.SubElement(robot, "link", name=name)
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=f"0 {length / 2} 0")
+    ET.SubElement(inertial, "mass", value=f"{mass}")
+    # at least a small ball's inertia: near-massless links of a chain make the solver stiff
+    across, along = max(mass * length**2 / 12, 5e-4), max(mass * 0.04**2 / 2, 3e-4)
+    ET.SubElement(inertial, "inertia", ixx=f"{across}", iyy=f"{along}", izz=f"{across}", ixy="0", ixz="0", iyz="0")
+    return link
+
+
+def _along(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, float, list[float]]:
+    """Middle, length and roll-pitch-yaw that turn a capsule along z into the one from a to b."""
+    d = b - a
+    length = float(np.linalg.norm(d))
+    return (a + b) / 2, length, [0.0, float(np.arccos(d[2] / length)), float(np.arctan2(d[1], d[0]))]
+
+
+def _capsule(link: ET.Element, a: Any, b: Any, radius: float) -> None:
+    middle, length, turn = _along(np.asarray(a, float), np.asarray(b, float))
+    for kind in ("collision", "visual"):
+        element = ET.SubElement(link, kind)
+        ET.SubElement(element, "origin", xyz=" ".join(map(str, middle)), rpy=" ".join(map(str, turn)))
+        ET.SubElement(ET.SubElement(element, "geometry"), "capsule", radius=f"{radius}", length=f"{length}")
+
+
+def _joint(
+    robot: ET.Element,
+    name: str,
+    parent: str,
+    child: str,
+    offset: Any,
+    axis: tuple[float, ...] | None = None,
+    limits: tuple[float, float] | None = None,
+) -> None:
+    joint = ET.SubElement(robot, "joint", name=name, type="revolute" if axis else "fixed")
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=child)
+    ET.SubElement(joint, "origin", xyz=" ".join(map(str, offset)))
+    if axis and limits:
+        ET.SubElement(joint, "axis", xyz=" ".join(map(str, axis)))
+        ET.SubElement(joint, "limit", lower=f"{limits[0]}", upper=f"{limits[1]}", effort="100", velocity="10")

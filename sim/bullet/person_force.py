@@ -1,0 +1,75 @@
+"""The force of the gown on the person, by balance, because PyBullet's cloth contacts are no reliable newtons.
+
+What carries the cloth is known exactly: m (a - g) = hands + hook + (bed and person).  The hands and the hook are
+measured (`handle.py`), the acceleration of the centre of mass comes from the vertices, so the remaining force is
+what bed and person give (FACTS: within 10-15 %).  It is shared out by how many vertices touch each part.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..scene.person_spec import trunk_capsules
+from .handle import GRAVITY
+from .person import PERSON_PARTS, Person
+
+TOUCH = 0.012  # a vertex this near to a surface touches it: twice the collision margin [m]
+
+
+class ForceBalance:
+    """Shares the supporting force of the cloth among the parts of the person.
+
+    Args:
+        person: the body.
+        mass: of the cloth [kg].
+        bed_top: height of the mattress [m].
+    """
+
+    def __init__(self, person: Person, mass: float, bed_top: float) -> None:
+        self.person, self.mass, self.bed_top = person, mass, bed_top
+        self._centres: list[tuple[float, np.ndarray]] = []  # time, centre of mass
+        spec = person.spec
+        self._trunk = trunk_capsules(spec, person.bed_top, person.bed_xy)
+
+    def parts(
+        self, time: float, vertices: np.ndarray, held: np.ndarray, arm_loads: dict[int, np.ndarray]
+    ) -> np.ndarray:
+        """(k,) force on each of `PERSON_PARTS` [N].
+
+        Args:
+            time: world clock [s].
+            vertices: (V, 3) of the cloth [m].
+            held: (3,) force that hands and hook exert on the cloth [N].
+            arm_loads: index of a part -> (3,) force that a hand exerts on it directly [N].
+        """
+        if not self._centres or time > self._centres[-1][0]:
+            self._centres = [*self._centres[-2:], (time, vertices.mean(axis=0))]
+        rest = self.mass * (self._acceleration() + (0.0, 0.0, GRAVITY)) - held
+        counts, on_bed = self._touching(vertices)
+        total = counts.sum() + on_bed
+        force = np.linalg.norm(rest) * counts / total if total else np.zeros(len(PERSON_PARTS))
+        for part, load in arm_loads.items():
+            force[part] += np.linalg.norm(load)
+        return force
+
+    def _acceleration(self) -> np.ndarray:
+        if len(self._centres) < 3:
+            return np.zeros(3)
+        (t0, a), (t1, b), (t2, c) = self._centres
+        return ((c - b) / (t2 - t1) - (b - a) / (t1 - t0)) / (0.5 * (t2 - t0))
+
+    def _touching(self, vertices: np.ndarray) -> tuple[np.ndarray, int]:
+        """How many vertices touch each part, and how many the bed."""
+        counts = np.zeros(len(PERSON_PARTS))
+        counts[0] = sum(int((_gap(vertices, a, b) < radius + TOUCH).sum()) for a, b, radius in self._trunk)
+        arms, radii = self.person.arms(), self.person.radii()
+        for arm in range(2):
+            for k in range(3):
+                counts[1 + 3 * arm + k] = (_gap(vertices, arms[arm, k], arms[arm, k + 1]) < radii[arm, k] + TOUCH).sum()
+        return counts, int((vertices[:, 2] < self.bed_top + TOUCH).sum())
+
+
+def _gap(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    d = b - a
+    f = np.clip((points - a) @ d / (d @ d), 0.0, 1.0)
+    return np.linalg.norm(points - (a + f[:, None] * d), axis=1)

@@ -1,0 +1,189 @@
+"""Starting a run at a later stage, as the paper's independent trials do: somebody lays the gown by hand first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ..scene.gown import GownMesh
+from ..world import SIDES
+from .cloth import Cloth
+from .grip import Grip
+from .handle import Handle
+from .person import Person
+
+LAID_COLLAR_Y = 0.12  # where the neckline comes to lie, just beyond the fingertips [m]
+LAID_CENTRE_X = -0.03  # [m]
+_HANG_Y, _HANG_Z = 1.25, 1.28  # where the gown is held before it is laid [m]
+_PATH = ((_HANG_Y - 0.35, 1.20), (LAID_COLLAR_Y + 0.25, 1.02), (LAID_COLLAR_Y - 0.05, 0.88))  # neckline's y, z [m]
+_SPEED = 0.25  # [m/s]
+_PINCHED, _INSIDE = 0.03, 0.008  # fingers that took a corner stood so far apart and had it so deep between them [m]
+_FORCE = 30.0  # of the fingers [N]
+# Arms that hold a neckline before the chest: hands 0.62 m ahead, 0.74 m apart and 1.36 m high [rad]
+_ARM = np.array((1.67, -0.10, -2.02, 2.60, 0.40, 0.18, -0.30))
+HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
+HOLDING_AT = (2.7, -0.9, np.pi / 2)  # of the base, back from the rail [m, m, rad]
+RAISED = (0.85, 0.58, -1.3, 0.25)  # joints of an arm that was lifted, dressed and let go of [rad]
+_OVER_LEGS = 0.22  # height above the mattress at which a gown hung over raised arms turns to lie on the legs [m]
+_DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is drawn to: from here ... to here,
+# from the shoulder joint, x outwards [m]
+
+
+def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
+    """Hang the gown by its collar corners over the foot of the bed and lay it on the person's legs.
+
+    The outside faces up, the neckline lies across the body just beyond the fingertips of arms at rest, as
+    after stage B.  The gown is carried by two handles, under the same physics as in a run.
+
+    Args:
+        cloth: the gown, held by nothing.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+    """
+    mesh = cloth.mesh
+    cloth.place(mesh.vertices + (LAID_CENTRE_X, _HANG_Y, _HANG_Z))
+    vertices = cloth.vertices()
+    poses, pins = [], []
+    for handle, corner in zip(handles, mesh.corners, strict=True):
+        pose = np.eye(4)
+        pose[:3, 3] = vertices[corner]
+        near = np.argsort(np.linalg.norm(vertices - vertices[corner], axis=1))[:3]
+        handle.reset(pose)
+        pins.append(cloth.pin(near, handle.body, handle.link))
+        poses.append(pose)
+
+    def carry(y: float, z: float, duration: float) -> None:
+        starts = [pose[1:3, 3].copy() for pose in poses]
+        count = round(duration / time_step)
+        for k in range(1, count + 1):
+            for handle, pose, start in zip(handles, poses, starts, strict=True):
+                pose[1:3, 3] = start + (np.array((y, z)) - start) * k / count
+                handle.follow(pose)
+            step()
+
+    carry(_HANG_Y, _HANG_Z, 1.0)
+    y0 = _HANG_Y
+    for y, z in _PATH:
+        carry(y, z, abs(y - y0) / _SPEED + 0.1)
+        y0 = y
+    for group in pins:
+        cloth.unpin(group)
+    for _ in range(round(0.8 / time_step)):
+        step()
+
+
+def put_on_by_hand(
+    cloth: Cloth,
+    person: Person,
+    handles: list[Handle],
+    step: Callable[[], None],
+    time_step: float,
+    drawn: Sequence[float],
+    raised: tuple[float, float, float, float] = RAISED,
+) -> None:
+    """Raise the person's arms, hang the sleeves over the hands and draw both up by their straps, some less than others.
+
+    The arms stay up and spread, as after stage C; how far up them the sleeves come to rest once the straps are let go
+    of is up to the physics.
+
+    Args:
+        cloth: the gown, held by nothing.
+        person: the manikin.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+        drawn: how far the left and the right strap are drawn, 0 for beyond the shoulder to 1 for well before it.
+        raised: joints of both arms [rad].
+    """
+    mesh = cloth.mesh
+    for side in SIDES:
+        person.bend_arm(side, raised)
+    arms = person.arms()
+    cloth.place(_over_hands(mesh, arms, person.bed_top + _OVER_LEGS))
+    vertices = cloth.vertices()
+    pins, starts, ends = [], [], []
+    for handle, side, arm, share in zip(handles, SIDES, arms, drawn, strict=True):
+        loop = mesh.vertices[mesh.loops[f"armhole_{side}"]]
+        top = np.array((loop[:, 0].mean(), 0.0, loop[:, 2].max()))
+        near = np.argsort(np.linalg.norm(mesh.vertices - top, axis=1))[:4]
+        pose = np.eye(4)
+        pose[:3, 3] = vertices[near].mean(axis=0)
+        handle.reset(pose)
+        pins.append(cloth.pin(near, handle.body, handle.link))
+        starts.append(pose[:3, 3].copy())
+        end = _DRAWN[0] + share * (_DRAWN[1] - _DRAWN[0])
+        ends.append(arm[0] + end * (np.sign(arm[0, 0] - person.bed_xy[0]), 1, 1))
+    count = round(np.linalg.norm(ends[0] - starts[0]) / _SPEED / time_step)
+    for k in range(count + round(0.5 / time_step)):
+        for handle, start, end in zip(handles, starts, ends, strict=True):
+            pose = np.eye(4)
+            pose[:3, 3] = start + (end - start) * min(1.0, (k + 1) / count)
+            handle.follow(pose)
+        if k % 5 == 0:
+            person.resist()
+        step()
+    for group in pins:
+        cloth.unpin(group)
+    for k in range(round(1.0 / time_step)):
+        if k % 5 == 0:
+            person.resist()
+        step()
+
+
+def _over_hands(mesh: GownMesh, arms: np.ndarray, over_legs: float) -> np.ndarray:
+    """(V, 3) the gown hung upright before the raised hands, which point into its armholes, its lower part lying."""
+    holes = [mesh.vertices[mesh.loops[f"armhole_{side}"]].mean(axis=0) for side in SIDES]
+    ways = arms[:, 3] - arms[:, 1]
+    out = ways.mean(axis=0) * (0, 1, 1)
+    out /= np.linalg.norm(out)  # where the gown's outside faces
+    down = np.array((0.0, out[2], -out[1]))
+    spot = np.mean(
+        [
+            arm[2] + way * (abs(hole[0]) - abs(arm[2, 0] - arms[:, 2, 0].mean())) / abs(way[0])
+            for arm, way, hole in zip(arms, ways, holes, strict=True)
+        ],
+        axis=0,
+    )
+    top = spot - down * -holes[0][2]
+    straight = (top[2] - over_legs) / -down[2]  # length of the part that hangs
+    depth = -mesh.vertices[:, 2]
+    placed = top + np.minimum(depth, straight)[:, None] * down + np.outer(np.maximum(depth - straight, 0), (0, 1, 0))
+    placed = placed + np.outer(mesh.vertices[:, 0], (1, 0, 0)) + np.outer(mesh.vertices[:, 1], out)
+    for way in ways:  # sleeves lean along the arms
+        mine = np.sign(mesh.vertices[:, 0]) == np.sign(way[0])
+        placed[mine, 0] += mesh.vertices[mine, 1] * way[0] / (way @ out)
+    return placed
+
+
+def hold_in_hands(
+    cloth: Cloth, grips: list[Grip], hands: np.ndarray, step: Callable[[], None], time_step: float
+) -> None:
+    """Hang the gown by its collar corners between the robot's closed fingers, outside to the robot, as after stage A.
+
+    Args:
+        cloth: the gown, held by nothing.
+        grips: of the left and the right hand.
+        hands: (2, 4, 4) their poses in the map.
+        step: passes one physics step.
+        time_step: its length [s].
+    """
+    mesh = cloth.mesh
+    left, right = hands[0, :3, 3], hands[1, :3, 3]  # the robot's left hand holds the wearer's right corner
+    across = (left - right) / np.linalg.norm(left - right)
+    outside = np.cross((0.0, 0.0, 1.0), across)  # towards the robot
+    span = np.ptp(mesh.vertices[list(mesh.corners), 0])
+    local = mesh.vertices * (np.linalg.norm(left - right) / span, 1.0, 1.0)
+    turn = np.column_stack((across, outside, (0.0, 0.0, 1.0)))
+    cloth.place(local @ turn.T + (left + right) / 2 - _INSIDE * (hands[0, :3, 2] + hands[1, :3, 2]) / 2)
+    vertices = cloth.vertices()
+    for grip, pose in zip(grips, hands, strict=True):
+        grip.on_command(0.0, _PINCHED)
+        grip.take_cloth(vertices, pose)
+    for _ in range(round(1.5 / time_step)):
+        for grip, pose in zip(grips, hands, strict=True):
+            grip.handle.follow(pose)
+        step()
+    for grip in grips * 20:  # readings are smoothed
+        grip.watch(cloth.vertices(), _FORCE)

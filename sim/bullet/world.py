@@ -1,0 +1,464 @@
+"""The simulated room: PyBullet soft-body gown, passive person, robot, cameras, behind the World contract.
+
+Two PyBullet clients run side by side.  The room (deformable) holds gown, bed and person; the robot has a rigid
+client of its own, because a deformable world makes each of its steps several times dearer.  They meet at the
+hands: a `Handle` in the room follows each hand, holds what the fingers took, and its load is put on the robot's
+wrist.  Apart from what is between the fingers the robot's links do not push the cloth or the person; the guard
+and the planner keep them away from the person (an assumption named in docs/assumptions.md).
+
+Nothing outside `sim` may read `truth_frame`: skills see only `observe` and `look`.
+"""
+
+from __future__ import annotations
+
+import time as wall
+from collections import defaultdict
+from typing import Any
+
+import numpy as np
+
+from ..bullet_client import direct_client
+from ..effects.cloth.carriers import ClothPatch
+from ..effects.cloth.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
+from ..errors import CaretreeError
+from ..record.recorder import FRAME_PERIOD, Recorder
+from ..record.truth import TruthFrame, TruthStatic
+from ..render.camera import CAMERA_VIEWS, camera_intrinsics
+from ..render.live_view import SIZE, LiveView
+from ..robot.body import RobotBody
+from ..robot.kinematics import default_kinematics
+from ..scene.person_spec import trunk_capsules
+from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
+from ..scripted.clock import SteppedClock
+from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
+from . import units
+from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
+from .cloth import GRAVITY, Cloth
+from .grip import CLOSED, REOPENED, Grip
+from .handle import Handle
+from .hook import Hook
+from .person import PERSON_PARTS, Person
+from .person_force import ForceBalance
+from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
+
+TIME_STEP = 0.0025  # of the room [s]
+ROBOT_STEPS = 2  # room steps per robot step
+CONTROL_STEPS = 4  # room steps between two looks at the fingers
+SETTLE = 2.0  # the gown hangs still before the clock starts [s]
+PICTURE_PERIOD = 2 * FRAME_PERIOD  # of the video [s]
+WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
+SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
+SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
+
+
+class BulletWorld(World):
+    """One seeded run of the dressing scene.
+
+    Args:
+        seed: of everything that varies.
+        gown: name of the gown, or path of a gown file; drawn from the seed when omitted.
+        person: name of the person; drawn from the seed when omitted.
+        model: model file of the gap workflow whose effects act on the gown.
+        view: serve a live 3D view to the browser; its address is printed.
+
+    Attributes:
+        scene: what was drawn; truth, not for skills.
+        kinematics: the robot's own model, which the planner and the guard may use.
+        timing: wall time by activity [s].
+
+    Raises:
+        CaretreeError: an unknown gown or person, a negative seed, an unusable model or gown file, a gown too stiff
+            for the time step.
+    """
+
+    def __init__(
+        self,
+        *,
+        seed: int = 0,
+        gown: str | None = None,
+        person: str | None = None,
+        model: str | None = None,
+        view: bool = False,
+    ) -> None:
+        self._effects = None if model is None else gown_effects(model)
+        self._patch: ClothPatch | None = None
+        self.scene = draw_scene(seed, gown, person)
+        if self.scene.gown.air_drag > 0:
+            self._effects = with_air(self._effects, self.scene.gown.air_drag)
+        self.room = room_map()
+        self.time = SteppedClock(self._advance_to)
+        self.clock = self.time
+        self.kinematics = default_kinematics()
+        self.timing: dict[str, float] = defaultdict(float)
+        self._noise = np.random.default_rng([seed, 2])
+        self._recorder: Recorder | None = None
+        self._steps = 0
+        self._next_frame = self._next_picture = 0.0
+        self._still_since = 0.0
+        self._asleep = False
+        self._moving_person: list[float] = []
+        self._client: Any = direct_client()
+        self._build()
+        self._robot_client: Any = direct_client()
+        self._robot = self._stand(self.room.waypoints["start"])
+        self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
+        self._grips = [
+            Grip(self._client, side, self._handles[n], self._cloth, self._person) for n, side in enumerate(SIDES)
+        ]
+        self._force_limit = np.full(2, 30.0)
+        self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
+        self._balance = ForceBalance(self._person, self.scene.gown.mass, BED_TOP)
+        self._view = LiveView() if view else None
+        if self._view:
+            print(f"live view: {self._view.url}", flush=True)
+        self._settle(SETTLE)
+
+    def _build(self) -> None:
+        c, scene = self._client, self.scene
+        c.resetSimulation(c.RESET_USE_DEFORMABLE_WORLD)
+        c.setGravity(0, 0, units.force(-GRAVITY))
+        # resetSimulation keeps an old numSubSteps; 10 iterations instead of 50 change nothing that was measured
+        c.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
+        c.setTimeStep(units.time(TIME_STEP))
+        turn = np.array(
+            (
+                (np.cos(scene.hang_yaw), -np.sin(scene.hang_yaw), 0.0),
+                (np.sin(scene.hang_yaw), np.cos(scene.hang_yaw), 0.0),
+                (0.0, 0.0, 1.0),
+            )
+        )
+        hung = scene.mesh.vertices @ turn.T
+        hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
+        start, mesh = hung - hung[scene.hang_vertex] + hook, scene.mesh
+        if self._effects is not None:
+            mesh = recalibrated(mesh, self._effects)
+            trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy)])
+            self._patch = gown_patch(self._effects, mesh, start, GRAVITY, {scene.hang_vertex}, trunk, units.PER_SECOND)
+            mesh = loaded(mesh, self._patch)
+            c.setGravity(*(units.force(g) for g in self._patch.settings.gravity))
+        self._cloth = Cloth(c, mesh, start, TIME_STEP)
+        if self._patch is not None:
+            self._patch.attach(c, self._cloth.body)
+        size = (*BED_HALF, BED_THICKNESS / 2)
+        bed = c.createMultiBody(
+            0,
+            c.createCollisionShape(c.GEOM_BOX, halfExtents=size),
+            useMaximalCoordinates=1,
+            basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2),
+        )
+        c.changeDynamics(bed, -1, lateralFriction=1.0)
+        floor = c.createMultiBody(
+            0,
+            c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)),
+            useMaximalCoordinates=1,
+            basePosition=(0, 0, -0.05),
+        )
+        c.changeDynamics(floor, -1, lateralFriction=0.5)
+        self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
+        self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
+        self._vertices = self._cloth.vertices()
+
+    def _stand(self, pose_base_in_map: tuple[float, float, float], **posture: Any) -> RobotBody:
+        """Put the robot somewhere, arms ready unless `posture` says otherwise."""
+        self._robot_client.resetSimulation()
+        self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
+        self._robot_client.setGravity(0, 0, -GRAVITY)
+        return RobotBody(
+            self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.time.time, **posture
+        )
+
+    def prepare_stage(self, stage: str) -> None:
+        """Start at a later stage, the earlier ones done by hand.
+
+        B: the robot's hands hold the gown; C: it lies on the bed; D: both sleeves are on.  Of a span of stages
+        ("C-D"), the first counts; before A there is nothing to do.
+
+        Raises:
+            CaretreeError: another stage, or the run has begun.
+        """
+        first = stage.partition("-")[0]
+        if first not in ("A", "B", "C", "D"):
+            raise CaretreeError(f"stage {stage!r} cannot be started on its own; A, B, C and D can")
+        if self._steps:
+            raise CaretreeError("a stage can only be prepared before the run begins")
+        if first == "A":
+            return
+        self._hook.release()
+        if self._patch is not None:  # carriers cannot jump with the cloth
+            self._patch.detach()
+        if first == "B":
+            self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
+            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+            hold_in_hands(self._cloth, self._grips, self._hands, self._client.stepSimulation, TIME_STEP)
+        else:
+            if first == "C":
+                lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
+            else:
+                put_on_by_hand(
+                    self._cloth,
+                    self._person,
+                    self._handles,
+                    self._client.stepSimulation,
+                    TIME_STEP,
+                    np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist(),
+                )
+            self._robot = self._stand(self.room.waypoints["bed_right" if first == "C" else "bed_left"])
+            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._vertices = self._cloth.vertices()
+        if self._patch is not None:
+            self._patch.attach(self._client, self._cloth.body, self._vertices)
+
+    # -- senses --------------------------------------------------------------------------------------------
+
+    def observe(self) -> Observation:
+        """Joint sensors exact, wrist wrenches with noise."""
+        reading = self._robot.read()
+        wrench = np.zeros((2, 6))
+        for n in range(2):
+            wrench[n, :3] = self._grips[n].load
+        wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
+        opening, force = reading.gripper_opening.copy(), reading.gripper_force.copy()
+        for n, grip in enumerate(self._grips):
+            if grip.kind == "arm":
+                force[n] = self._force_limit[n]
+        return Observation(
+            time=self.clock.now(),
+            arm_positions=reading.arm_positions,
+            arm_velocities=reading.arm_velocities,
+            arm_efforts=reading.arm_efforts,
+            head_pan=reading.head_pan,
+            pose_base_in_map=reading.pose_base_in_map,
+            twist_base=reading.twist_base,
+            gripper_opening=opening,
+            gripper_force=force,
+            wrench_hand_in_map=wrench,
+            pose_hand_in_map=np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES]),
+        )
+
+    def look(self, camera: str) -> Frame:
+        """Draw what a camera sees now, with the sensor's noise.
+
+        Raises:
+            SensorLost: there is no such camera.
+        """
+        if camera not in CAMERAS:
+            raise SensorLost(f"there is no camera '{camera}'; there are {', '.join(CAMERAS)}")
+        begin = wall.perf_counter()
+        reading = self._robot.read()
+        pose = self.kinematics.pose_camera_in_map(
+            camera, reading.pose_base_in_map, reading.arm_positions, reading.head_pan
+        )
+        renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration(reading))
+        rgb, depth = renderer.photograph(camera, pose, self._noise)
+        self.timing["cameras"] += wall.perf_counter() - begin
+        assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]
+        return Frame(
+            camera=camera,
+            stamp=self.clock.now(),
+            rgb=rgb,
+            depth=depth,
+            intrinsics=camera_intrinsics(camera),
+            pose_camera_in_map=pose,
+        )
+
+    # -- commands ------------------------------------------------------------------------------------------
+
+    def send(self, command: Command) -> Command:
+        """Start a command; fingers stop at what is between them."""
+        if not isinstance(command, GripperOpening):
+            return self._robot.command(command)
+        n = SIDES.index(command.side)
+        grip = self._grips[n]
+        self._force_limit[n] = command.force_limit
+        grip.on_command(command.opening, float(self._robot.read().gripper_opening[n]))
+        if grip.kind == "arm" and command.opening > grip.thickness + 0.004:
+            grip.release()
+        return self._robot.command(self._blocked(command, grip))
+
+    def stop(self) -> None:
+        """Brake arms and base; the grippers keep their opening."""
+        self._robot.stop()
+
+    def close(self) -> None:
+        """End both physics clients."""
+        if self._view:
+            self._view.close()
+        self._client.disconnect()
+        self._robot_client.disconnect()
+
+    def _blocked(self, command: GripperOpening, grip: Grip) -> GripperOpening:
+        if grip.kind != "arm" or command.opening >= grip.thickness:
+            return command
+        return GripperOpening(side=command.side, opening=grip.thickness, force_limit=command.force_limit)
+
+    # -- time ----------------------------------------------------------------------------------------------
+
+    def _advance_to(self, time: float) -> None:
+        begin = wall.perf_counter()
+        recorded = self.timing["record"]
+        while self.time.time < time - 1e-9:
+            self._step()
+            if self.time.time >= self._next_frame - 1e-9:
+                self._record()
+        self.timing["physics"] += wall.perf_counter() - begin - (self.timing["record"] - recorded)
+
+    def _step(self) -> None:
+        if self._steps % ROBOT_STEPS == 0:
+            for n, side in enumerate(SIDES):
+                if self._grips[n].kind != "nothing":
+                    self._robot.apply_hand_force(side, self._grips[n].load)
+            self._robot.update(self.time.time)
+            self._robot_client.stepSimulation()
+            reading = self._robot.read()
+            self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+        if self._steps % CONTROL_STEPS == 0:
+            self._fingers()
+            self._rest()
+            if not self._asleep:
+                self._person.resist()
+        if not self._asleep:
+            self._step_room()
+        self._steps += 1
+        self.time.time = self._steps * TIME_STEP
+
+    def _step_room(self) -> None:
+        held = [grip.kind != "nothing" for grip in self._grips]
+        for n in np.flatnonzero(held):
+            self._handles[n].follow(self._hands[n])
+        self._hook.before_step()
+        self._move_person()
+        self._push_cloth()
+        self._client.stepSimulation()
+        for n in np.flatnonzero(held):
+            if self._grips[n].kind == "arm":
+                self._handles[n].feel()
+
+    def _push_cloth(self) -> None:
+        """Let the effects of a model file act."""
+        if self._patch is None:
+            return
+        self._patch.apply(self.time.time)
+        if self._patch.release_t is not None and self.time.time >= self._patch.release_t:
+            holding = [grip for grip in self._grips if grip.kind == "cloth"]
+            if holding:  # it slips once
+                holding[0].release()
+                self._patch.release_t = None
+
+    def _fingers(self) -> None:
+        """Let closed fingers take, opened fingers release, loads be felt."""
+        reading = self._robot.read()
+        if any(grip.kind != "nothing" for grip in self._grips):
+            vertices = self._cloth.vertices()
+            for grip, limit in zip(self._grips, self._force_limit, strict=True):
+                grip.watch(vertices, float(limit))
+            self._hook.watch(CONTROL_STEPS * TIME_STEP, any(grip.kind == "cloth" for grip in self._grips), vertices)
+        for n, grip in enumerate(self._grips):
+            opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
+            if grip.kind == "cloth" and opening > REOPENED:
+                grip.release()
+            elif grip.kind == "nothing" and grip.catch_arm(self._hands[n], opening, force):
+                self._robot.command(GripperOpening(side=SIDES[n], opening=grip.thickness, force_limit=force))
+                self._wake()
+            elif grip.kind == "nothing" and opening < CLOSED:
+                grip.take_cloth(self._cloth.vertices(), self._hands[n])
+                if grip.kind == "cloth":
+                    self._wake()
+
+    def _rest(self) -> None:
+        """Let a gown that lies still and that nobody holds rest, as rigid bodies are put to sleep."""
+        if self._asleep or self._steps % int(SLEEP_TIME / TIME_STEP):
+            return
+        vertices = self._cloth.vertices()
+        moved = float(np.abs(vertices - self._vertices).max())
+        self._vertices = vertices
+        busy = self._moving_person or any(grip.kind != "nothing" for grip in self._grips)
+        self._asleep = not busy and moved < SLEEP_MOVE and self._steps > 0
+
+    def _wake(self) -> None:
+        self._asleep = False
+
+    def _settle(self, duration: float) -> None:
+        """Pass room time before the run: the gown comes to rest."""
+        for _ in range(round(duration / TIME_STEP)):
+            self._hook.before_step()
+            self._push_cloth()
+            self._client.stepSimulation()
+        self._vertices = self._cloth.vertices()
+
+    # -- truth: for the recorder only ----------------------------------------------------------------------
+
+    def attach_recorder(self, recorder: Recorder) -> None:
+        """Give every frame from now on to `recorder`."""
+        mesh = self.scene.mesh
+        recorder.begin(
+            TruthStatic(
+                faces=mesh.faces,
+                rest_vertices=mesh.vertices,
+                loops=mesh.loops,
+                arm_radii=self._person.radii(),
+                person_parts=PERSON_PARTS,
+            )
+        )
+        self._recorder = recorder
+
+    def truth_frame(self) -> TruthFrame:
+        """Everything that is known about this instant."""
+        vertices = self._vertices_now()
+        reading = self._robot.read()
+        closed = np.array([grip.kind == "cloth" for grip in self._grips])
+        loads = np.stack([self._grips[n].load if closed[n] else np.zeros(3) for n in range(2)])
+        on_arm = {grip.part: self._grips[n].load for n, grip in enumerate(self._grips) if grip.part is not None}
+        force = self._balance.parts(self.time.time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
+        poses = np.stack([_pose7(self._robot.pose_hand_in_map(side, reading)) for side in SIDES])
+        return TruthFrame(
+            t=self.time.time,
+            vertices=vertices,
+            arms=self._person.arms(),
+            torso_front=self._person.torso_front(),
+            gripper_pose=poses,
+            gripper_closed=closed,
+            gripper_load=loads,
+            person_force=force,
+        )
+
+    def _record(self) -> None:
+        begin = wall.perf_counter()
+        self._next_frame += FRAME_PERIOD
+        if self._recorder is not None:
+            self._recorder.frame(self.truth_frame())
+            if self.time.time >= self._next_picture - 1e-9:
+                self._next_picture += PICTURE_PERIOD
+                renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
+                self._recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
+        if self._view:
+            renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
+            self._view.serve(lambda pose: renderer.render(pose, SIZE).rgb)
+        self.timing["record"] += wall.perf_counter() - begin
+
+    def _vertices_now(self) -> np.ndarray:
+        return self._vertices if self._asleep else self._cloth.vertices()
+
+    # -- faults that need physics --------------------------------------------------------------------------
+
+    def fault_grip_slip(self, side: str) -> None:
+        """What a hand holds slides out of it."""
+        self._grips[SIDES.index(side)].release()  # pyright: ignore[reportArgumentType] a Side by contract
+
+    def fault_move_person(self) -> None:
+        """The person stirs: both arms swing outwards by about 15 degrees within 0.6 s."""
+        self._wake()
+        self._moving_person = [self.time.time + 0.6]
+
+    def _move_person(self) -> None:
+        if self._moving_person:
+            stirring = self.time.time < self._moving_person[0]
+            self._person.swing(0.45 if stirring else 0.0)
+            if not stirring:
+                self._moving_person = []
+
+
+def _pose7(pose: np.ndarray) -> np.ndarray:
+    from scipy.spatial.transform import Rotation
+
+    return np.concatenate([pose[:3, 3], Rotation.from_matrix(pose[:3, :3]).as_quat()])

@@ -1,0 +1,47 @@
+"""Play in a gear: after each reversal the motor moves through a gap while the load is not carried."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..effect import JointEffect, JointMotion, Parameter, Shape, Spread
+
+
+def distance_since_reversal(q: np.ndarray, dead: float) -> np.ndarray:
+    """How far the joint has moved since it last turned, (T,); turns smaller than `dead` do not count."""
+    out = np.full(len(q), np.inf)  # before the first reversal the gap is taken as closed
+    turn, best, sign = q[0], q[0], 0.0
+    seen = False
+    for i, x in enumerate(q):
+        if sign == 0.0:
+            if abs(x - turn) > dead:
+                sign, best = np.sign(x - turn), x
+        elif sign * (x - best) >= 0:
+            best = x
+        elif abs(x - best) > dead:
+            turn, sign, best, seen = best, -sign, x, True
+        if seen:
+            out[i] = abs(x - turn)
+    return out
+
+
+class Backlash(JointEffect):
+    """Load `-fraction * load_model` while the joint is within `width` of its last reversal."""
+
+    name = "backlash"
+    linear = (Parameter(name="fraction", unit="1", lower=0.0, upper=1.5),)
+    shape = (Parameter(name="width", unit="x", lower=0.0),)
+    memoryless = False
+    sentence = "play: the load is not carried just after a reversal"
+
+    def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:
+        """Minus the rigid load inside the gap, (T, 1)."""
+        travelled = distance_since_reversal(motion.q, 1e-4 * max(float(np.ptp(motion.q)), 1e-9))
+        width = max(shape["width"], 1e-12)
+        inside = 0.5 * (1.0 - np.tanh((travelled - width) / (0.1 * width)))
+        return -(motion.load * inside)[:, None]
+
+    def shapes(self, spread: Spread) -> list[Shape]:
+        """Gaps from 0.2 % to 6 % of the range of motion."""
+        reach = spread.q[1] - spread.q[0]
+        return [{"width": reach * w} for w in (0.002, 0.005, 0.012, 0.025, 0.06)]

@@ -1,0 +1,198 @@
+"""Writes the record of a run: truth frames from the world, trace events from the runner, pictures for the video."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import RecordError
+from .folder_claim import FolderClaim
+from .record import (
+    ERRORS_FILE,
+    REPORT_FILE,
+    RUN_FILE,
+    SPOOL_FOLDER,
+    TRACE_FILE,
+    TRUTH_FILE,
+    VIDEO_FILE,
+    RunResult,
+    peak_memory,
+    versions,
+    write_run,
+)
+from .spool import Spool, disk_error, write_npz
+from .truth import TruthFrame, TruthStatic
+from .video import VideoWriter
+
+FRAME_PERIOD = 0.08  # [s] of world clock between truth frames: 12.5 a second, DESIGN.md asks for at least 10
+
+
+class Recorder:
+    """The record of one run, safe on disk at every moment.
+
+    The world calls `begin` once and `frame` every `FRAME_PERIOD`; the runner calls `event` and at the end
+    `finish`; whoever renders calls `picture`.  Killed in between, the folder keeps run.json without an
+    outcome, the trace so far and the frames so far.
+
+    Args:
+        directory: created if needed, or the claim on it; given back at the end.
+        task, seed, world: what runs, on which world.
+        parameters: everything else needed to run it again (gown, person, faults, model).
+
+    Raises:
+        RecordError: the folder cannot be written, another run is writing it, or it already holds a finished run.
+    """
+
+    def __init__(
+        self,
+        directory: Path | str | FolderClaim,
+        *,
+        task: str,
+        seed: int,
+        world: str,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        self._claim = directory if isinstance(directory, FolderClaim) else FolderClaim(Path(directory))
+        self.directory = self._claim.directory
+        self._clear_unfinished()
+        self._run: dict[str, Any] = {
+            "task": task,
+            "seed": seed,
+            "world": world,
+            "outcome": None,
+            "reason": None,
+            "stages": [],
+            "parameters": dict(parameters or {}),
+            "versions": versions(),
+        }
+        self._started = time.perf_counter()
+        self._hash = hashlib.sha256()
+        self._spool: Spool | None = None
+        self._video: VideoWriter | None = None
+        self._done = False
+        try:
+            self._trace = (self.directory / TRACE_FILE).open("w", encoding="utf-8", buffering=1)
+        except OSError as error:
+            self._claim.release()
+            raise disk_error(error, f"opening the record in {self.directory}") from error
+        try:
+            write_run(self.directory, self._run)
+        except RecordError:
+            self.close()
+            raise
+
+    def _clear_unfinished(self) -> None:
+        """Make room where a run was cut short."""
+        if not (self.directory / RUN_FILE).exists():
+            return
+        shutil.rmtree(self.directory / SPOOL_FOLDER, ignore_errors=True)
+        for name in (TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE):
+            (self.directory / name).unlink(missing_ok=True)
+
+    def begin(self, static: TruthStatic) -> None:
+        """Say what stays the same, before the first frame.
+
+        Raises:
+            RecordError: said twice, or the disk is full.
+        """
+        if self._spool is not None:
+            raise RecordError("the recorder was begun twice")
+        self._spool = Spool(self.directory / SPOOL_FOLDER, static)
+
+    def frame(self, truth: TruthFrame) -> None:
+        """Append one frame of truth; on disk when this returns.
+
+        Raises:
+            RecordError: `begin` was not called, a shape is wrong, or the disk is full.
+        """
+        if self._spool is None:
+            raise RecordError("a frame came before the recorder was begun")
+        self._spool.append(truth)
+
+    def event(self, event: Mapping[str, Any]) -> None:
+        """Append one line to the trace and to its hash.
+
+        The hash covers the line as written, so `event` must hold nothing that differs between two equal
+        runs (no wall time, no paths).
+
+        Raises:
+            RecordError: the disk is full.
+        """
+        line = json.dumps(event, sort_keys=True, separators=(",", ":")) + "\n"
+        try:
+            self._trace.write(line)
+        except OSError as error:
+            raise disk_error(error, f"writing {self.directory / TRACE_FILE}") from error
+        self._hash.update(line.encode())
+
+    def picture(self, t: float, image: np.ndarray) -> None:
+        """Add one picture to the video, shown at `t` [s] of the world clock.
+
+        image: (H, W, 3) uint8, the same even size every time.
+
+        Raises:
+            RecordError: the size differs or the disk is full.
+        """
+        if self._video is None:
+            self._video = VideoWriter(self.directory / VIDEO_FILE, width=image.shape[1], height=image.shape[0])
+        self._video.add(t, image)
+
+    def finish(self, result: RunResult) -> None:
+        """Write truth.npz and the outcome, and close everything.
+
+        The outcome is written even when the disk is too full for truth.npz; the frames then stay in
+        the spool, and the error is raised afterwards.
+
+        Raises:
+            RecordError: the disk is full, or the run was finished before.
+        """
+        if self._done:
+            raise RecordError("the recorder was finished twice")
+        self._close_files()
+        self._done = True
+        try:
+            self._finish(result)
+        finally:
+            self._claim.release()
+
+    def _finish(self, result: RunResult) -> None:
+        problem: RecordError | None = None
+        began = time.perf_counter()
+        if self._spool is not None and self._spool.frames:
+            try:
+                write_npz(self._spool.folder, self.directory / TRUTH_FILE)
+                shutil.rmtree(self._spool.folder)
+            except RecordError as error:
+                problem = error
+        now = time.perf_counter()
+        self._run.update(
+            result.fields(),
+            wall_time_s=round(now - self._started, 3),
+            trace_hash=result.trace_hash or self._hash.hexdigest(),
+        )
+        self._run["timing"]["record"] = round(self._run["timing"].get("record", 0.0) + now - began, 3)
+        self._run["peak_memory_mb"] = peak_memory()
+        if self._video is not None:
+            self._run["video_start_s"] = self._video.t_start
+        write_run(self.directory, self._run)
+        if problem is not None:
+            raise problem
+
+    def close(self) -> None:
+        """Release files without an outcome; the record stays readable as a run cut short.  May be called twice."""
+        self._close_files()
+        self._claim.release()
+
+    def _close_files(self) -> None:
+        self._trace.close()
+        if self._spool is not None:
+            self._spool.close()
+        if self._video is not None:
+            self._video.close()

@@ -1,0 +1,273 @@
+"""A world of numbers: arms go where they are sent, fingers close, and an hour passes in milliseconds.
+
+It has no cloth and no images of its own.  Tests and task authors script what matters: frames by a function,
+loads and what is between the fingers by attributes, and estimates in the context's `Perception`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..world import (
+    ARM_JOINTS,
+    CAMERAS,
+    SIDES,
+    BaseVelocity,
+    Command,
+    Frame,
+    GripperOpening,
+    HandTwist,
+    JointTrajectory,
+    Observation,
+    RoomMap,
+    SensorLost,
+    Side,
+    World,
+)
+from .clock import SteppedClock
+from .linear_arm import LinearArms
+
+STEP = 0.02  # [s] longest step of the integration
+FINGER_SPEED = 0.1  # [m/s]
+WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
+DEPTH_NOISE = 0.001  # [m]
+STROKE = 0.085  # [m]
+
+
+def scripted_room() -> RoomMap:
+    """A free room of 8 m by 8 m with a bed in the middle."""
+    free = np.ones((80, 80), dtype=bool)
+    free[28:52, 34:46] = False
+    waypoints = {
+        "start": (2.5, -2.5, 1.57),
+        "rail": (2.5, 2.5, 1.57),
+        "bed_right": (1.2, 0.0, 3.14),
+        "bed_left": (-1.2, 0.0, 0.0),
+    }
+    return RoomMap(
+        free=free,
+        origin=np.array((-4.0, -4.0)),
+        resolution=0.1,
+        waypoints=waypoints,
+        bed=np.array(((-0.45, -1.0, 0.0), (0.45, 1.0, 0.7))),
+    )
+
+
+@dataclass
+class _Motion:
+    """One trajectory under way."""
+
+    start: float
+    times: np.ndarray
+    positions: np.ndarray  # (k, n)
+    slots: list[tuple[int, int]] = field(default_factory=list)  # per column: arm and joint, or (-1, 0) for the head
+
+
+class ScriptedWorld(World):
+    """The contract without physics.
+
+    Args:
+        seed: of the sensor noise.
+        frames: `(camera, time) -> Frame`; flat grey pictures by default.
+        room: map; `scripted_room()` by default.
+        kinematics: anything with `pose_hand_in_map` and `jacobian_hand_in_map`; linear arms by default.
+        arm_positions: (2, 7) where the arms are at first [rad]; zeros by default.
+        stopping_time: how long arms and base run on after a stop, slowing down evenly [s].
+
+    Attributes:
+        time: the clock, whose `time` may be set.
+        load: side -> force and torque (6,) on that hand in the map frame [N], [N m]; set it at will.
+        between_fingers: side -> thickness of what the fingers meet when they close [m]; 0 for nothing.
+        person_offset: (3,) how far the person has moved [m]; tests and estimators may read it.
+        sent: every command, in order.
+    """
+
+    def __init__(
+        self,
+        *,
+        seed: int = 0,
+        frames: Callable[[str, float], Frame] | None = None,
+        room: RoomMap | None = None,
+        kinematics: Any = None,
+        stopping_time: float = 0.15,
+        arm_positions: np.ndarray | None = None,
+    ) -> None:
+        self.time = SteppedClock(self._advance_to)
+        self.clock = self.time
+        self.room = room or scripted_room()
+        self.kinematics = kinematics or LinearArms()
+        self.load: dict[Side, np.ndarray] = {side: np.zeros(6) for side in SIDES}
+        self.between_fingers: dict[Side, float] = {"left": 0.0, "right": 0.0}
+        self.person_offset = np.zeros(3)
+        self.sent: list[Command] = []
+        self._rng = np.random.default_rng(seed)
+        self._frames = frames or self._flat_frame
+        self._q = np.zeros((2, 7)) if arm_positions is None else np.array(arm_positions, float).reshape(2, 7)
+        self._dq = np.zeros((2, 7))
+        self._head = 0.0
+        self._base = np.array(self.room.waypoints.get("start", (0.0, 0.0, 0.0)), float)
+        self._base_velocity, self._base_until = np.zeros(3), 0.0
+        self._twists: dict[Side, HandTwist] = {}
+        self._twist_until: dict[Side, float] = {}
+        self._motions: list[_Motion] = []
+        self._stopping_time = stopping_time
+        self._coast_start, self._coast_q, self._coast_base = -np.inf, np.zeros((2, 7)), np.zeros(3)
+        self._opening = np.full(2, STROKE)
+        self._opening_goal = np.full(2, STROKE)
+        self._force_limit = np.zeros(2)
+
+    # -- senses ------------------------------------------------------------------------------------------
+
+    def observe(self) -> Observation:
+        """Exact joints, noisy wrenches."""
+        now = self.clock.now()
+        held = (self._opening <= np.array([self.between_fingers[s] for s in SIDES]) + 1e-6) & (self._opening > 1e-6)
+        wrench = np.stack([self.load[side] for side in SIDES]) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
+        poses = np.stack(
+            [self.kinematics.pose_hand_in_map(side, self._q[n], self._base) for n, side in enumerate(SIDES)]
+        )
+        moving = self._base_velocity if now < self._base_until else self._coast_base * self._slowing(now)
+        return Observation(
+            time=now,
+            arm_positions=self._q.copy(),
+            arm_velocities=self._dq.copy(),
+            arm_efforts=np.zeros((2, 7)),
+            head_pan=self._head,
+            pose_base_in_map=self._base.copy(),
+            twist_base=np.array(moving, float),
+            gripper_opening=self._opening.copy(),
+            gripper_force=np.where(held, self._force_limit, 0.0),
+            wrench_hand_in_map=wrench,
+            pose_hand_in_map=poses,
+        )
+
+    def look(self, camera: str) -> Frame:
+        """What the script shows; raises SensorLost for an unknown camera."""
+        if camera not in CAMERAS:
+            raise SensorLost(f"there is no camera {camera!r}; there are {', '.join(CAMERAS)}")
+        return self._frames(camera, self.clock.now())
+
+    def _flat_frame(self, camera: str, time: float) -> Frame:
+        depth = 1.5 + DEPTH_NOISE * self._rng.standard_normal((24, 32))
+        return Frame(
+            camera=camera,
+            stamp=time,
+            rgb=np.full((24, 32, 3), 128, np.uint8),
+            depth=depth.astype(np.float32),
+            intrinsics=(30.0, 30.0, 16.0, 12.0),
+            pose_camera_in_map=np.eye(4),
+        )
+
+    # -- motions -----------------------------------------------------------------------------------------
+
+    def send(self, command: Command) -> Command:
+        """Start a motion; a real robot's clipping is left to the guard."""
+        now = self.clock.now()
+        self.sent.append(command)
+        if isinstance(command, JointTrajectory):
+            motion = self._motion(command, now)
+            self._drop(set(motion.slots))
+            self._motions.append(motion)
+            for arm in {arm for arm, _ in motion.slots if arm >= 0}:
+                self._end_coasting(arm)
+            for n, side in enumerate(SIDES):
+                if any(arm == n for arm, _ in motion.slots):
+                    self._twists.pop(side, None)
+        elif isinstance(command, HandTwist):
+            self._drop({(SIDES.index(command.side), joint) for joint in range(7)})
+            self._end_coasting(SIDES.index(command.side))
+            self._twists[command.side], self._twist_until[command.side] = command, now + command.duration
+        elif isinstance(command, BaseVelocity):
+            self._end_coasting(-1)
+            self._base_velocity, self._base_until = np.array(command.velocity, float), now + command.duration
+        elif isinstance(command, GripperOpening):
+            n = SIDES.index(command.side)
+            self._opening_goal[n] = min(max(command.opening, 0.0), STROKE)
+            self._force_limit[n] = command.force_limit
+        return command
+
+    def stop(self) -> None:
+        """End every motion, which takes the stopping time; the fingers go on holding."""
+        now = self.clock.now()
+        driving = now < self._base_until
+        if self._motions or self._twists or driving:
+            self._coast_start, self._coast_q = now, self._dq.copy()
+            self._coast_base = self._base_velocity.copy() if driving else np.zeros(3)
+        self._motions.clear()
+        self._twists.clear()
+        self._base_until = now
+
+    def _slowing(self, time: float) -> float:
+        """Fraction of the speed that is left at `time` after a stop."""
+        if self._stopping_time <= 0.0:
+            return 0.0
+        return float(np.clip(1.0 - (time - self._coast_start) / self._stopping_time, 0.0, 1.0))
+
+    def _end_coasting(self, arm: int) -> None:
+        """A new command takes an arm over (-1: the base)."""
+        if arm < 0:
+            self._coast_base = np.zeros(3)
+        else:
+            self._coast_q[arm] = 0.0
+
+    def _motion(self, command: JointTrajectory, now: float) -> _Motion:
+        slots: list[tuple[int, int]] = []
+        for joint in command.joints:
+            side, _, name = joint.partition("_")
+            slots.append((-1, 0) if joint == "head_pan" else (SIDES.index(side), ARM_JOINTS.index(name)))
+        return _Motion(now, np.asarray(command.times, float), np.asarray(command.positions, float), slots)
+
+    def _drop(self, slots: set[tuple[int, int]]) -> None:
+        """Forget motions that use any of these joints."""
+        self._motions = [motion for motion in self._motions if not slots & set(motion.slots)]
+
+    def _advance_to(self, time: float) -> None:
+        while self.time.time < time - 1e-9:
+            self._step(min(STEP, time - self.time.time))
+        self.time.time = max(self.time.time, time)  # without the rounding of the sum
+
+    def _step(self, dt: float) -> None:
+        now = self.time.time + dt
+        before = self._q.copy()
+        for motion in list(self._motions):
+            for column, (arm, joint) in enumerate(motion.slots):
+                value = float(np.interp(now - motion.start, motion.times, motion.positions[:, column]))
+                if arm < 0:
+                    self._head = value
+                else:
+                    self._q[arm, joint] = value
+            if now - motion.start > motion.times[-1] + dt:
+                self._motions.remove(motion)
+        for side, twist in list(self._twists.items()):
+            arm = SIDES.index(side)
+            moved = min(self._twist_until[side], now) - self.time.time
+            if moved <= 1e-9:
+                del self._twists[side]
+                continue
+            jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
+            self._q[arm] += np.linalg.pinv(jacobian, rcond=1e-3) @ np.asarray(twist.twist_in_map, float) * moved
+        left = self._slowing(now)
+        self._q += self._coast_q * left * dt
+        driven = max(min(self._base_until, now) - self.time.time, 0.0)
+        c, s = np.cos(self._base[2]), np.sin(self._base[2])
+        vx, vy, turn = driven * self._base_velocity + dt * left * self._coast_base
+        self._base += np.array((c * vx - s * vy, s * vx + c * vy, turn))
+        goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
+        self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
+        self._dq = (self._q - before) / dt
+        self.time.time = now
+
+    # -- effects of faults -------------------------------------------------------------------------------
+
+    def fault_grip_slip(self, side: Side) -> None:
+        """Whatever that hand held is gone."""
+        self.between_fingers[side] = 0.0
+        self.load[side] = np.zeros(6)
+
+    def fault_move_person(self) -> None:
+        """The person shifts by 10 cm."""
+        self.person_offset = self.person_offset + np.array((0.1, 0.0, 0.0))

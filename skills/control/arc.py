@@ -1,0 +1,56 @@
+"""The arc on which a held arm is swung about its shoulder, and how the hand finds the true circle by yielding."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...perception.image.cloud import unit
+from ..geometry.arm_path import UP
+
+_YIELDING = 0.004  # speed of giving way to a pull across the arc [m/s/N]
+_PULL = 3.0  # ... above this [N]
+_MOST = 0.08  # the offset never grows beyond this [m]
+
+
+class Arc:
+    """The great circle about the shoulder from where the hand holds the arm to where the arm is to point.
+
+    The arm turns about its own shoulder, which is a few centimetres from where it was seen.  So a pull across the
+    arc is not the weight of the arm but the hand on a wrong circle, and the hand gives way to it.
+
+    Args:
+        shoulder: (3,) centre as it was seen [m].
+        start: (3,) where the hand holds the arm [m].
+        goal: (3,) unit vector from the shoulder to where that place is brought.
+
+    Attributes:
+        radius: of the circle [m].
+        whole: angle from start to goal [rad].
+        axis: (3,) unit vector about which the arm turns.
+        offset: (3,) how far the hand has given way so far [m].
+    """
+
+    def __init__(self, shoulder: np.ndarray, start: np.ndarray, goal: np.ndarray) -> None:
+        self._shoulder = np.asarray(shoulder, float)
+        arm = np.asarray(start, float) - self._shoulder
+        self.radius = float(np.linalg.norm(arm))
+        self._first = arm / self.radius
+        self.whole = float(np.arccos(np.clip(self._first @ goal, -1.0, 1.0)))
+        across = np.cross(self._first, goal)
+        self.axis = unit(across if np.linalg.norm(across) > 1e-9 else np.cross(self._first, UP))
+        self.offset = np.zeros(3)
+
+    def at(self, swung: float) -> tuple[np.ndarray, np.ndarray]:
+        """Point (3,) [m] of the circle `swung` [rad] from the start, and the unit direction of motion (3,) there."""
+        onwards = np.cross(self.axis, self._first)
+        point = self._shoulder + self.radius * (np.cos(swung) * self._first + np.sin(swung) * onwards)
+        return point, -np.sin(swung) * self._first + np.cos(swung) * onwards
+
+    def give_way(self, load: np.ndarray, tangent: np.ndarray, step: float) -> np.ndarray:
+        """Velocity (3,) [m/s] across the arc under a load (3,) [N]; moves `offset` on by `step` [s] of it."""
+        pull = load - (load @ tangent) * tangent
+        pull = pull * max(0.0, 1.0 - _PULL / max(float(np.linalg.norm(pull)), 1e-9))
+        velocity = _YIELDING * pull
+        self.offset = self.offset + velocity * step
+        self.offset *= min(1.0, _MOST / max(float(np.linalg.norm(self.offset)), 1e-9))
+        return velocity

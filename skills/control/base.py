@@ -1,0 +1,99 @@
+"""The base in motion: a generator that skills use with `yield from`.
+
+    yield from drive_to(self, "bed_right")                     # a waypoint of the map, round what is in the way
+    yield from drive_to(self, np.array((0.8, 0.3, -1.57)))     # x, y [m], yaw [rad] in the map
+    yield from drive_to(self, pose, straight=True, speed=0.2)  # the straight line, whatever the map says
+    yield from stand_for(self, "right", point)                 # a step to where that hand reaches `point` with ease
+
+Loads on the hands still count: the guard stops the base when the cloth pulls too hard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...sim.robot import model
+from ...sim.robot.kinematics import planar_pose
+from ...sim.world import Side
+from ..core.reasons import Reason, SkillFailure
+from ..core.skill import Skill
+from ..motion.drive import PathFollower
+from ..motion.errors import PathBlocked
+from ..motion.path import path_length, plan_path
+
+SPEED = float(model.BASE_VELOCITY[0])
+EASE = {"left": np.array((0.95, 0.22)), "right": np.array((0.95, -0.22))}  # in base, where a hand turns freely [m]
+_NEAR_ENOUGH = 0.06  # of a place to stand [m]
+_STUCK = 2.0  # a base that was told to drive and has not moved for so long does not obey [s]
+_MOVED = 0.01  # [m or rad]
+
+
+def waypoint(skill: Skill, goal: str | np.ndarray) -> np.ndarray:
+    """Pose (3,) of a waypoint's name, or the pose itself.
+
+    Raises:
+        PathBlocked: the map has no such waypoint.
+    """
+    if not isinstance(goal, str):
+        return np.asarray(goal, float)
+    known = skill.world.room.waypoints
+    if goal not in known:
+        raise PathBlocked(f"the map has no waypoint {goal!r}; it has {', '.join(known) or 'none'}")
+    return np.asarray(known[goal], float)
+
+
+def drive_to(
+    skill: Skill,
+    goal: str | np.ndarray,
+    *,
+    speed: float = SPEED,
+    straight: bool = False,
+    turn_from: float = np.inf,
+    retreat: bool = False,
+) -> Iterator[None]:
+    """Drive the base to a waypoint or pose, turning on the way; both hands are carried along.
+
+    Args:
+        skill: that drives.
+        goal: name of a waypoint, or (3,) x, y [m], yaw [rad].
+        speed: of the base [m/s]; the guard slows it near the person.
+        straight: do not plan round obstacles, for short slides beside the bed.
+        turn_from: distance to the end at which turning begins [m].
+        retreat: the motion takes load off the person.
+
+    Raises:
+        PathBlocked: no free way, or no such waypoint.
+        SkillFailure: COMMAND_LOST when the base does not move, TIMEOUT when it never arrives.
+    """
+    goal = waypoint(skill, goal)
+    start = skill.world.observe().pose_base_in_map
+    path = np.stack((start[:2], goal[:2])) if straight else plan_path(skill.world.room, start, goal)
+    follower = PathFollower(path, float(goal[2]), speed=speed, turn_from=turn_from)
+    end = skill.now() + 20.0 + 4.0 * path_length(path) / speed
+    anchor, since = start, skill.now()
+    while not follower.done(pose := skill.world.observe().pose_base_in_map):
+        if np.abs(pose - anchor).max() > _MOVED:
+            anchor, since = pose, skill.now()
+        if skill.now() - since > _STUCK:
+            raise SkillFailure(Reason.COMMAND_LOST, f"the base stands at {np.round(pose[:2], 2).tolist()} m")
+        if skill.now() > end:
+            raise SkillFailure(Reason.TIMEOUT, f"the base is still {np.linalg.norm(goal[:2] - pose[:2]):.2f} m away")
+        skill.world.send(follower.command(pose), retreat=retreat)
+        yield
+    yield from skill.wait(0.2)  # the last command runs out
+
+
+def stand_for(skill: Skill, side: Side, position_in_map: np.ndarray) -> Iterator[None]:
+    """Step without turning to where the hand on `side` reaches a position (3,) with ease.
+
+    Raises:
+        PathBlocked: the base cannot stand there.
+        SkillFailure: COMMAND_LOST when the base does not move.
+    """
+    pose = skill.world.observe().pose_base_in_map
+    offset = planar_pose(pose)[:2, :2] @ EASE[side]
+    goal = np.append(np.asarray(position_in_map)[:2] - offset, pose[2])
+    if np.linalg.norm(goal[:2] - pose[:2]) > _NEAR_ENOUGH:
+        yield from drive_to(skill, goal)

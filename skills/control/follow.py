@@ -1,0 +1,53 @@
+"""Sends a trajectory and sees it through: shared by skills that move the arms along one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation
+from ..core.reasons import Reason, SkillFailure
+from ..core.skill import Skill
+
+MOVED = 0.2  # fraction of the way below which nothing can be said to have moved
+
+
+def joint_values(observation: Observation, joints: tuple[str, ...]) -> np.ndarray:
+    """Measured angles (n,) of named joints [rad]."""
+    values = {
+        f"{side}_{joint}": observation.arm_positions[n, k]
+        for n, side in enumerate(SIDES)
+        for k, joint in enumerate(ARM_JOINTS)
+    }
+    values["head_pan"] = observation.head_pan
+    return np.array([values[joint] for joint in joints])
+
+
+def follow(
+    skill: Skill, trajectory: JointTrajectory, *, tolerance: float = 0.05, patience: float = 2.0, retreat: bool = False
+) -> Iterator[None]:
+    """Send `trajectory` and wait until it is done and has arrived; used with `yield from`.
+
+    Args:
+        skill: that moves.
+        trajectory: may run slower than asked for, as far as the guard slows it.
+        tolerance: largest error of a joint at the end [rad].
+        patience: how long the joints may take to arrive after the trajectory's end [s].
+        retreat: the motion takes load off the person.
+
+    Raises:
+        SkillFailure: COMMAND_LOST when nothing moved, MOTION_BLOCKED when it did not arrive.
+    """
+    start = joint_values(skill.world.observe(), trajectory.joints)
+    goal = np.asarray(trajectory.positions, float)[-1]
+    sent = skill.world.send(trajectory, retreat=retreat)
+    assert isinstance(sent, JointTrajectory)
+    yield from skill.wait(float(sent.times[-1]))
+    end = skill.now() + patience
+    while (error := float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - goal).max())) > tolerance:
+        if skill.now() >= end:
+            moved = float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - start).max())
+            lost = moved < MOVED * float(np.abs(goal - start).max())
+            raise SkillFailure(Reason.COMMAND_LOST if lost else Reason.MOTION_BLOCKED, f"{error:.2f} rad short")
+        yield

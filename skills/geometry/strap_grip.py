@@ -1,0 +1,61 @@
+"""How the strap of a sleeve lies in the fingers, and how the hand must be turned for the armhole to hang open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...perception.estimates import SleeveOpening
+from ...perception.image.cloud import unit
+from ...sim.world import Side
+from .arm_path import UP
+
+LEAN = 0.25  # [rad]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrapGrip:
+    """A strap held by a hand.
+
+    Attributes:
+        arm: the wearer's side the sleeve belongs to.
+        hand: that holds it.
+        across_in_hand: (3,) unit vector across the strap, from the armhole to the gown's upper edge, in the hand.
+    """
+
+    arm: Side
+    hand: Side
+    across_in_hand: np.ndarray
+
+
+def strap_grip(arm: Side, hand: Side, strap: SleeveOpening, pose_hand_in_map: np.ndarray) -> StrapGrip:
+    """What a hand holds that closed at `pose_hand_in_map` (4, 4) on a strap."""
+    across = pose_hand_in_map[:3, :3].T @ strap.closing_in_map
+    return StrapGrip(arm=arm, hand=hand, across_in_hand=unit(across * (1.0, 1.0, 0.0)))
+
+
+def presenting(
+    grip: StrapGrip, along_in_map: np.ndarray, position_in_map: np.ndarray, lean: float = LEAN
+) -> np.ndarray:
+    """Hand pose (4, 4) that holds the strap across an arm, its armhole towards the fingertips.
+
+    Args:
+        grip: how the strap lies in the fingers.
+        along_in_map: (3,) direction of the arm towards the fingertips; only its heading counts.
+        position_in_map: (3,) of the hand [m].
+        lean: of the hand off the vertical, away from the person [rad]: the outside of the strap then faces the
+            fingertips' side, so that the sleeve falls outwards, ahead of the hand that comes through it.
+    """
+    heading = unit(np.asarray(along_in_map, float) * (1.0, 1.0, 0.0))
+    approach = -np.cos(lean) * UP - np.sin(lean) * heading
+    across = -np.cos(lean) * heading + np.sin(lean) * UP
+    # x and y of the hand turn about its approach so that the strap's `across_in_hand` comes to lie along `across`
+    beside = np.cross(approach, across)
+    turn = np.arctan2(grip.across_in_hand[1], grip.across_in_hand[0])
+    pose = np.eye(4)
+    pose[:3, 0] = np.cos(turn) * across - np.sin(turn) * beside
+    pose[:3, 1] = np.sin(turn) * across + np.cos(turn) * beside
+    pose[:3, 2] = approach
+    pose[:3, 3] = position_in_map
+    return pose

@@ -1,0 +1,90 @@
+import numpy as np
+import pytest
+from caretree.learning.gap.errors import GapError
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
+from caretree.learning.gap.report import write_report
+
+
+def test_drag_is_named_and_sized(drop_set):
+    study = open_study(load_set(drop_set(0.02)))
+    verdict, effects, _, _ = study.name()
+    assert verdict == "effects"
+    assert [f.name for f in effects] == ["quadratic_drag"]
+    assert effects[0].parameters[0].value == pytest.approx(0.02, rel=0.1)
+    gap = study.show()[0]
+    assert gap.after < 0.03 < gap.before
+
+
+def test_vacuum_needs_nothing(drop_set):
+    verdict, effects, _, _ = open_study(load_set(drop_set(0.0))).name()
+    assert (verdict, effects) == ("adequate", ())
+
+
+def test_ballast_is_taken_into_account(drop_set):
+    folder = drop_set(0.02, episodes=6, ballast=(1, 1, 3, 3, 0.5, 0.5))
+    study = open_study(load_set(folder))
+    verdict, effects, _, _ = study.name()
+    assert (verdict, [f.name for f in effects]) == ("effects", ["quadratic_drag"])
+    assert effects[0].parameters[0].value == pytest.approx(0.02, rel=0.03)
+    assert study.show()[0].after < 0.015
+    file = folder / "measurement.yaml"  # the same drops, with the ballast kept secret, are no fall of one body
+    file.write_text(file.read_text().replace("mass: 0.6", "mass: 0.2").replace("mass: 0.1", "mass: 0.2"))
+    assert open_study(load_set(folder)).show()[0].after > 0.1
+
+
+def test_a_drag_outside_the_bank_shows_with_ballast(drop_set):
+    folder = drop_set(steep=0.01, episodes=8, ballast=(1, 1, 1, 8, 8, 0.5, 0.5, 0.5))
+    verdict, _, _, guess = open_study(load_set(folder)).name()
+    assert verdict == "unknown"
+    assert "speed" in guess
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("mass: 0.6", "mass: -1", ("measurement.yaml", "mass of d1.csv is -1", "positive")),
+        ("\nmass: 0.2", "", ("measurement.yaml", "d0.csv states a mass", "without ballast")),
+    ],
+)
+def test_ballast_that_cannot_be_used_is_one_sentence(drop_set, old, new, words):
+    folder = drop_set(episodes=2, ballast=(1, 3))
+    file = folder / "measurement.yaml"
+    text = file.read_text().replace("mass: 0.6000000000000001", "mass: 0.6")
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    with pytest.raises(GapError) as caught:
+        open_study(load_set(folder)).find()
+    assert "\n" not in str(caught.value)
+    assert all(w in str(caught.value) for w in words), caught.value
+
+
+def test_drag_that_does_not_hold_on_the_held_out_drop_is_not_believed(drop_set):
+    folder = drop_set(0.02)
+    file = folder / "d3.csv"  # held out; there the body falls as in a vacuum
+    data = np.loadtxt(file, delimiter=",", skiprows=1)
+    data[:, 1] = 20.0 - 0.5 * 9.81 * data[:, 0] ** 2
+    np.savetxt(file, data[data[:, 1] > 0.3], delimiter=",", header="t,h", comments="")
+    verdict, _, _, guess = open_study(load_set(folder)).name()
+    assert verdict == "unknown"
+    assert "held-out" in guess
+
+
+def test_sets_that_fit_as_well_are_listed_with_the_drop_that_tells_them_apart(drop_set):
+    study = open_study(load_set(drop_set(0.003)))
+    verdict = study.conclude()
+    named = {(f.name, f.target) for f in verdict.effects}
+    assert named
+    assert verdict.rivals
+    for rival in verdict.rivals:
+        assert not set(rival.effects) >= named
+        assert len(rival.effects) <= 2
+        assert rival.experiment
+    asked = study.follow_up()
+    assert asked == verdict.follow_up
+    assert asked[0].apart > 0.0
+    assert all(f.sentence in write_report(verdict, []) or f.sentence[1:] in write_report(verdict, []) for f in asked)
+
+
+def test_nothing_is_asked_for_where_nothing_is_missing(drop_set):
+    assert open_study(load_set(drop_set(0.0))).follow_up() == ()

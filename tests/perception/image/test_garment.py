@@ -1,0 +1,40 @@
+"""Mask and side of the gown against what the renderer drew."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.image.garment import garment_mask, gown_side
+from caretree.sim.render.camera import CLOTH_ID, HEAD_SIZE, camera_intrinsics
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_mask_is_the_gown(scenes, seed):
+    for scene in (scenes.on_rail(seed), scenes.in_hand(seed), scenes.stretched(seed, outside=seed % 2 == 0)):
+        drawn = scene.renderer.render(scene.camera, HEAD_SIZE, camera_intrinsics("head")).ids == CLOTH_ID
+        found = garment_mask(scene.frame(seed))
+        overlap = (drawn & found.mask).sum() / (drawn | found.mask).sum()
+        assert overlap > 0.93
+        assert found.confidence > 0.7
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("outside", [True, False])
+def test_side(scenes, seed, outside):
+    side = gown_side(scenes.stretched(seed, outside=outside).frame(seed, stamp=3.0))
+    assert side.outside is outside
+    assert side.confidence > 0.8
+    assert side.stamp == 3.0
+
+
+def test_no_gown_and_no_depth(scenes, black):
+    with pytest.raises(PerceptionFailure) as nothing:
+        garment_mask(scenes.person(0).frame())
+    assert nothing.value.kind == "nothing_seen"
+    with pytest.raises(PerceptionFailure):
+        gown_side(black)
+    from dataclasses import replace
+
+    blind = scenes.stretched(0, outside=True).frame()
+    with pytest.raises(PerceptionFailure) as no_depth:
+        garment_mask(replace(blind, depth=np.zeros_like(blind.depth)))
+    assert no_depth.value.problem is Problem.NO_DEPTH

@@ -1,0 +1,47 @@
+"""Every surface is told apart under every light and hue that the room may have."""
+
+import numpy as np
+import pytest
+from caretree.perception.image.surfaces import Surface, surfaces
+from caretree.sim.render.appearance import draw_appearance
+from caretree.sim.robot.shapes import BLACK, DARK, RED, STEEL
+
+
+@pytest.mark.parametrize(
+    ("name", "surface"),
+    [
+        ("gown_outside", Surface.OUTSIDE),
+        ("gown_inside", Surface.INSIDE),
+        ("collar", Surface.COLLAR),
+        ("armhole", Surface.ARMHOLE),
+        ("cuff", Surface.CUFF),
+        ("skin", Surface.SKIN),
+        ("sheet", Surface.OTHER),
+        ("floor", Surface.OTHER),
+        ("wall", Surface.OTHER),
+        ("robot", Surface.OTHER),
+        ("robot_grey", Surface.OTHER),
+        ("rail", Surface.OTHER),
+        ("shorts", Surface.OTHER),
+        ("bed_frame", Surface.OTHER),
+    ],
+)
+@pytest.mark.parametrize("shade", [0.62, 1.0])
+def test_flat_patches(name, surface, shade):
+    right = []
+    for seed in range(25):
+        rng = np.random.default_rng(seed)
+        look = draw_appearance(rng)
+        colour = np.array(look.colours[name]) * look.light.intensity * 0.82 * shade
+        patch = np.clip(colour + rng.normal(0, 2, (24, 24, 3)), 0, 255).astype(np.uint8)
+        right.append((surfaces(patch) == surface).mean())
+    assert np.mean(right) > 0.98
+    assert min(right) > 0.85
+
+
+@pytest.mark.parametrize("colour", [BLACK, DARK, RED, STEEL])
+@pytest.mark.parametrize("light", [0.35, 0.6, 1.0])
+def test_the_robot_is_neither_gown_nor_person(colour, light):
+    noise = np.random.default_rng(0).normal(0, 2, (64, 64, 3))
+    patch = np.clip(255 * light * np.array(colour) + noise, 0, 255).astype(np.uint8)
+    assert (surfaces(patch) == Surface.OTHER).mean() > 0.99

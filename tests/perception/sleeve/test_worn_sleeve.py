@@ -1,0 +1,39 @@
+"""Where a sleeve shows along an arm, from pictures painted by hand."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure
+from caretree.perception.sleeve.worn_sleeve import worn_sleeve
+from caretree.sim.world import Frame
+
+DOWN = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
+MAGENTA, GREEN = (180, 40, 110), (40, 150, 80)
+ARM = np.array(((-0.30, 0.0, 1.0), (0.0, 0.0, 1.0), (0.25, 0.0, 1.0), (0.40, 0.0, 1.0)))  # along the picture's rows
+
+
+def picture(armhole, cuff, rows=(50, 70)):
+    """A camera 1 m above two upright stripes at the pixel columns (from, to), 5 mm a pixel."""
+    rgb = np.full((120, 160, 3), 128, np.uint8)
+    for (first, last), colour in ((armhole, MAGENTA), (cuff, GREEN)):
+        rgb[rows[0] : rows[1], first:last] = colour
+    return Frame(
+        camera="head",
+        stamp=1.0,
+        rgb=rgb,
+        depth=np.ones((120, 160), np.float32),
+        intrinsics=(200.0, 200.0, 80.0, 60.0),
+        pose_camera_in_map=DOWN,
+    )
+
+
+@pytest.mark.parametrize(
+    ("armhole", "cuff", "places"), [((30, 40), (55, 65), (0.25, 0.67)), ((20, 26), (18, 20), (0.05, -0.02))]
+)
+def test_bindings_along_the_upper_arm(armhole, cuff, places):
+    seen = worn_sleeve(picture(armhole, cuff), "right", ARM)
+    assert (seen.armhole_at, seen.cuff_at) == pytest.approx(places, abs=0.06)
+
+
+def test_the_other_sleeve_does_not_count():
+    with pytest.raises(PerceptionFailure):
+        worn_sleeve(picture((30, 40), (55, 65), rows=(0, 15)), "right", ARM)

@@ -1,0 +1,61 @@
+"""Known weights: what a hand and the person are said to feel is what physics says they carry."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pybullet
+import pytest
+from caretree.sim.bullet import units
+from caretree.sim.bullet.cloth import GRAVITY, Cloth
+from caretree.sim.bullet.handle import Handle
+from caretree.sim.scene.gown import GOWNS, build_gown
+from pybullet_utils.bullet_client import BulletClient
+
+STEP = 0.0025
+
+
+@pytest.fixture
+def client():
+    """A deformable world."""
+    client = BulletClient(pybullet.DIRECT)
+    client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
+    client.setGravity(0, 0, units.force(-GRAVITY))
+    client.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
+    client.setTimeStep(units.time(STEP))
+    yield client
+    client.disconnect()
+
+
+def hang(client, mass: float) -> tuple[np.ndarray, Cloth]:
+    spec = dataclasses.replace(GOWNS["medium"], mass=mass, damping=0.02)
+    mesh = build_gown(spec)
+    cloth = Cloth(client, mesh, mesh.vertices + (0.0, 0.0, 1.6), STEP)
+    pose = np.eye(4)
+    pose[:3, 3] = cloth.vertices()[mesh.collar[7]]
+    handle = Handle(client, pose)
+    near = np.argsort(np.linalg.norm(cloth.vertices() - pose[:3, 3], axis=1))[:4]
+    cloth.pin(near, handle.body, handle.link)
+    loads = []
+    for k in range(2000):
+        handle.follow(pose)
+        client.stepSimulation()
+        if k >= 1000 and k % 10 == 0:
+            loads.append(cloth.load(near, cloth.vertices()))
+    assert np.abs(handle.position() - pose[:3, 3]).max() < 0.003
+    return np.mean(loads, axis=0), cloth
+
+
+@pytest.mark.parametrize("mass", [0.45, 0.9])
+def test_a_hanging_gown_weighs_what_it_weighs(client, mass):
+    load, cloth = hang(client, mass)
+    assert load[2] == pytest.approx(-mass * GRAVITY, rel=0.02)
+    assert np.abs(load[:2]).max() < 0.05 * mass * GRAVITY  # it still swings a little
+    assert np.percentile(cloth.stretch(cloth.vertices()), 99) < 1.25
+
+
+def test_an_unstable_gown_is_refused(client):
+    mesh = build_gown(dataclasses.replace(GOWNS["medium"], elastic=400.0))
+    with pytest.raises(ValueError, match=r"at most 0\.7 is stable"):
+        Cloth(client, mesh, mesh.vertices, STEP)

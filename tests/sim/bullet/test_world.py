@@ -1,0 +1,127 @@
+"""The simulated room behind the World contract."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from caretree.sim.bullet.cloth import GRAVITY
+from caretree.sim.bullet.person import PERSON_PARTS
+from caretree.sim.bullet.world import BulletWorld
+from caretree.sim.errors import CaretreeError
+from caretree.sim.evaluate.crossings import sleeve
+from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost
+
+
+@pytest.fixture(scope="module")
+def world():
+    """A room whose gown hangs on the rail."""
+    world = BulletWorld(seed=1)
+    yield world
+    world.close()
+
+
+def test_the_gown_hangs_on_its_hook_with_its_weight(world):
+    load = world._hook.load(world._cloth.vertices())
+    assert load[2] == pytest.approx(-world.scene.gown.mass * GRAVITY, rel=0.25)  # it still swings a little
+    frame = world.truth_frame()
+    assert frame.vertices[world.scene.hang_vertex] == pytest.approx((*world.scene.rail_xy, 1.55), abs=0.03)
+    assert frame.vertices[:, 2].min() > 0.03
+    assert not frame.gripper_closed.any()
+
+
+def test_what_the_robot_senses_has_the_contract_shapes(world):
+    seen = world.observe()
+    assert seen.arm_positions.shape == seen.arm_velocities.shape == seen.arm_efforts.shape == (2, 7)
+    assert seen.wrench_hand_in_map.shape == (2, 6)
+    assert seen.pose_hand_in_map.shape == (2, 4, 4)
+    assert np.abs(seen.wrench_hand_in_map[:, :3]).max() < 0.5  # empty hands feel noise only
+    assert np.any(seen.wrench_hand_in_map != world.observe().wrench_hand_in_map)
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+def test_cameras_see_the_room(world, camera):
+    frame = world.look(camera)
+    assert frame.rgb.shape[:2] == frame.depth.shape
+    assert frame.depth.dtype == np.float32
+    assert (frame.depth > 0).mean() > 0.5
+
+
+def test_an_unknown_camera_is_lost(world):
+    with pytest.raises(SensorLost, match="left_hand"):
+        world.look("rear")
+
+
+def test_the_base_drives_and_stops(world):
+    before = world.observe().pose_base_in_map
+    world.send(BaseVelocity(velocity=np.array((0.3, 0.0, 0.0)), duration=0.5))
+    world.clock.wait_until(world.clock.now() + 0.5)
+    world.stop()
+    world.clock.wait_until(world.clock.now() + 0.5)
+    seen = world.observe()
+    assert 0.03 < np.linalg.norm(seen.pose_base_in_map[:2] - before[:2]) < 0.3
+    assert np.abs(seen.twist_base).max() < 0.01
+
+
+def test_fingers_that_close_on_air_hold_nothing(world):
+    world.send(GripperOpening(side="left", opening=0.0, force_limit=20.0))
+    world.clock.wait_until(world.clock.now() + 1.0)
+    assert world.observe().gripper_opening[0] < 0.01
+    assert not world.truth_frame().gripper_closed.any()
+
+
+def test_a_moving_person_moves(world):
+    before = world.truth_frame().arms
+    world.fault_move_person()
+    world.clock.wait_until(world.clock.now() + 0.8)
+    assert np.linalg.norm(world.truth_frame().arms - before, axis=2).max() > 0.05
+
+
+def test_parts_of_the_person_are_named(world):
+    assert world.truth_frame().person_force.shape == (len(PERSON_PARTS),)
+
+
+@pytest.mark.parametrize(("arguments", "says"), [({"gown": "tutu"}, "tutu"), ({"model": "x.yaml"}, "x.yaml")])
+def test_bad_arguments_are_one_sentence(arguments, says):
+    with pytest.raises(CaretreeError, match=says):
+        BulletWorld(seed=0, **arguments)
+
+
+def test_the_same_seed_is_the_same_world():
+    frames = []
+    for _ in range(2):
+        world = BulletWorld(seed=3)
+        world.clock.wait_until(0.3)
+        frames.append((world.truth_frame().vertices, world.look("head").rgb))
+        world.close()
+    np.testing.assert_array_equal(frames[0][0], frames[1][0])
+    np.testing.assert_array_equal(frames[0][1], frames[1][1])
+
+
+def test_stage_b_begins_with_the_gown_in_both_hands():
+    world = BulletWorld(seed=2)
+    world.prepare_stage("B")
+    weight = world.scene.gown.mass * GRAVITY
+    seen = world.observe()
+    assert -seen.wrench_hand_in_map[:, 2].sum() == pytest.approx(weight, rel=0.25)  # it still swings a little
+    assert (seen.gripper_opening < 0.01).all()
+    vertices, (left, right) = world.truth_frame().vertices, world.scene.mesh.corners
+    for n, corner in enumerate((right, left)):  # the outside faces the robot: its left hand holds the right corner
+        assert np.linalg.norm(vertices[corner] - seen.pose_hand_in_map[n, :3, 3]) < 0.03
+    world.close()
+    with pytest.raises(CaretreeError, match="A, B, C and D"):
+        BulletWorld(seed=2).prepare_stage("E")
+
+
+def test_stage_d_begins_with_both_sleeves_on_and_not_both_up():
+    reached = []
+    for seed in (0, 1):
+        world = BulletWorld(seed=seed)
+        world.prepare_stage("D")
+        frame, loops = world.truth_frame(), world.scene.mesh.loops
+        for n, side in enumerate(SIDES):
+            armhole, cuff = (frame.vertices[None, loops[f"{part}_{side}"]] for part in ("armhole", "cuff"))
+            worn = sleeve(armhole, cuff, frame.arms[None, n])
+            assert worn.on.all()
+            reached.append(worn.armhole.upper_arm[0])
+        world.close()
+    assert min(reached) < 0.7 < max(reached)

@@ -1,0 +1,220 @@
+"""The record survives a kill, a full disk and wrong input."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from caretree.sim.errors import RecordError
+from caretree.sim.record.record import RunResult, StageResult, is_finished, read_finished_run, read_run
+from caretree.sim.record.recorder import Recorder
+from caretree.sim.record.spool import open_spool
+from caretree.sim.record.truth import TruthFrame, TruthStatic
+
+RESULT = RunResult(
+    outcome="failure",
+    reason="The gown fell.",
+    sim_time_s=0.5,
+    stages=(StageResult(name="A", status="failure", attempts=2),),
+    timing={"physics": 0.25},
+)
+
+
+def static() -> TruthStatic:
+    loop = np.arange(3)
+    names = ("armhole_left", "cuff_left", "armhole_right", "cuff_right")
+    return TruthStatic(
+        faces=np.array([[0, 1, 2]]),
+        rest_vertices=np.eye(3),
+        loops=dict.fromkeys(names, loop),
+        arm_radii=np.full((2, 3), 0.05),
+        person_parts=("head", "torso"),
+    )
+
+
+def truth(index: int, points: int = 100) -> TruthFrame:
+    return TruthFrame(
+        t=0.08 * index,
+        vertices=np.eye(3) + index,
+        arms=np.zeros((2, 4, 3)),
+        torso_front=np.zeros((points, 6)),
+        gripper_pose=np.zeros((2, 7)),
+        gripper_closed=np.array([True, False]),
+        gripper_load=np.full((2, 3), float(index)),
+        person_force=np.array([0.0, index]),
+    )
+
+
+def recorder(directory: Path) -> Recorder:
+    return Recorder(directory, task="dressing", seed=4, world="bullet", parameters={"gown": "small"})
+
+
+def test_finished_record_holds_what_design_asks_for(tmp_path):
+    record = recorder(tmp_path / "run")
+    record.begin(static())
+    for index in range(600):  # more than one chunk
+        record.frame(truth(index))
+    record.event({"t": 0.1, "node": "grasp"})
+    record.finish(RESULT)
+    run = read_finished_run(tmp_path / "run")
+    assert {
+        "task",
+        "seed",
+        "world",
+        "outcome",
+        "reason",
+        "stages",
+        "sim_time_s",
+        "wall_time_s",
+        "parameters",
+        "versions",
+        "trace_hash",
+    } <= set(run)
+    assert run["stages"][0] == {
+        "name": "A",
+        "status": "failure",
+        "attempts": 2,
+        "t_start": None,
+        "t_end": None,
+        "reason": "",
+    }
+    with np.load(tmp_path / "run" / "truth.npz") as stored:
+        assert set(stored.files) == {
+            "t",
+            "vertices",
+            "faces",
+            "rest_vertices",
+            "loop_armhole_left",
+            "loop_cuff_left",
+            "loop_armhole_right",
+            "loop_cuff_right",
+            "arms",
+            "arm_radii",
+            "torso_front",
+            "gripper_pose",
+            "gripper_closed",
+            "gripper_load",
+            "person_force",
+            "person_parts",
+        }
+        assert stored["vertices"].shape == (600, 3, 3)
+        assert stored["vertices"].dtype == np.float32
+        np.testing.assert_allclose(stored["t"], 0.08 * np.arange(600))
+        np.testing.assert_allclose(stored["vertices"][:, 0, 1], np.arange(600))
+        np.testing.assert_allclose(stored["person_force"][:, 1], np.arange(600))
+        assert stored["gripper_closed"].dtype == bool
+        assert list(stored["person_parts"]) == ["head", "torso"]
+    assert not (tmp_path / "run" / "truth.spool").exists()
+
+
+def test_killed_run_keeps_frames_and_says_so(tmp_path):
+    record = recorder(tmp_path)
+    record.begin(static())
+    for index in range(3):
+        record.frame(truth(index))
+    # no close, no finish: read what a kill would leave, with half a row at the end
+    with (tmp_path / "truth.spool" / "frames.bin").open("ab") as file:
+        file.write(b"half")
+    assert not is_finished(read_run(tmp_path))
+    with pytest.raises(RecordError, match="was cut short"):
+        read_finished_run(tmp_path)
+    _, frames = open_spool(tmp_path / "truth.spool")
+    np.testing.assert_allclose(frames["t"], [0.0, 0.08, 0.16])
+    record.close()
+    again = recorder(tmp_path)  # a run cut short makes room for the next
+    again.finish(RESULT)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system to fill up")
+def test_full_disk_while_recording_keeps_earlier_frames(tmp_path):
+    record = recorder(tmp_path)
+    record.begin(static())
+    record.frame(truth(0))
+    assert record._spool is not None
+    record._spool.close()
+    record._spool._file = open("/dev/full", "wb", buffering=0)  # noqa: SIM115 - closed by finish
+    with pytest.raises(RecordError, match="the disk is full"):
+        record.frame(truth(1))
+    record.finish(RESULT)
+    with np.load(tmp_path / "truth.npz") as stored:
+        assert stored["t"].shape == (1,)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system to fill up")
+def test_full_disk_at_the_end_keeps_spool_and_outcome(tmp_path):
+    record = recorder(tmp_path)
+    record.begin(static())
+    record.frame(truth(0))
+    (tmp_path / "truth.npz.part").symlink_to("/dev/full")
+    with pytest.raises(RecordError, match="the disk is full"):
+        record.finish(RESULT)
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
+    assert len(open_spool(tmp_path / "truth.spool")[1]) == 1
+    assert not (tmp_path / "truth.npz").exists()
+
+
+def test_finished_run_is_not_overwritten(tmp_path):
+    recorder(tmp_path).finish(RESULT)
+    with pytest.raises(RecordError, match="already holds a finished run"):
+        recorder(tmp_path)
+
+
+def test_trace_hash_follows_the_events(tmp_path):
+    hashes = []
+    for name, value in (("a", 1), ("b", 1), ("c", 2)):
+        record = recorder(tmp_path / name)
+        record.event({"t": 0.1, "value": value})
+        record.finish(RESULT)
+        hashes.append(read_run(tmp_path / name)["trace_hash"])
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
+def test_shapes_are_checked_when_they_are_given(tmp_path):
+    record = recorder(tmp_path)
+    with pytest.raises(RecordError, match="before the recorder was begun"):
+        record.frame(truth(0))
+    record.begin(static())
+    with pytest.raises(RecordError, match="at least 100"):
+        record.frame(truth(0, points=99))
+    record.frame(truth(0))
+    with pytest.raises(RecordError, match="the first frame has 100"):
+        record.frame(truth(1, points=101))
+    with pytest.raises(RecordError, match="begun twice"):
+        record.begin(static())
+    record.close()
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "message"),
+    [
+        ("faces", np.array([[0, 1, 3]]), "0 to 2"),
+        ("faces", np.array([[0.0, 1.0, 2.0]]), "integers"),
+        ("arm_radii", np.zeros((2, 2)), "arm_radii has shape"),
+        ("loops", {"armhole_left": np.arange(3)}, "loops are named"),
+    ],
+)
+def test_bad_static_part_is_one_sentence(field, value, message):
+    given = static()
+    fields = {name: getattr(given, name) for name in ("faces", "rest_vertices", "loops", "arm_radii", "person_parts")}
+    with pytest.raises(RecordError, match=message):
+        TruthStatic(**(fields | {field: value}))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("{", "is damaged"), ("[]", "holds a list"), (json.dumps({"outcome": "won"}), "has outcome 'won'")],
+)
+def test_damaged_run_json_is_one_sentence(tmp_path, text, message):
+    (tmp_path / "run.json").write_text(text)
+    with pytest.raises(RecordError, match=message):
+        read_finished_run(tmp_path)
+
+
+def test_missing_record_is_one_sentence(tmp_path):
+    with pytest.raises(RecordError, match=r"holds no run\.json"):
+        read_run(tmp_path)
+    with pytest.raises(RecordError, match="is not a folder"):
+        read_run(tmp_path / "nowhere")
+    with pytest.raises(RecordError, match="outcome is 'won'"):
+        RunResult(outcome="won", reason="", sim_time_s=0.0)  # type: ignore[arg-type] - the mistake under test

@@ -1,0 +1,117 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.sim.world import Frame
+from caretree.skills.belief.person_tracking import NEAR_SPEED, careful, visible_share, watch_arm, watch_of
+from caretree.skills.core.context import Context, Perception
+from caretree.skills.core.skill import Skill
+from caretree.skills.geometry.hold import Hold
+from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.guard.guard import GuardedWorld
+
+DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
+
+
+def looking_down(stamp=0.0, covered=(), colour=(0, 0, 0)):
+    """A view straight down on the bed, whose mattress is 1.6 m away; `covered` pixel columns show something nearer."""
+    depth = np.full((150, 200), 1.6, np.float32)
+    depth[:, list(covered)] = 1.2
+    depth += 1e-3 * np.random.default_rng(int(1000 * stamp)).standard_normal(depth.shape).astype(np.float32)
+    rgb = np.full((150, 200, 3), colour, np.uint8)
+    return Frame(
+        camera="head",
+        stamp=stamp,
+        rgb=rgb,
+        depth=depth,
+        intrinsics=(150.0, 150.0, 100.0, 75.0),
+        pose_camera_in_map=DOWN,
+    )
+
+
+class Watcher(Skill):
+    commands = False
+
+
+def make(arm, frames=None):
+    world = ScriptedWorld(frames=frames or (lambda camera, time: looking_down(time)))
+    guard = GuardedWorld(world)
+    context = Context(world=guard, guard=guard, perception=Perception({"arm": arm}))
+    return Watcher("watch", context), world
+
+
+def test_one_look_serves_several_ticks():
+    asked = []
+    skill, world = make(lambda frame, side, **_: asked.append(frame.stamp) or lying_posture(side, frame.stamp))
+    for _ in range(15):
+        watch_arm(skill, "right")
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+    assert 3 <= len(asked) <= 5
+    assert "right arm" in watch_of(skill).parts
+
+
+def test_an_arm_in_front_of_where_it_was_is_not_hidden():
+    lifted = range(200)
+    assert visible_share(looking_down(covered=lifted), lying_posture("right")) == 0.0
+    assert visible_share(looking_down(covered=lifted, colour=(214, 158, 124)), lying_posture("right")) == 1.0
+
+
+def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
+    covered, asked, searched = [], [], []
+
+    def arm(frame, side, afresh=False, **_):
+        (searched if afresh else asked).append(frame.stamp)
+        if afresh:
+            raise PerceptionFailure(Problem.ARM_LOST, "right arm")
+        return lying_posture(side, frame.stamp)
+
+    skill, world = make(arm, lambda camera, time: looking_down(time, covered))
+    assert visible_share(looking_down(), lying_posture("right")) == 1.0
+    first = watch_arm(skill, "right", period=0.0)
+    covered.extend(range(200))
+    assert visible_share(looking_down(covered=covered), first) == 0.0
+    world.clock.wait_until(5.0)
+    assert watch_arm(skill, "right", period=0.0, patience=10.0) is first
+    watch_arm(skill, "right", period=0.0, patience=10.0)
+    assert len(asked) == 1, "a tracker would follow what is not the arm"
+    assert searched == [5.0], "looking for it all over the picture takes its time"
+    world.clock.wait_until(11.0)
+    with pytest.raises(PerceptionFailure) as lost:
+        watch_arm(skill, "right", period=0.0, patience=10.0)
+    assert lost.value.problem == Problem.ARM_LOST
+
+
+def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():
+    there = lying_posture("right")
+    elsewhere = replace(there, points_in_map=there.points_in_map + (0.2, 0.0, 0.0))
+    covered = []
+    skill, world = make(
+        lambda frame, side, afresh=False, **_: elsewhere if afresh else there,
+        lambda camera, time: looking_down(time, covered),
+    )
+    watch_arm(skill, "right")
+    covered.extend(range(200))
+    world.clock.wait_until(1.0)
+    assert watch_arm(skill, "right", hold=Hold("left", 0.9)).points_in_map[0] == pytest.approx(there.points_in_map[0])
+    world.clock.wait_until(2.0)
+    assert watch_arm(skill, "right") is elsewhere
+
+
+def test_an_arm_never_found_is_not_invented():
+    def nothing(frame, side, **_):
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "right arm")
+
+    skill, _ = make(nothing)
+    with pytest.raises(PerceptionFailure):
+        watch_arm(skill, "right")
+
+
+def test_hands_are_slow_near_what_was_seen_and_fast_elsewhere():
+    skill, _ = make(lambda frame, side, **_: lying_posture(side, frame.stamp))
+    assert careful(skill, 0.5)(np.array((3.0, 3.0, 1.0))) == NEAR_SPEED, "nobody seen yet"
+    watch_arm(skill, "right")
+    limit = careful(skill, 0.5)
+    assert limit(np.array((0.5, -0.2, 0.9))) == NEAR_SPEED
+    assert limit(np.array((1.2, 0.6, 1.2))) == 0.5

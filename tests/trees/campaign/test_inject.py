@@ -1,0 +1,201 @@
+"""The fault campaign: what it reaches, what it finds, and that every fault of a sound task ends safely."""
+
+from dataclasses import replace
+
+import pytest
+from caretree.sim.faults import FAULTS, FaultyWorld, parse_fault
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.sim.world import GripperOpening
+from caretree.skills.core.reasons import Reason
+from caretree.skills.core.skill import Skill
+from caretree.trees.campaign.inject import Campaign, Row, table
+from caretree.trees.nodes.composers import sequence
+from caretree.trees.nodes.decorators import FailSafe, RecoverBy
+from caretree.trees.run.runner import Run, run
+from caretree.trees.run.task import load_task, task_names
+from caretree.trees.run.worlds import prepare_stage
+
+from ..planted import Look, Plan, Release, run_of, task_of
+
+
+def campaign(task, **kwargs):
+    return Campaign(task, lambda: task.scripted(0), **kwargs)
+
+
+class Grasp(Skill):
+    """Takes hold of the person's arm, as a lift does."""
+
+    def steps(self):
+        self.world.send(GripperOpening(side="left", opening=0.0))
+        yield from self.wait(1.0)
+        self.context.guard.declare_grip("left", "arm")
+        yield from self.wait(0.5)
+        if self.world.observe().gripper_opening[0] < 0.01:
+            from caretree.skills.core.reasons import SkillFailure
+
+            raise SkillFailure(Reason.ARM_SLIPPED)
+
+
+def holding(seed):
+    world = ScriptedWorld(seed=seed)
+    world.between_fingers["left"] = 0.05
+    return world, None
+
+
+@pytest.mark.parametrize("name", task_names())
+def test_every_fault_at_every_node_and_phase_that_a_bare_world_reaches_ends_safely(name):
+    """Without its own script the dressing ends in stage A; the rehearsal of all of it takes hours (docs/results.md)."""
+    rows = list(campaign(replace(load_task(name), script=None)).rows())
+    assert len(rows) == len({row.key for row in rows})
+    assert [row for row in rows if not row.survived] == []
+    reached = {(row.node, row.phase) for row in rows if row.outcome != "not_reached"}
+    assert len(reached) >= 5
+
+
+def test_the_dressing_is_rehearsed_from_the_rail_to_the_bed():
+    task = load_task("dressing")
+    world, perception = task.scripted(0)
+    result = run(task, world, perception=perception)
+    assert [(stage.name[0], stage.status, stage.attempts) for stage in result.stages] == [
+        (letter, "success", 1) for letter in "ABCD"
+    ]
+    assert result.outcome == "success"
+
+
+@pytest.mark.parametrize(("stage", "end"), [("B", 60.0), ("D", 90.0)])
+def test_a_stage_of_the_dressing_is_rehearsed_alone(stage, end):
+    task = load_task("dressing")
+    world, perception = task.scripted(1)
+    prepare_stage(world, stage)
+    result = run(task, world, seed=1, perception=perception, params={"stage": stage})
+    assert (result.outcome, [each.name[0] for each in result.stages]) == ("success", [stage]), result.reason
+    assert result.sim_time_s < end
+
+
+def test_recoveries_and_safe_branches_are_reached_too():
+    rows = list(campaign(load_task("wave"), faults=("lost_command",)).rows())
+    reached = {(row.node, row.phase): row.outcome for row in rows}
+    assert reached["wait", "start"] == "success"
+    assert reached["let go", "start"] == "safe_stop"
+    assert reached["hand up", "cancel"] == "safe_stop"
+
+
+def test_an_arm_is_never_left_held():
+    def build(context):
+        body = sequence(
+            "s",
+            Grasp("grasp arm", context),
+            Plan("lift", context, outcomes=[True], ticks=30),
+            Release("put down", context),
+        )
+        return FailSafe("safe", body, Release("let go", context))
+
+    rows = list(campaign(task_of(build, holding)).rows())
+    assert [row for row in rows if not row.survived] == []
+    outcomes = {(row.node, row.phase, row.fault): row.outcome for row in rows}
+    assert outcomes["lift", "step", "force_spike"] == "safe_stop"
+    assert outcomes["lift", "step", "dead_sensor"] == "safe_stop"
+    assert outcomes["grasp arm", "step", "grip_slip"] == "safe_stop"
+    assert outcomes["lift", "step", "occlusion"] == "success"
+
+
+def test_an_unsafe_task_is_found_out():
+    """The task forgets the arm in its hand: it says success and holds on."""
+
+    def build(context):
+        return FailSafe("safe", Grasp("grasp arm", context), Release("let go", context))
+
+    rows = list(campaign(task_of(build, holding), faults=("occlusion",)).rows())
+    bad = [row for row in rows if not row.survived]
+    assert {row.unsafe for row in bad} == {"the left hand still holds the person's arm"}
+    assert "UNSAFE" in table(rows)
+    assert "not survived: occlusion@grasp arm:step: success, the left hand still holds the person's arm" in table(rows)
+
+
+def test_an_unrecovered_fault_without_a_safe_branch_still_ends_safely():
+    rows = list(campaign(task_of(lambda context: Plan("p", context, outcomes=[True], ticks=20))).rows())
+    assert [row for row in rows if not row.survived] == []
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_happens_where_it_is_told(fault):
+    world = FaultyWorld(ScriptedWorld(), [parse_fault(f"{fault}@hand back:step")])
+    Run(load_task("wave"), world).run()
+    ((spec, time),) = world.begun
+    assert spec.node == "hand back"
+    assert 2.0 < time < 3.1
+
+
+def test_a_lost_command_is_recovered_by_its_reason():
+    world = FaultyWorld(ScriptedWorld(), [parse_fault("lost_command@hand up:start")])
+    run = Run(load_task("wave"), world)
+    result = run.run()
+    assert result.outcome == "success"
+    assert result.stages[0].attempts == 2
+    failed = [event for event in run.trace.events if event.get("reason") == "COMMAND_LOST"]
+    assert failed
+
+
+def test_a_fault_at_an_unknown_node_is_refused():
+    with pytest.raises(Exception, match="names no skill of this task; there are 'hand back', 'hand up'"):
+        Run(load_task("wave"), FaultyWorld(ScriptedWorld(), [parse_fault("occlusion@nobody:start")]))
+
+
+def test_finished_rows_are_not_run_again():
+    task = load_task("wave")
+    everything = campaign(task, faults=("occlusion",))
+    done = {key for key in everything.plan() if key[0] != "hold still"}
+    left = [key for key in everything.plan() if key not in done]
+    assert {row.node for row in everything.rows(left)} == {"hold still"}
+
+
+def test_what_is_not_reached_is_said():
+    def build(context):
+        never = RecoverBy(
+            "r",
+            Look("look", context, outcomes=[True], ticks=0),
+            {Reason.NOTHING_SEEN: lambda: Plan("recover", context, outcomes=[True])},
+        )
+        return FailSafe("safe", never, Release("let go", context))
+
+    rows = list(campaign(task_of(build), faults=("occlusion",)).rows())
+    assert {(row.node, row.phase) for row in rows if row.outcome != "not_reached"} == {("look", "start")}
+    assert Row(node="a", phase="step", fault="b", outcome="not_reached").survived
+    assert not Row(node="a", phase="step", fault="b", outcome="failure").survived
+
+
+def test_a_run_on_a_world_with_faults_repeats_exactly():
+    hashes = {
+        run_of(
+            lambda context: load_task("wave").build(context),
+            FaultyWorld(ScriptedWorld(), [parse_fault("lost_command@hand up:start")]),
+        )
+        .run()
+        .trace_hash
+        for _ in range(2)
+    }
+    assert len(hashes) == 1
+
+
+def test_an_operator_who_ends_a_run_ends_the_campaign():
+    class Pressed(Look):
+        """Ctrl-C in the second run, the first with a fault."""
+
+        def steps(self):
+            if self.world.observe().time > 0.3 and len(begun) > 1:
+                raise KeyboardInterrupt
+            begun.append(1)
+            yield from self.wait(0.5)
+
+    begun = []
+
+    def build(context):
+        return FailSafe(
+            "safe",
+            sequence("s", Pressed("a", context, outcomes=[True]), Pressed("b", context, outcomes=[True])),
+            Release("let go", context),
+        )
+
+    rows = campaign(task_of(build), faults=("occlusion",)).rows()
+    with pytest.raises(KeyboardInterrupt):
+        list(rows)

@@ -1,0 +1,194 @@
+"""Campaigns keep what is finished, count as the paper does, and stop on bad input."""
+
+import argparse
+import json
+import sys
+
+import pytest
+from caretree.sim.errors import CaretreeError
+from caretree.sim.record.folder_claim import FolderClaim, FolderTakenError
+from caretree.trees.campaign import trial as trial_module
+from caretree.trees.campaign.trial import Trial, judge_run, read_trial
+from caretree.trees.campaign.trials import Plan, run_trials
+from caretree.trees.campaign.trials_table import rates, table
+from caretree.trees.commands.trials import add_parser, main, parse_seeds
+
+# stands in for `caretree run`: seed 1 fails in C, 2 crashes, 9 is refused
+CHILD = """
+import json, pathlib, sys
+args = sys.argv[1:]
+assert args[:2] == ["run", "dressing"], args
+seed, out = int(args[args.index("--seed") + 1]), pathlib.Path(args[args.index("--out") + 1])
+with (out.parent.parent / "started.txt").open("a") as file:
+    file.write(f"{seed} ")
+if seed == 2:
+    sys.exit("it broke")
+if seed == 9:
+    print("caretree: gown 'x' is unknown, but small is asked for")
+    sys.exit(2)
+names = ["A grasp", "B unfold", "C dress", "D spread"]
+if "--stage" in args:
+    names = [name for name in names if name[0] == args[args.index("--stage") + 1]]
+fails = seed == 1 and "C dress" in names
+state = ["failure" if fails and name[0] == "C" else "not_run" if fails and name[0] > "C" else "success"
+         for name in names]
+out.joinpath("run.json").write_text(json.dumps(dict(
+    task="dressing", seed=seed, world="scripted", outcome="failure" if fails else "success",
+    reason="The sleeve is caught." if fails else "Done.", sim_time_s=10.0, wall_time_s=1.0,
+    stages=[dict(name=name, status=status) for name, status in zip(names, state)])))
+"""
+
+
+@pytest.fixture
+def fake_caretree(monkeypatch, tmp_path):
+    script = tmp_path / "child.py"
+    script.write_text(CHILD)
+    monkeypatch.setattr(trial_module, "CARETREE", (sys.executable, "-S", str(script)))
+    return tmp_path / "campaign"
+
+
+def plan(directory, seeds=(0, 1, 2), **more) -> Plan:
+    return Plan(task="dressing", seeds=seeds, directory=directory, **more)
+
+
+def test_table_counts_as_the_paper_does(fake_caretree):
+    told: list[str] = []
+    trials = run_trials(plan(fake_caretree, jobs=2), told.append)
+    assert [trial.outcome for trial in trials] == ["success", "failure", "crash"]
+    assert "it broke" in trials[2].reason
+    run_trials(plan(fake_caretree, seeds=(0, 1), stage="C"), told.append)
+    stored = json.loads((fake_caretree / "trials.json").read_text())
+    counts = {
+        row: {name: (rate["successes"], rate["trials"]) for name, rate in of_row.items()}
+        for row, of_row in stored["table"].items()
+    }
+    assert counts == {
+        "independent": {"A grasp": (0, 0), "B unfold": (0, 0), "C dress": (1, 2), "D spread": (0, 0)},
+        "overall": {"A grasp": (2, 2), "B unfold": (2, 2), "C dress": (1, 2), "D spread": (1, 1), "overall": (1, 3)},
+    }
+    text = (fake_caretree / "table.txt").read_text()
+    assert "independent trials" in text
+    assert "overall: seed 1 failure (10 s simulated in 1 s): The sleeve is caught." in text
+    assert "[2/3]" in "\n".join(told)
+
+
+def test_finished_trials_are_not_run_again(fake_caretree):
+    run_trials(plan(fake_caretree, seeds=(0,)), lambda line: None)
+    told: list[str] = []
+    run_trials(plan(fake_caretree, seeds=(0, 1)), told.append)
+    assert (fake_caretree / "started.txt").read_text().split() == ["0", "1"]
+    assert told[0] == "1 of 2 trials are there already"
+
+
+def test_run_that_ended_before_it_was_judged_is_judged_now(fake_caretree):
+    run_trials(plan(fake_caretree, seeds=(0,)), lambda line: None)
+    (fake_caretree / "overall" / "seed-0000" / "trial.json").unlink()
+    run_trials(plan(fake_caretree, seeds=(0,)), lambda line: None)
+    assert (fake_caretree / "started.txt").read_text().split() == ["0"]
+
+
+def test_interrupt_keeps_what_is_done_and_goes_on(fake_caretree):
+    def interrupt(line: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_trials(plan(fake_caretree, seeds=(0, 1, 3)), interrupt)
+    assert read_trial(fake_caretree / "overall" / "seed-0000") is not None
+    assert len(run_trials(plan(fake_caretree, seeds=(0, 1, 3)), lambda line: None)) == 3
+
+
+def test_refused_input_ends_the_campaign_with_the_sentence(fake_caretree):
+    with pytest.raises(CaretreeError, match=r"^gown 'x' is unknown"):
+        run_trials(plan(fake_caretree, seeds=(9,)), lambda line: None)
+
+
+def test_campaigns_do_not_mix(fake_caretree):
+    run_trials(plan(fake_caretree, seeds=(0,)), lambda line: None)
+    with pytest.raises(CaretreeError, match=r"holds trials of caretree run dressing, not of .*--gown small"):
+        run_trials(plan(fake_caretree, seeds=(0,), arguments=("--gown", "small")), lambda line: None)
+    (fake_caretree / "trials.json").write_text("{")
+    with pytest.raises(CaretreeError, match="is damaged"):
+        run_trials(plan(fake_caretree, seeds=(0,)), lambda line: None)
+
+
+def test_stuck_run_counts_as_timeout(monkeypatch, tmp_path):
+    monkeypatch.setattr(trial_module, "CARETREE", (sys.executable, "-S", "-c", "import time; time.sleep(60)"))
+    (trial,) = run_trials(plan(tmp_path, seeds=(0,), patience=0.1), lambda line: None)
+    assert trial.outcome == "timeout"
+
+
+def test_bullet_run_is_judged_by_its_geometry(make_record, tmp_path):
+    directory = make_record(tmp_path / "run", seed=5)
+    assert judge_run(directory, 5).dressed is True
+    (directory / "truth.npz").unlink()
+    found = judge_run(directory, 5)
+    assert found.dressed is False
+    assert found.outcome == "success"
+    assert "(tree: success)" in found.sentence()
+    assert "disagree on seeds 5" in table({"overall": [found]})
+
+
+def test_trials_that_never_reach_a_stage_do_not_count_for_it():
+    trials = [Trial(seed=0, outcome="failure", reason="", stages={"A": "failure", "B": "not_run"})]
+    assert (rates({"overall": trials})["overall"]["B"].trials, str(rates({})["overall"]["overall"])) == (0, "-")
+
+
+@pytest.mark.parametrize(
+    ("count", "seeds", "expected"),
+    [
+        (None, None, tuple(range(10))),
+        (3, None, (0, 1, 2)),
+        (None, "4-6", (4, 5, 6)),
+        (2, "7,1", (7, 1)),
+    ],
+)
+def test_seeds(count, seeds, expected):
+    assert parse_seeds(count, seeds) == expected
+
+
+@pytest.mark.parametrize(
+    ("count", "seeds", "message"),
+    [
+        (0, None, "at least 1"),
+        (None, "a-b", "A-B like 0-9"),
+        (None, "5-3", "above B"),
+        (4, "0-9", "names 10 seeds"),
+    ],
+)
+def test_bad_seeds_are_one_sentence(count, seeds, message):
+    with pytest.raises(CaretreeError, match=message):
+        parse_seeds(count, seeds)
+
+
+@pytest.mark.parametrize("bad", [{"seeds": ()}, {"seeds": (1, 1)}, {"seeds": (-1,)}, {"seeds": (0,), "jobs": 0}])
+def test_bad_plans_are_refused(tmp_path, bad):
+    with pytest.raises(CaretreeError, match="asked for"):
+        Plan(task="dressing", directory=tmp_path, **bad)
+
+
+def test_command_line(fake_caretree, capsys):
+    parser = argparse.ArgumentParser()
+    add_parser(parser.add_subparsers())
+    args = parser.parse_args(
+        ["trials", "dressing", "-n", "2", "--out", str(fake_caretree), "--gown", "small", "--inject", "stale@lift:step"]
+    )
+    assert args.main is main
+    assert main(args) == 0
+    assert "1/2 = 50%" in capsys.readouterr().out
+    assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == [
+        "--gown",
+        "small",
+        "--inject",
+        "stale@lift:step",
+    ]
+
+
+def test_a_trial_that_another_campaign_runs_is_left_alone(fake_caretree):
+    campaign = plan(fake_caretree, seeds=(0,))
+    theirs = FolderClaim(campaign.folder(0))
+    (campaign.folder(0) / "spool").write_text("their record", encoding="utf-8")
+    with pytest.raises(FolderTakenError, match="another run is writing"):
+        run_trials(campaign, lambda line: None)
+    assert (campaign.folder(0) / "spool").exists()
+    theirs.release()
+    run_trials(campaign, lambda line: None)

@@ -1,0 +1,35 @@
+"""`caretree evaluate` says dressed or not, by its exit status too."""
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+from caretree.sim.errors import CaretreeError
+from caretree.trees.commands.evaluate import add_parser
+
+
+def evaluate(*arguments: str) -> int:
+    parser = argparse.ArgumentParser()
+    add_parser(parser.add_subparsers())
+    args = parser.parse_args(["evaluate", *arguments])
+    return args.main(args)
+
+
+def test_dressed_and_not(make_record, tmp_path, capsys):
+    directory = make_record(tmp_path / "run")
+    assert evaluate(str(directory)) == 0
+    assert capsys.readouterr().out == "dressed\n"
+    with np.load(directory / "truth.npz") as stored:
+        arrays = {name: stored[name] for name in stored.files}
+    arrays["gripper_closed"][-1] = True
+    np.savez(directory / "truth.npz", **arrays)
+    assert evaluate(str(directory), "--json") == 1
+    verdict = json.loads(capsys.readouterr().out)
+    assert verdict["problems"] == ["a gripper still holds cloth in the last 2 s"]
+    assert verdict["agrees"] is False
+
+
+def test_unreadable_is_one_sentence(tmp_path):
+    with pytest.raises(CaretreeError, match="is not a folder"):
+        evaluate(str(tmp_path / "nowhere"))

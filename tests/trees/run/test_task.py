@@ -1,0 +1,134 @@
+from pathlib import Path
+
+import pytest
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.skills.core.context import Context
+from caretree.trees import tasks
+from caretree.trees.guard.guard import GuardedWorld
+from caretree.trees.nodes.decorators import FailSafe, Stage
+from caretree.trees.run.runner import run
+from caretree.trees.run.task import Task, TaskError, load_task, task_names
+from caretree.trees.tasks.wave import LetGo, MoveJoint
+
+GOOD = """
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from caretree.skills.core.ports import Input
+from caretree.skills.core.skill import Skill
+from caretree.trees.nodes.decorators import FailSafe
+
+
+@dataclass
+class Size:
+    metres: float
+
+
+class Wait(Skill):
+    seconds = Input(float, default=0.5)
+
+    def steps(self):
+        yield from self.wait(self.seconds)
+
+
+def build(context, seconds: float = 0.5):
+    return FailSafe("safe", Wait("wait", context, seconds=seconds), Wait("stay", context))
+"""
+
+
+def build(task, **params):
+    guard = GuardedWorld(ScriptedWorld())
+    return task.build(Context(world=guard, guard=guard), **params)
+
+
+def test_named_tasks_build():
+    assert "wave" in task_names()
+    for name in task_names():
+        world, perception = load_task(name).scripted(0)
+        guard = GuardedWorld(world)
+        load_task(name).build(Context(world=guard, guard=guard, perception=perception))
+
+
+@pytest.mark.parametrize(("stage", "first_letters"), [("", "ABCD"), ("C", "C"), ("C-D", "CD")])
+def test_a_span_of_the_dressing_task_holds_its_stages(stage, first_letters):
+    root = build(load_task("dressing"), stage=stage)
+    assert "".join(node.name[0] for node in root.iterate() if isinstance(node, Stage)) == first_letters
+
+
+def test_a_users_own_file_runs(tmp_path):
+    path = tmp_path / "mine.py"
+    path.write_text(GOOD)
+    task = load_task(str(path))
+    assert task.name == "mine"
+    result = run(task, ScriptedWorld(), params={"seconds": 2.0})
+    assert result.outcome == "success"
+    assert 2.0 < result.sim_time_s < 2.5
+
+
+def test_a_task_may_keep_its_skills_beside_it(tmp_path):
+    (tmp_path / "skills_beside_it.py").write_text(GOOD.split("def build")[0])
+    (tmp_path / "mine.py").write_text(
+        "from skills_beside_it import Wait\n\n\ndef build(context):\n    return Wait('wait', context)\n"
+    )
+    assert run(load_task(str(tmp_path / "mine.py")), ScriptedWorld()).outcome == "success"
+
+
+@pytest.mark.parametrize(
+    ("change", "line", "said"),
+    [
+        (lambda text: text.replace("def build(", "def make("), 1, "a task needs a function build(context)"),
+        (lambda text: text.replace("    return FailSafe(", "    return FailSafe(("), 24, "was never closed"),
+        (lambda text: text.replace("decorators import", "decorator import"), 8, "No module named"),
+        (
+            lambda text: text.replace("seconds=seconds)", "second=seconds)"),
+            24,
+            "Wait has no port 'second'; it has seconds",
+        ),
+        (lambda text: text.replace("    return FailSafe", "    FailSafe"), 23, "build() returned NoneType"),
+        (lambda text: text + "\nraise KeyError('x')\n", 26, "KeyError: 'x'"),
+        (lambda text: text + "\nraise SystemExit(3)\n", 26, "SystemExit: 3"),
+        (
+            lambda text: text.replace("from caretree.skills.core.ports", "from ...skills.ports"),
+            6,
+            "imports by full names",
+        ),
+        (lambda text: text.replace("seconds=seconds)", 'seconds="long")'), 24, "takes float, but was given str 'long'"),
+    ],
+)
+def test_a_broken_file_is_told_with_its_line(tmp_path, change, line, said):
+    path = tmp_path / "mine.py"
+    path.write_text(change(GOOD))
+    with pytest.raises(TaskError) as error:
+        build(load_task(str(path)))
+    assert str(error.value).startswith(f"{path}:{line}: ")
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_unknown_tasks_files_and_parameters():
+    with pytest.raises(TaskError, match=r"unknown task 'dance'; there are .*wave.*, or give the path of a \.py file"):
+        load_task("dance")
+    with pytest.raises(TaskError, match=r"task file nowhere/x\.py does not exist"):
+        load_task("nowhere/x.py")
+    with pytest.raises(TaskError, match=r"wave\.py:\d+: .*unexpected keyword argument 'colour'"):
+        build(load_task("wave"), colour="red")
+
+
+def test_a_task_of_the_package_is_found_by_its_path_too():
+    wave = load_task("wave")
+    assert load_task(str(Path(tasks.__file__).with_name("wave.py"))) == wave
+
+
+def test_a_folder_is_no_task_file(tmp_path):
+    (tmp_path / "task.py").mkdir()
+    with pytest.raises(TaskError, match=r"is a folder, but a \.py file is asked for"):
+        load_task(str(tmp_path / "task.py"))
+
+
+def test_a_joint_that_is_where_it_should_be_need_not_move():
+    def build(context):
+        move = MoveJoint("up", context, side="left", joint="w1", angle=0.0)
+        return FailSafe("safely", move, LetGo("let go", context))
+
+    assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"

@@ -1,0 +1,230 @@
+"""The fault campaign: every skill, every phase, every fault, each in a run of its own on a fresh world.
+
+A fault counts as survived when the task still succeeds or ends in the safe stop, and afterwards no hand moves,
+no arm is held, and, unless the task succeeded, the fingers are open.
+"""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from py_trees.behaviour import Behaviour
+
+from ...sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld
+from ...sim.record.record import RunResult
+from ...sim.world import SIDES, World
+from ...skills.core.context import Perception, Phase
+from ...skills.core.reasons import Reason, SkillFailure
+from ...skills.core.skill import Skill
+from ..nodes.decorators import FailSafe, RecoverBy
+from ..run.runner import OPEN, Run
+from ..run.task import Task
+
+FaultKey = tuple[str, str, str]  # node, phase, fault
+MakeWorld = Callable[[], tuple[World, Perception | None]]
+SETTLE = 1.0  # [s] watched after the end for anything that still moves
+MOVED = 0.02  # [rad] or [m] in that time
+SIGNS = {"success": "ok", "safe_stop": "stop", "failure": "fail", "not_reached": "-"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """How one injected fault ended.
+
+    Attributes:
+        node, phase, fault: what was injected where.
+        outcome: of the run, or `not_reached`.
+        reason: one sentence.
+        unsafe: what was still wrong afterwards; empty when nothing was.
+    """
+
+    node: str
+    phase: str
+    fault: str
+    outcome: str
+    reason: str = ""
+    unsafe: str = ""
+
+    @property
+    def key(self) -> FaultKey:
+        """What identifies the row."""
+        return self.node, self.phase, self.fault
+
+    @property
+    def survived(self) -> bool:
+        """Whether it ended in recovery or in the safe stop, and safely."""
+        return not self.unsafe and self.outcome in ("success", "safe_stop", "not_reached")
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+class Campaign:
+    """All faults at all nodes of one task.
+
+    Args:
+        task: to try.
+        make_world: a fresh world, and estimators if they are scripted, for every run.
+        seed: of every run.
+        faults: which ones.
+
+    Attributes:
+        nominal: outcome without any fault.
+        nodes: skills in the order of the tree.
+    """
+
+    def __init__(self, task: Task, make_world: MakeWorld, *, seed: int = 0, faults: tuple[str, ...] = FAULTS) -> None:
+        self._task = task
+        self._make_world = make_world
+        self._seed = seed
+        self._faults = faults
+        self._reached: set[tuple[str, str]] = set()
+        run = self._prepare(())
+        self.nodes = [node.name for node in run.root.iterate() if isinstance(node, Skill)]
+        self._movers = {node.name for node in run.root.iterate() if isinstance(node, Skill) and node.commands}
+        self._safe = {
+            leaf.name
+            for node in run.root.iterate()
+            if isinstance(node, FailSafe)
+            for leaf in node.safe.iterate()
+            if isinstance(leaf, Skill)
+        }
+        order: list[str] = []
+        run.context.observers.append(lambda node, phase: self._reached.add((node, phase)))
+        run.context.observers.append(lambda node, phase: order.append(node) if phase == "step" else None)
+        self.nominal = _finished(run)
+        run.world.close()
+        moving = [node for node in order if node in self._movers]
+        # to see the safe branch at work, the run is stopped where it is deepest in the task
+        self._interrupt_at = moving[-1] if moving else None
+        self._triggers = _triggers(run.root, set(order))
+
+    def plan(self) -> list[FaultKey]:
+        """Every node, phase and fault."""
+        return [(node, phase, fault) for node in self.nodes for phase in PHASES for fault in self._faults]
+
+    def rows(self, keys: Iterable[FaultKey] | None = None) -> Iterator[Row]:
+        """One row after the other: those of `keys`, or of the whole plan."""
+        for key in self.plan() if keys is None else keys:
+            yield self._row(*key)
+
+    def _row(self, node: str, phase: str, fault: str) -> Row:
+        stop_at, trigger = self._stop_at(node, phase), self._triggers.get(node)
+        needed = (node, "step") if phase == "cancel" else (node, phase)
+        reachable = stop_at is not None if node in self._safe else needed in self._reached or trigger is not None
+        if not reachable:
+            return Row(node=node, phase=phase, fault=fault, outcome="not_reached")
+        run = self._prepare((FaultSpec(fault, node, phase),))
+        if stop_at is not None:
+            run.context.observers.append(lambda name, now: _stop(run, name, now, stop_at))
+        if trigger is not None and needed not in self._reached:
+            run.context.observers.append(_Fail(*trigger))
+        world = run.world
+        assert isinstance(world, FaultyWorld)
+        try:
+            result = _finished(run)
+            if not world.begun:
+                return Row(node=node, phase=phase, fault=fault, outcome="not_reached")
+            return Row(
+                node=node,
+                phase=phase,
+                fault=fault,
+                outcome=result.outcome,
+                reason=result.reason,
+                unsafe=unsafe_after(run, result.outcome),
+            )
+        finally:
+            world.close()
+
+    def _stop_at(self, node: str, phase: str) -> str | None:
+        """The skill during which the operator stops the run, where that is how to reach the phase."""
+        if node in self._safe:
+            return self._interrupt_at
+        return node if phase == "cancel" else None
+
+    def _prepare(self, faults: tuple[FaultSpec, ...]) -> Run:
+        inner, perception = self._make_world()
+        return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, perception=perception)
+
+
+def _finished(run: Run) -> RunResult:
+    """Run to the end; a run that the operator ended says nothing of the fault.
+
+    Raises:
+        KeyboardInterrupt: it was.
+    """
+    result = run.run()
+    if run.interrupted:
+        raise KeyboardInterrupt
+    return result
+
+
+def _triggers(root: Behaviour, stepped: set[str]) -> dict[str, tuple[str, Reason]]:
+    """Skill in a recovery -> the skill that must fail, and the reason, for that recovery to run."""
+    found: dict[str, tuple[str, Reason]] = {}
+    for node in root.iterate():
+        if isinstance(node, RecoverBy):
+            causes = [leaf.name for leaf in node.body.iterate() if isinstance(leaf, Skill) and leaf.name in stepped]
+            for reason, recovery in node.recoveries.items():
+                for leaf in recovery.iterate():
+                    if causes and isinstance(leaf, Skill):
+                        found.setdefault(leaf.name, (causes[0], reason))
+    return found
+
+
+class _Fail:
+    """Makes one skill fail once for a given reason, as if by its own doing."""
+
+    def __init__(self, skill: str, reason: Reason) -> None:
+        self._skill, self._reason, self._armed = skill, reason, True
+
+    def __call__(self, name: str, phase: Phase) -> None:
+        if self._armed and name == self._skill and phase == "step":
+            self._armed = False
+            raise SkillFailure(self._reason, "made to fail by the campaign")
+
+
+def _stop(run: Run, name: str, phase: Phase, at: str) -> None:
+    if name == at and phase == "step":
+        run.request_stop(Reason.INTERRUPTED)
+
+
+def unsafe_after(run: Run, outcome: str) -> str:
+    """What is still wrong after a run: something moves, an arm is held, fingers are closed; empty when nothing is."""
+    world = run.world.inner if isinstance(run.world, FaultyWorld) else run.world
+    before = world.observe()
+    world.clock.wait_until(world.clock.now() + SETTLE)
+    after = world.observe()
+    if np.abs(after.arm_positions - before.arm_positions).max() > MOVED:
+        return "an arm still moves"
+    if np.abs(after.pose_base_in_map - before.pose_base_in_map).max() > MOVED:
+        return "the base still moves"
+    for n, side in enumerate(SIDES):
+        if run.guard.grip(side) == "arm" and after.gripper_opening[n] < OPEN:
+            return f"the {side} hand still holds the person's arm"
+        if outcome != "success" and after.gripper_opening[n] < OPEN:
+            return f"the {side} hand is still closed"
+    return ""
+
+
+def table(rows: list[Row]) -> str:
+    """One line for each node and phase, one column for each fault, and the count of outcomes."""
+    faults = list(dict.fromkeys(row.fault for row in rows))
+    cells = {row.key: "UNSAFE" if row.unsafe else SIGNS[row.outcome] for row in rows}
+    places = list(dict.fromkeys((row.node, row.phase) for row in rows))
+    head = ["node", "phase", *faults]
+    lines = [head, *([*place, *(cells.get((*place, fault), "") for fault in faults)] for place in places)]
+    widths = [max(len(line[n]) for line in lines) for n in range(len(head))]
+    text = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
+    counts = collections.Counter(row.outcome for row in rows)
+    bad = [row for row in rows if not row.survived]
+    text += ["", ", ".join(f"{counts[outcome]} {outcome.replace('_', ' ')}" for outcome in SIGNS if counts[outcome])]
+    text += [
+        f"not survived: {row.fault}@{row.node}:{row.phase}: {row.outcome}, {row.unsafe or row.reason}" for row in bad
+    ]
+    return "\n".join(text)

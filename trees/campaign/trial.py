@@ -1,0 +1,204 @@
+"""One trial: a run in a process of its own, kept as a folder with a small trial.json once it is over."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...sim.errors import CaretreeError, RecordError
+from ...sim.evaluate.verdict import evaluate
+from ...sim.record.folder_claim import FolderClaim, FolderTakenError
+from ...sim.record.record import is_finished, read_run
+from ...sim.record.spool import disk_error
+from ..run.task import JUDGED
+
+TRIAL_FILE = "trial.json"
+CARETREE = (sys.executable, "-m", "caretree.trees.cli")
+BAD_INPUT = 2  # exit status of `caretree` for a mistake of its user
+
+
+class InterruptedTrialError(Exception):
+    """The trial was stopped before it was over; it counts for nothing and runs again next time."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """How one trial went.
+
+    Attributes:
+        seed: of the run.
+        outcome: `success`, `failure` or `safe_stop` as the tree said; `crash` or `timeout` if it said nothing.
+        reason: one sentence.
+        dressed: what the evaluator found in the geometry; None where there is none or the task dresses nobody.
+        problems: of the evaluator.
+        numbers: of the evaluator.
+        stages: stage name -> status, as the tree said, in order.
+        sim_time_s: simulated time [s].
+        wall_time_s: wall time [s].
+    """
+
+    seed: int
+    outcome: str
+    reason: str
+    dressed: bool | None = None
+    problems: tuple[str, ...] = ()
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    stages: Mapping[str, str] = field(default_factory=dict)
+    sim_time_s: float | None = None
+    wall_time_s: float | None = None
+
+    @property
+    def succeeded(self) -> bool:
+        """Dressed by the geometry, or by the tree's word where there is no geometry."""
+        return self.outcome == "success" if self.dressed is None else self.dressed
+
+    def sentence(self, *, whole: bool = True) -> str:
+        """How it went in one line; one stage alone cannot be dressed, so `whole=False` leaves the verdict out."""
+        told = self.outcome.replace("_", " ")
+        if whole and self.dressed is not None:
+            told = ("dressed" if self.dressed else "not dressed") + ("" if self._believed() else f" (tree: {told})")
+        why = self.reason if self.outcome != "success" else "; ".join(self.problems[:2]) if whole else ""
+        took = ""
+        if self.sim_time_s is not None and self.wall_time_s is not None:
+            took = f" ({self.sim_time_s:.0f} s simulated in {self.wall_time_s:.0f} s)"
+        return f"seed {self.seed} {told}{took}{f': {why}' if why else ''}"
+
+    def _believed(self) -> bool:
+        """Whether the tree said what the evaluator found."""
+        return self.dressed == (self.outcome == "success")
+
+
+def read_trial(directory: Path) -> Trial | None:
+    """The finished trial in `directory`, or None if it has to run (again)."""
+    try:
+        stored = json.loads((directory / TRIAL_FILE).read_text(encoding="utf-8"))
+        return Trial(**(stored | {"problems": tuple(stored["problems"])}))
+    except (OSError, ValueError, TypeError, KeyError):
+        return None
+
+
+def _keep(directory: Path, trial: Trial) -> Trial:
+    part = directory / f"{TRIAL_FILE}.part"
+    try:
+        part.write_text(json.dumps(asdict(trial), indent=1) + "\n", encoding="utf-8")
+        part.replace(directory / TRIAL_FILE)
+    except OSError as error:
+        raise disk_error(error, f"writing {directory / TRIAL_FILE}") from error
+    return trial
+
+
+def judge_run(directory: Path, seed: int) -> Trial:
+    """Read a finished run and evaluate it.
+
+    Raises:
+        RecordError: there is no finished run.
+    """
+    run: dict[str, Any] = read_run(directory)
+    if not is_finished(run):
+        raise RecordError(f"{directory} holds no finished run")
+    stages = {str(stage["name"]): str(stage["status"]) for stage in run.get("stages", ())}
+    told = Trial(
+        seed=seed,
+        outcome=run["outcome"],
+        reason=str(run.get("reason") or ""),
+        stages=stages,
+        sim_time_s=run.get("sim_time_s"),
+        wall_time_s=run.get("wall_time_s"),
+    )
+    if run.get("world") != "bullet" or Path(str(run.get("task"))).stem not in JUDGED:  # no truth, or nobody to dress
+        return told
+    try:
+        verdict = evaluate(directory)
+    except RecordError as error:  # a run that cannot be judged has not dressed anybody
+        return Trial(**(_fields(told) | {"dressed": False, "problems": (str(error),)}))
+    return Trial(
+        **(_fields(told) | {"dressed": verdict.dressed, "problems": verdict.problems, "numbers": dict(verdict.numbers)})
+    )
+
+
+def _fields(trial: Trial) -> dict[str, Any]:
+    return {name: getattr(trial, name) for name in Trial.__dataclass_fields__}
+
+
+def run_trial(
+    task: str, seed: int, directory: Path, arguments: tuple[str, ...], *, patience: float, stop: threading.Event
+) -> Trial:
+    """Run one seed in a process of its own, or finish judging a run that is already there.
+
+    Args:
+        task: of the run.
+        seed: of the run.
+        directory: of its record; the child's output goes to a file of that name with `.log` beside it.
+        arguments: further arguments of `caretree run`.
+        patience: wall time after which a run counts as stuck [s].
+        stop: ends the run when set.
+
+    Raises:
+        CaretreeError: the child says that its input is bad, or another campaign runs this trial.
+        InterruptedTrialError: `stop` was set.
+    """
+    try:
+        return _keep(directory, judge_run(directory, seed))
+    except RecordError:
+        _clear(directory)
+    directory.mkdir(parents=True)
+    command = [*CARETREE, "run", task, "--seed", str(seed), "--out", str(directory), *arguments]
+    log = directory.with_name(f"{directory.name}.log")
+    with log.open("wb") as output:
+        # a session of its own: the terminal's Ctrl-C reaches only us, and an interrupted run does not count as failed
+        child = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+        status = _wait(child, patience, stop)
+    last = _last_line(log)
+    if status == BAD_INPUT:
+        raise CaretreeError(last or f"`caretree run {task}` refused its input without a word; see {log}")
+    try:
+        return _keep(directory, judge_run(directory, seed))
+    except RecordError:
+        if status is None:
+            return _keep(directory, Trial(seed=seed, outcome="timeout", reason=f"no end within {patience:g} s"))
+        return _keep(directory, Trial(seed=seed, outcome="crash", reason=f"exit status {status}: {last}"))
+
+
+def _clear(directory: Path) -> None:
+    """Remove what an earlier run left, unless it still goes on.
+
+    Raises:
+        FolderTakenError: it does.
+    """
+    try:
+        FolderClaim(directory).release()
+    except FolderTakenError:
+        raise
+    except RecordError:  # damaged: the more reason to begin anew
+        pass
+    shutil.rmtree(directory, ignore_errors=True)
+
+
+def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event) -> int | None:
+    """Exit status of the child, or None when it was ended for taking too long."""
+    waited = 0.0
+    try:
+        while waited < patience:
+            try:
+                return child.wait(timeout=0.2)
+            except subprocess.TimeoutExpired:
+                waited += 0.2
+            if stop.is_set():
+                raise InterruptedTrialError
+        return None
+    finally:
+        if child.poll() is None:
+            child.kill()
+            child.wait()
+
+
+def _last_line(log: Path) -> str:
+    lines = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
+    return lines[-1].strip().removeprefix("caretree: ") if lines else ""

@@ -1,0 +1,72 @@
+"""The success table of the paper: each stage on its own, each stage within whole runs, and whole runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .success_rate import SuccessRate
+from .trial import Trial, read_trial
+
+OVERALL = "overall"
+STAGE = "stage-"
+
+
+def collect(directory: Path) -> dict[str, list[Trial]]:
+    """Every finished trial of a campaign, by kind (`overall`, `stage-A` ...), in order of the seeds."""
+    kinds = [directory / OVERALL, *sorted(directory.glob(f"{STAGE}*"))]
+    found = {
+        kind.name: [trial for folder in sorted(kind.glob("seed-*")) if (trial := read_trial(folder)) is not None]
+        for kind in kinds
+    }
+    return {kind: trials for kind, trials in found.items() if trials}
+
+
+def letter(stage: str) -> str:
+    """`C` of `C`, `C dress` or `C: dress`: how the command line names a stage."""
+    return stage.split()[0].rstrip(":") if stage.split() else stage
+
+
+def rates(trials: dict[str, list[Trial]]) -> dict[str, dict[str, SuccessRate]]:
+    """The rows of the table: `independent` and `overall`, each by stage; `overall` also by the whole task.
+
+    As in the paper, a stage's overall rate is over the trials that came to it.
+    """
+    names = list(dict.fromkeys(name for many in trials.values() for trial in many for name in trial.stages))
+    alone: dict[str, SuccessRate] = {}
+    together: dict[str, SuccessRate] = {}
+    for name in names:
+        own = trials.get(f"{STAGE}{letter(name)}", [])
+        alone[name] = SuccessRate(successes=sum(trial.stages.get(name) == "success" for trial in own), trials=len(own))
+        within = [trial.stages.get(name, "not_run") for trial in trials.get(OVERALL, [])]
+        ran = [status for status in within if status != "not_run"]
+        together[name] = SuccessRate(successes=ran.count("success"), trials=len(ran))
+    whole = trials.get(OVERALL, [])
+    together[OVERALL] = SuccessRate(successes=sum(trial.succeeded for trial in whole), trials=len(whole))
+    return {"independent": alone, "overall": together}
+
+
+def table(trials: dict[str, list[Trial]]) -> str:
+    """The table to read, with 95 % intervals."""
+    rows = rates(trials)
+    columns = list(rows["overall"])
+    head = ["success rate", *columns]
+    body = [[f"{row} trials", *(str(rows[row].get(column, "-")) for column in columns)] for row in rows]
+    widths = [max(len(line[k]) for line in (head, *body)) for k in range(len(head))]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in (head, *body)
+    ]
+    whole = trials.get(OVERALL, [])
+    wrong = [trial.seed for trial in whole if trial.dressed not in (None, trial.outcome == "success")]
+    judged = any(trial.dressed is not None for trial in whole)
+    source = "by the evaluator, from the geometry alone" if judged else "as the tree says too"
+    lines += ["", f"Stages as the tree says; overall {source}.  Brackets: 95 % Wilson intervals."]
+    if wrong:
+        lines.append(f"The tree and the evaluator disagree on seeds {', '.join(map(str, wrong))}.")
+    for kind, many in trials.items():
+        lines += [
+            f"  {kind}: {trial.sentence(whole=kind == OVERALL)}"
+            for trial in many
+            if not (trial.succeeded if kind == OVERALL else trial.outcome == "success")
+        ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,92 @@
+"""`caretree trials TASK -n N`: many seeds, one success table."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ...sim.errors import CaretreeError
+from ..campaign.trials import TABLE, Plan, run_trials
+
+PASSED_ON = ("world", "gown", "person", "model")  # to every `caretree run`
+INTERRUPTED = 130  # as shells count a Ctrl-C
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the command line; `main` runs it."""
+    parser = subparsers.add_parser(
+        "trials",
+        help="run many seeds and count successes, by stage and overall",
+        description="Run TASK once for each seed, each in a process of its own.  Finished trials are kept: the same "
+        "command goes on where it was interrupted.",
+    )
+    parser.add_argument("task", metavar="TASK")
+    parser.add_argument("-n", type=int, metavar="N", help="number of trials, seeds 0 to N-1 (10)")
+    parser.add_argument("--seeds", metavar="A-B", help="seeds A to B instead, or a list like 3,7,9")
+    parser.add_argument(
+        "--stage", metavar="STAGE", help="run one stage alone, or a span such as C-D, from a world prepared for it"
+    )
+    parser.add_argument("--jobs", type=int, default=1, metavar="J", help="runs at the same time (1)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the campaign (runs/trials-TASK)")
+    for name in PASSED_ON:
+        parser.add_argument(f"--{name}", metavar=name.upper(), help="handed to every `caretree run`")
+    parser.add_argument(
+        "--inject",
+        action="append",
+        default=[],
+        metavar="FAULT@NODE:PHASE",
+        help="a fault in every run; may be repeated",
+    )
+    parser.set_defaults(main=main)
+
+
+def parse_seeds(count: int | None, seeds: str | None) -> tuple[int, ...]:
+    """Seeds of `-n N` and `--seeds A-B`.
+
+    Raises:
+        CaretreeError: neither form fits, or both are given and differ.
+    """
+    if seeds is None:
+        number = 10 if count is None else count
+        if number < 1:
+            raise CaretreeError(f"-n is {number}, but at least 1 trial is asked for")
+        return tuple(range(number))
+    try:
+        if "-" in seeds:
+            first, last = (int(part) for part in seeds.split("-"))
+            found = tuple(range(first, last + 1))
+        else:
+            found = tuple(int(part) for part in seeds.split(","))
+    except ValueError as error:
+        raise CaretreeError(f"--seeds is {seeds!r}, but A-B like 0-9 or a list like 3,7,9 is asked for") from error
+    if not found:
+        raise CaretreeError(f"--seeds is {seeds!r}, but A must not be above B")
+    if count is not None and count != len(found):
+        raise CaretreeError(f"-n is {count}, but --seeds {seeds} names {len(found)} seeds")
+    return found
+
+
+def main(args: argparse.Namespace) -> int:
+    """Run the campaign and print its table; 0 when every trial came to an end, however it ended.
+
+    Raises:
+        CaretreeError: bad input, or the disk is full.
+    """
+    directory = args.out or Path("runs") / f"trials-{Path(args.task).stem}"
+    arguments = [part for name in PASSED_ON if getattr(args, name) for part in (f"--{name}", getattr(args, name))]
+    arguments += [part for fault in args.inject for part in ("--inject", fault)]
+    plan = Plan(
+        task=args.task,
+        seeds=parse_seeds(args.n, args.seeds),
+        directory=directory,
+        stage=args.stage,
+        arguments=tuple(arguments),
+        jobs=args.jobs,
+    )
+    try:
+        run_trials(plan, lambda line: print(line, flush=True))
+    except KeyboardInterrupt:
+        print(f"interrupted: finished trials are kept in {directory}; the same command goes on", flush=True)
+        return INTERRUPTED
+    print(f"\n{(directory / TABLE).read_text(encoding='utf-8')}\n{directory / TABLE}")
+    return 0

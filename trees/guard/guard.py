@@ -1,0 +1,339 @@
+"""The guard: a world that keeps the limits, whoever commands it.
+
+The runner wraps every world in it, so that a task author cannot leave it out.  It
+
+- keeps a hand slow near the person, by scaling twists and base velocities and by stretching trajectories;
+- scales pulling down as the cloth load grows, stops at the limit, and then lets only relieving motion pass;
+- caps the grip on an arm and the speed of a hand that holds one;
+- stops the run when the senses are stale, frozen or gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...sim.world import (
+    SIDES,
+    BaseVelocity,
+    Command,
+    Frame,
+    GripperOpening,
+    HandTwist,
+    JointTrajectory,
+    Observation,
+    SensorLost,
+    Side,
+    World,
+)
+from ...skills.core.context import Grip
+from ...skills.core.reasons import Failure, Reason, SkillFailure
+from .hand_speed import hand_path, hand_positions_from, near_speed, near_speed_bound, stretched
+from .limits import DEFAULT, Limits
+from .person_zone import PersonZone
+from .watchdog import Watchdog
+
+LIFT_MIN = 0.05  # [m] shorter motions of a held arm are corrections, not lifts
+BOTH_MOVE = 0.7  # [m] further from the person than `near`, an arm may move fast while the base moves too
+OPENED = 0.01  # [m] a command that opens the fingers by this much lets go
+
+
+class GuardedWorld:
+    """A world behind the limits.  It passes on the contract and nothing else, so truth stays out of reach.
+
+    Args:
+        inner: the world.
+        limits: what to enforce.
+        kinematics: of the robot; taken from `inner.kinematics` when not given.  Without one, trajectories
+            near the person are bounded by the arm's reach, which is safe and slow.
+        on_command: told of every command really sent.
+    """
+
+    def __init__(
+        self,
+        inner: World,
+        limits: Limits = DEFAULT,
+        *,
+        kinematics: Any = None,
+        on_command: Callable[[Command], None] | None = None,
+    ) -> None:
+        self.limits = limits
+        self._on_command = on_command
+        self.clock = inner.clock
+        self.room = inner.room
+        self._inner = inner
+        self._zone = PersonZone(inner.room.bed, limits.person_above_bed)
+        self._watchdog = Watchdog(limits)
+        self._hand_positions = hand_positions_from(kinematics or getattr(inner, "kinematics", None))
+        self._grip: dict[Side, Grip] = {"left": "nothing", "right": "nothing"}
+        self._over = {side: False for side in SIDES}
+        self._fault: Failure | None = None
+        self._base_until, self._base_speed = -np.inf, np.zeros(2)
+        self._arm_until = {side: -np.inf for side in SIDES}  # what the arm itself was last told to do
+        self._arm_speed = {side: 0.0 for side in SIDES}
+        self._last: Observation | None = None
+        self._heavy_since: dict[Side, float | None] = {side: None for side in SIDES}
+        self._fast_since: dict[Side, float | None] = {side: None for side in SIDES}
+
+    # -- what skills tell and ask ------------------------------------------------------------------------
+
+    def update_person(self, points_in_map: np.ndarray, *, part: str = "person", radius: float = 0.06) -> None:
+        """Say where a part of the person is: a chain of points (n, 3) and its radius [m]."""
+        self._zone.update(points_in_map, part=part, radius=radius)
+
+    def declare_grip(self, side: Side, what: Grip) -> None:
+        """Say what a hand holds; undeclared loads are taken as cloth."""
+        self._grip[side] = what
+
+    def grip(self, side: Side) -> Grip:
+        """What a hand was said to hold."""
+        return self._grip[side]
+
+    def take_fault(self) -> Failure | None:
+        """The failure held against the running skill, once."""
+        fault, self._fault = self._fault, None
+        return fault
+
+    def still(self) -> bool:
+        """Whether neither arms nor base move; raises SensorLost."""
+        seen = self.observe()
+        return bool(
+            np.abs(seen.arm_velocities).max() < self.limits.still_joint_speed
+            and np.abs(seen.twist_base).max() < self.limits.still_base_speed
+        )
+
+    def check(self) -> Failure | None:
+        """Judge the state once per tick.
+
+        Returns:
+            What must stop the whole run (dead senses), or None.  An excess of load or speed stops the motion
+            at once and is held against the running skill instead.
+        """
+        try:
+            self.observe()
+        except SensorLost as lost:
+            dead = self._watchdog.judge(self.clock.now())
+            return dead and Failure(Reason.SENSOR_LOST, str(lost), "guard")
+        return self._watchdog.judge(self.clock.now())
+
+    # -- World -------------------------------------------------------------------------------------------
+
+    def observe(self) -> Observation:
+        """Latest proprioception, judged; raises SensorLost."""
+        seen = self._inner.observe()
+        self._watchdog.sample(seen, self.clock.now())
+        self._judge_load(seen)
+        self._judge_speed(seen)
+        self._last = seen
+        return seen
+
+    def look(self, camera: str) -> Frame:
+        """Latest frame.
+
+        Raises:
+            SensorLost: the camera is dead.
+            SkillFailure: the frame is stale or frozen.
+        """
+        frame = self._inner.look(camera)
+        fault = self._watchdog.frame(frame, self.clock.now())
+        if fault is not None:
+            raise SkillFailure(fault.reason, fault.detail)
+        return frame
+
+    def send(self, command: Command, *, retreat: bool = False) -> Command:
+        """Start a motion as far as the limits allow.
+
+        Args:
+            command: what to do.
+            retreat: the motion takes load off the person, whatever its direction.
+
+        Returns:
+            What was really sent.
+
+        Raises:
+            SkillFailure: the load is at its limit and the motion does not relieve it.
+        """
+        seen = self.observe()
+        if isinstance(command, HandTwist):
+            command = self._slow_twist(command, seen, retreat)
+        elif isinstance(command, JointTrajectory):
+            command = self._slow_trajectory(command, seen, retreat)
+        elif isinstance(command, BaseVelocity):
+            command = self._slow_base(command, seen, retreat)
+        else:
+            command = self._soft_grip(command, seen)
+        sent = self._inner.send(command)
+        if self._on_command is not None:
+            self._on_command(sent)
+        return sent
+
+    def stop(self) -> None:
+        """End every motion now."""
+        self._base_until = -np.inf
+        self._arm_until = {side: -np.inf for side in SIDES}
+        self._inner.stop()
+
+    def close(self) -> None:
+        """Release what the world holds."""
+        self._inner.close()
+
+    # -- limits ------------------------------------------------------------------------------------------
+
+    def _judge_load(self, seen: Observation) -> None:
+        for n, side in enumerate(SIDES):
+            load = float(np.linalg.norm(seen.wrench_hand_in_map[n, :3]))
+            limit = self._load_stop(side)
+            if load >= limit and self._lasts(side, load, seen.time) and not self._over[side]:
+                self._over[side] = True
+                self.stop()
+                detail = f"{load:.1f} N on the {side} hand, limit {limit:g} N"
+                self._fault = Failure(Reason.FORCE_LIMIT, detail, "guard")
+            elif load < limit:
+                self._heavy_since[side] = None
+            if load < limit * self.limits.cloth_load_rearm / self.limits.cloth_load_stop:
+                self._over[side] = False
+
+    def _lasts(self, side: Side, load: float, time: float) -> bool:
+        """Whether a load above the limit counts: the pull of a held arm has to last, or to be far above it."""
+        if self._grip[side] != "arm" or load >= self.limits.arm_load_peak:
+            return True
+        since = self._heavy_since[side]
+        if since is None:
+            self._heavy_since[side] = time
+            return False
+        return time - since > self.limits.arm_load_for
+
+    def _judge_speed(self, seen: Observation) -> None:
+        last = self._last
+        if last is None or seen.time <= last.time:
+            return
+        hands, before = seen.pose_hand_in_map[:, :3, 3], last.pose_hand_in_map[:, :3, 3]
+        speed = np.linalg.norm(hands - before, axis=1) / (seen.time - last.time)
+        close = self._zone.distance(hands) < self.limits.near_person
+        for n, side in enumerate(SIDES):
+            if not close[n] or speed[n] <= self.limits.hand_speed * self.limits.overspeed_factor:
+                self._fast_since[side] = None
+            elif (since := self._fast_since[side]) is None:
+                self._fast_since[side] = last.time
+            elif seen.time - since > self.limits.overspeed_for:
+                self._fast_since[side] = None
+                self.stop()
+                self._fault = Failure(Reason.SPEED_LIMIT, f"{side} hand at {speed[n]:.2f} m/s", "guard")
+
+    def _load_stop(self, side: Side) -> float:
+        return self.limits.arm_load_stop if self._grip[side] == "arm" else self.limits.cloth_load_stop
+
+    def _ease(self, side: Side, motion: np.ndarray, seen: Observation, retreat: bool) -> float:
+        """Factor 0 to 1 for a hand's `motion` (3,) under its present load; raises SkillFailure at the limit."""
+        force = seen.wrench_hand_in_map[SIDES.index(side), :3]
+        load, stop = float(np.linalg.norm(force)), self._load_stop(side)
+        if retreat or not np.any(motion) or float(motion @ force) > 0.0:
+            return 1.0  # the hand moves the way it is pulled, or away: relief must stay possible
+        if load >= stop and self._grip[side] == "arm" and not self._over[side]:
+            return 0.0  # it waits for the load to fall, or to have lasted too long
+        if load >= stop:
+            raise SkillFailure(Reason.FORCE_LIMIT, f"{load:.1f} N on the {side} hand, limit {stop:g} N")
+        slow = self.limits.cloth_load_slow
+        if self._grip[side] == "arm" or load <= slow:
+            return 1.0
+        return (stop - load) / (stop - slow)
+
+    def _speed_limit(self, side: Side) -> float:
+        held = self._grip[side] == "arm"
+        return min(self.limits.lift_speed, self._near_limit()) if held else self._near_limit()
+
+    def _near_limit(self) -> float:
+        return self.limits.hand_speed * self.limits.hand_speed_commanded
+
+    def _slow_twist(self, command: HandTwist, seen: Observation, retreat: bool) -> HandTwist:
+        side, twist = command.side, np.array(command.twist_in_map, float)
+        twist *= self._ease(side, twist[:3], seen, retreat)
+        hand = seen.pose_hand_in_map[SIDES.index(side), :3, 3]
+        carried = self._carried(side, seen)
+        speed = float(np.linalg.norm(twist[:3]))
+        ahead = hand + np.linspace(0.0, command.duration, 5)[:, None] * twist[:3]
+        near = bool((self._zone.distance(ahead) < self.limits.near_person + carried * command.duration).any())
+        if near or self._grip[side] == "arm":
+            limit = max(self._speed_limit(side) - carried, 0.0)
+            if speed > limit:
+                twist *= limit / speed
+        self._arm_moves(side, float(np.linalg.norm(twist[:3])), command.duration)
+        return replace(command, twist_in_map=twist)
+
+    def _slow_trajectory(self, command: JointTrajectory, seen: Observation, retreat: bool) -> JointTrajectory:
+        factor, fastest = 1.0, {}
+        for side in SIDES:
+            index = SIDES.index(side)
+            if self._hand_positions is None:
+                if any(joint.startswith(f"{side}_") for joint in command.joints):
+                    if np.linalg.norm(seen.wrench_hand_in_map[index, :3]) >= self._load_stop(side) and not retreat:
+                        self._ease(side, -seen.wrench_hand_in_map[index, :3], seen, retreat)
+                    speed = near_speed_bound(command, side, seen, self._zone, self.limits.near_person)
+                    factor = max(factor, speed / self._speed_limit(side))
+                    fastest[side] = self._speed_limit(side)
+                continue
+            walked = hand_path(command, side, seen, self._hand_positions)
+            if walked is None:
+                continue
+            times, path = walked
+            ease = self._ease(side, path[-1] - path[0], seen, retreat)
+            carried = self._carried(side, seen)
+            reach = self.limits.near_person + (BOTH_MOVE if carried > 0.0 else 0.0)
+            speed = near_speed(times, path, self._zone, reach)
+            steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+            fastest[side] = float((steps / np.maximum(np.diff(times), 1e-9)).max(initial=0.0))
+            if self._grip[side] == "arm":
+                speed = fastest[side]
+                if np.linalg.norm(path - path[0], axis=1).max() > LIFT_MIN:
+                    factor = max(factor, self.limits.lift_duration / max(float(times[-1]), 1e-9))
+            limit = max(self._speed_limit(side) - carried, 1e-3)
+            factor = max(factor, speed / limit, 1.0 / max(ease, 0.05))
+        for side, speed in fastest.items():
+            self._arm_moves(side, speed / factor, float(command.times[-1]) * factor)
+        return stretched(command, factor) if factor > 1.0 else command
+
+    def _arm_moves(self, side: Side, speed: float, duration: float) -> None:
+        self._arm_until[side] = self.clock.now() + duration
+        self._arm_speed[side] = speed
+
+    def _slow_base(self, command: BaseVelocity, seen: Observation, retreat: bool) -> BaseVelocity:
+        velocity, factor = np.array(command.velocity, float), 1.0
+        x, y, yaw = seen.pose_base_in_map
+        turn = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
+        hands = seen.pose_hand_in_map[:, :3, 3]
+        for n, side in enumerate(SIDES):
+            arm = hands[n, :2] - (x, y)
+            planar = turn @ velocity[:2] + velocity[2] * np.array((-arm[1], arm[0]))
+            motion = np.append(planar, 0.0)
+            factor = min(factor, self._ease(side, motion, seen, retreat))
+            speed = float(np.linalg.norm(motion))
+            ahead = hands[n] + np.linspace(0.0, command.duration, 5)[:, None] * motion
+            own = self._arm_speed[side] if self.clock.now() < self._arm_until[side] else 0.0
+            # an arm on its way was judged with the base at rest: moving both keeps further away
+            reach = self.limits.near_person + (own * command.duration if own <= self._speed_limit(side) else BOTH_MOVE)
+            near = bool((self._zone.distance(ahead) < reach).any())
+            if speed > 0 and (near or self._grip[side] == "arm"):
+                factor = min(factor, max(self._speed_limit(side) - own, 0.0) / speed)
+        velocity *= factor
+        self._base_until = self.clock.now() + command.duration
+        self._base_speed = np.array((np.linalg.norm(velocity[:2]), abs(velocity[2])))
+        return replace(command, velocity=velocity)
+
+    def _carried(self, side: Side, seen: Observation) -> float:
+        """Speed that the moving base gives a hand now [m/s]."""
+        if self.clock.now() >= self._base_until:
+            return 0.0
+        arm = seen.pose_hand_in_map[SIDES.index(side), :2, 3] - seen.pose_base_in_map[:2]
+        return float(self._base_speed[0] + self._base_speed[1] * np.linalg.norm(arm))
+
+    def _soft_grip(self, command: GripperOpening, seen: Observation) -> GripperOpening:
+        n = SIDES.index(command.side)
+        if command.opening > seen.gripper_opening[n] + OPENED:
+            self._grip[command.side] = "nothing"
+        near = self._zone.distance(seen.pose_hand_in_map[n, :3, 3])[0] < self.limits.near_person
+        if near or self._grip[command.side] == "arm":
+            return replace(command, force_limit=min(command.force_limit, self.limits.grip_force_arm))
+        return command

@@ -1,0 +1,154 @@
+"""Proof before motion: `caretree check TASK` shows that the wiring holds and that every failure ends safely."""
+
+from __future__ import annotations
+
+import collections
+from dataclasses import dataclass, field
+
+import py_trees
+from py_trees.behaviour import Behaviour
+from py_trees.common import ParallelPolicy
+
+from ...skills.core.context import Context
+from ...skills.core.skill import Skill
+from ..guard.guard import GuardedWorld
+from ..nodes.composers import commanding
+from ..nodes.decorators import FailSafe, RecoverBy, Retry
+from ..run.task import Task
+from ..run.trace import paths_of
+from .explore import FROM_OUTSIDE, Explorer
+from .wiring import Wiring
+
+# py_trees' own nodes that break a law of this project when skills are below them.
+REFUSED = {
+    py_trees.decorators.Retry: "keeps the data of failed attempts; use caretree.trees.decorators.Retry",
+    py_trees.decorators.Repeat: "keeps the data of earlier rounds; build the body as often as it is needed",
+    py_trees.decorators.Timeout: "counts wall time; use caretree.trees.decorators.Timeout",
+    py_trees.decorators.EternalGuard: "refuses numpy's truth values; use watch() or a Condition",
+}
+
+
+@dataclass
+class CheckReport:
+    """What a check found.
+
+    Attributes:
+        findings: one sentence for each fault; empty when the task holds.
+        notes: oddities that harm nobody.
+        skills: number of skills.
+        executions: ways followed with stub leaves.
+        situations: different points of decision met.
+        complete: whether all were followed.
+    """
+
+    findings: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    skills: int = 0
+    executions: int = 0
+    situations: int = 0
+    complete: bool = False
+
+    @property
+    def ok(self) -> bool:
+        """Whether the task may run."""
+        return not self.findings and self.complete
+
+
+def check(task: Task) -> CheckReport:
+    """Check a task without moving anything.
+
+    Raises:
+        TaskError: the tree cannot even be built.
+    """
+    report = CheckReport()
+    root = fresh_tree(task)
+    paths = paths_of(root)
+    report.skills = sum(isinstance(node, Skill) for node in root.iterate())
+    report.findings += _names(root) + _nodes(root, paths) + _fail_safes(root, paths)
+    report.notes += _idle_recoveries(root, paths)
+    wiring = Wiring(paths)
+    wiring.check(root)
+    report.findings += wiring.findings
+    explorer = Explorer(fresh_tree(task))
+    explorer.explore()
+    report.findings += explorer.findings
+    report.executions, report.situations, report.complete = explorer.executions, explorer.situations, explorer.complete
+    if not explorer.complete and not explorer.findings:
+        report.findings.append(f"the tree is too large to prove: gave up after {explorer.executions} executions")
+    return report
+
+
+def fresh_tree(task: Task) -> Behaviour:
+    """The task's tree, built on its scripted world.
+
+    Raises:
+        TaskError: it cannot be built.
+    """
+    world, perception = task.scripted(0)
+    guard = GuardedWorld(world)
+    return task.build(Context(world=guard, guard=guard, perception=perception))
+
+
+def _names(root: Behaviour) -> list[str]:
+    counts = collections.Counter(node.name for node in root.iterate() if isinstance(node, Skill))
+    return [
+        f"{count} skills are called {name!r}, but faults and records find a skill by its name"
+        for name, count in counts.items()
+        if count > 1
+    ]
+
+
+def _nodes(root: Behaviour, paths: dict[Behaviour, str]) -> list[str]:
+    found = []
+    for node in root.iterate():
+        movers = [child.name for child in node.children if commanding(child)]
+        where = paths[node]
+        for kind, why in REFUSED.items():
+            if isinstance(node, kind) and any(isinstance(leaf, Skill) for leaf in node.iterate()):
+                found.append(f"{where}: py_trees' {kind.__name__} {why}")
+        if isinstance(node, py_trees.composites.Selector) and node.memory is not True and len(movers) > 1:
+            found.append(
+                f"{where}: a selector without memory could let {movers[0]!r} and {movers[1]!r} command in one "
+                "tick; use fallback()"
+            )
+        if isinstance(node, py_trees.composites.Sequence) and node.memory is not True and len(movers) > 1:
+            found.append(f"{where}: a sequence without memory starts {movers[0]!r} again on every tick; use sequence()")
+        if isinstance(node, py_trees.composites.Parallel):
+            if len(movers) > 1:
+                found.append(f"{where}: {movers[0]!r} and {movers[1]!r} would wait for each other; use sequence()")
+            if not isinstance(node.policy, ParallelPolicy.Base):
+                found.append(f"{where}: policy {node.policy!r} is no ParallelPolicy; use parallel()")
+    return found
+
+
+def _fail_safes(root: Behaviour, paths: dict[Behaviour, str]) -> list[str]:
+    covered: set[Behaviour] = set()
+    found = []
+    for node in root.iterate():
+        if isinstance(node, FailSafe):
+            covered |= set(node.iterate())
+            if not commanding(node.safe):
+                found.append(f"{paths[node]}: its safe branch moves nothing, so it cannot release or back off")
+    return found + [
+        f"{paths[leaf]}: it moves the robot, but no FailSafe is above it"
+        for leaf in commanding(root)
+        if leaf not in covered
+    ]
+
+
+def _idle_recoveries(root: Behaviour, paths: dict[Behaviour, str]) -> list[str]:
+    notes = []
+    for node in root.iterate():
+        if isinstance(node, Retry) and node.attempts == 1:
+            notes.append(f"{paths[node]}: one attempt is no retry")
+        if not isinstance(node, RecoverBy):
+            continue
+        leaves = [leaf for leaf in node.body.iterate() if not leaf.children]
+        said = {reason for leaf in leaves for reason in getattr(leaf, "reasons", ())} | set(FROM_OUTSIDE)
+        said |= {leaf.reason for leaf in leaves if hasattr(leaf, "reason")}  # type: ignore[attr-defined] conditions
+        notes += [
+            f"{paths[node]}: no skill below says that it fails with {reason.name.lower()}; that recovery is idle"
+            for reason in node.recoveries
+            if reason not in said
+        ]
+    return notes

@@ -1,0 +1,281 @@
+"""Runs a tree with stubs for leaves through every combination of their outcomes, in milliseconds.
+
+Each leaf succeeds, fails in each way that makes a difference to anybody above and in one that nobody reacts to, or,
+under a timeout, never ends.  A situation that was met before is not followed again, so the work grows with
+the number of situations, not with the number of ways through the tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import py_trees
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from ...sim.scripted.clock import SteppedClock
+from ...sim.scripted.world import ScriptedWorld
+from ...skills.core.context import Context
+from ...skills.core.ports import Key
+from ...skills.core.reasons import Failure, Reason
+from ...skills.core.skill import Skill
+from ..nodes.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
+
+# What the guard or the world can do to any skill, whatever the skill says of itself.
+FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE)
+OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
+TICKS_MAX = 2000
+FINDINGS_MAX = 20
+ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
+
+
+class _Known(Exception):  # noqa: N818 ends an execution, no defect
+    """This situation has been explored already."""
+
+
+class _Round(Exception):  # noqa: N818 a finding about the tree
+    """The same situation twice in one execution."""
+
+
+class _Missing(Exception):  # noqa: N818 a finding about the tree
+    """A leaf reads what is not there."""
+
+
+class Stub(Behaviour):
+    """Stands in for a leaf: reads and writes its keys, and ends as the explorer says."""
+
+    def __init__(self, leaf: Behaviour, explorer: Explorer) -> None:
+        super().__init__(leaf.name)
+        self.leaf = leaf
+        self.parent = leaf.parent
+        self.commands = isinstance(leaf, Skill) and leaf.commands
+        self.reads = [k.name for k in self._bound(leaf, "inputs")]
+        self.writes = [k.name for k in self._bound(leaf, "outputs")]
+        self.failure: Failure | None = None
+        self._explorer = explorer
+
+    @staticmethod
+    def _bound(leaf: Behaviour, which: str) -> list[Key]:
+        if not isinstance(leaf, Skill):
+            return []
+        return [bound for name, _ in getattr(leaf, which)() if isinstance(bound := leaf.bindings[name], Key)]
+
+    def initialise(self) -> None:
+        """As a skill does: forget outputs."""
+        self.failure = None
+        self._explorer.board -= set(self.writes)
+
+    def update(self) -> Status:
+        """Read, be decided, write."""
+        missing = [key for key in self.reads if key not in self._explorer.board]
+        if missing:
+            raise _Missing(f"{self.name} reads {missing[0]!r}, which has not been written")
+        outcome = self._explorer.choose(self)
+        if outcome is None:
+            return Status.RUNNING
+        if outcome is True:
+            self._explorer.board |= set(self.writes)
+            return Status.SUCCESS
+        self.failure = Failure(outcome, "", self.name)
+        return Status.FAILURE
+
+
+class Explorer:
+    """Explores one tree; the tree's leaves are replaced and it cannot be run afterwards.
+
+    Args:
+        root: of the tree.
+        limit: executions after which it gives up and says so.
+
+    Attributes:
+        board: keys written in the present execution.
+        executions: how many were followed.
+        situations: how many different ones were met.
+        complete: whether everything was explored.
+        findings: one sentence for each fault, with the way that leads to it.
+    """
+
+    def __init__(self, root: Behaviour, limit: int = 50_000) -> None:
+        self.board: set[str] = set()
+        self.executions = 0
+        self.complete = False
+        self.findings: list[str] = []
+        self._limit = limit
+        world = ScriptedWorld()
+        self._clock: SteppedClock = world.time
+        self._context = Context(world=world, guard=None)  # type: ignore[arg-type] stubs neither send nor ask the guard
+        self._root = self._replace_leaves(root)
+        self._nodes = list(self._root.iterate())
+        for node in self._nodes:
+            if isinstance(node, (Retry, RecoverBy)):
+                node.attempts = min(node.attempts, ATTEMPTS)
+        self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
+        self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
+        self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
+        self._seen: set[Any] = set()
+        self._met: set[Any] = set()  # situations of the present execution
+        self._prefix: list[int] = []
+        self._taken: list[int] = []
+        self._way: list[tuple[Stub, Any]] = []
+        self._stack: list[list[int]] = [[]]
+        self._hung = False  # some leaf chose in this tick never to end
+
+    @property
+    def situations(self) -> int:
+        """Different points of decision met."""
+        return len(self._seen)
+
+    def explore(self) -> None:
+        """Follow every way."""
+        while self._stack:
+            if self.executions >= self._limit or len(self.findings) >= FINDINGS_MAX:
+                return
+            self._prefix = self._stack.pop()
+            self.executions += 1
+            self._execute()
+        self.complete = True
+
+    def choose(self, leaf: Stub) -> Any:
+        """The outcome of `leaf` in this execution: True, a Reason, or None for never."""
+        options = self._options[leaf]
+        depth = len(self._taken)
+        situation = self._situation(leaf)
+        if situation in self._met:
+            raise _Round(f"the tree goes round for ever at {leaf.name}")
+        self._met.add(situation)
+        if depth < len(self._prefix):
+            choice = self._prefix[depth]
+        else:
+            if situation in self._seen:
+                raise _Known
+            self._seen.add(situation)
+            choice = 0
+            self._stack += [[*self._taken, other] for other in range(1, len(options))]
+        self._taken.append(choice)
+        self._way.append((leaf, options[choice]))
+        self._hung |= options[choice] is None
+        return options[choice]
+
+    def _execute(self) -> None:
+        self._reset()
+        try:
+            for _ in range(TICKS_MAX):
+                for _ in self._root.tick():
+                    pass
+                if self._root.status != Status.RUNNING:
+                    self._judge()
+                    return
+                self._pass_time()
+            self._find("the tree does not end")
+        except _Known:
+            return
+        except (_Missing, _Round) as finding:
+            self._find(str(finding))
+
+    def _pass_time(self) -> None:
+        """When a leaf hangs, the next timeout is what happens next."""
+        running = [node.ends for node in self._nodes if isinstance(node, Timeout) and node.status == Status.RUNNING]
+        if self._hung and running:
+            self._clock.time = max(self._clock.time, min(running))
+        self._hung = False
+
+    def _judge(self) -> None:
+        if self._root.status != Status.FAILURE:
+            return
+        moved = [n for n, (leaf, _) in enumerate(self._way) if leaf.commands and leaf not in self._in_safe]
+        if moved and not any(leaf in self._in_safe for leaf, _ in self._way[moved[-1] :]):
+            self._find("the tree fails without a safe branch")
+
+    def _find(self, what: str) -> None:
+        steps = [f"{leaf.name} {_said(outcome)}" for leaf, outcome in self._way[-6:]]
+        more = "... " if len(self._way) > 6 else ""
+        self.findings.append(f"{what}, after {more}{', '.join(steps) or 'nothing'}")
+
+    def _reset(self) -> None:
+        self.board.clear()
+        self._met.clear()
+        self._taken, self._way, self._hung = [], [], False
+        self._clock.time = 0.0
+        for node in self._nodes:
+            node.status = Status.INVALID
+            if isinstance(node, py_trees.composites.Composite):
+                node.current_child = None
+
+    def _situation(self, leaf: Stub) -> Any:
+        """All that decides what can happen from here on."""
+        active = {leaf, *(above for above, _ in _ancestors(leaf))}
+        moved = any(each.commands and each not in self._in_safe for each, _ in self._way)
+        return leaf.id, self._read & self.board, moved, self._state(self._root, active)
+
+    def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
+        """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
+        if node not in active and node.status != Status.RUNNING:
+            return node.status
+        state: list[Any] = [node.status]
+        if isinstance(node, (Retry, RecoverBy)):
+            state.append(node.tried)
+        if isinstance(node, FailSafe) or (isinstance(node, RecoverBy) and node.recovering is not None):
+            state.append(node.failure.reason if node.failure else None)
+        remembers = isinstance(node, Wrapper) or getattr(node, "memory", False) is True
+        if remembers and isinstance(node, py_trees.composites.Composite):
+            child = node.current_child
+            return (*state, child and child.id, child and self._state(child, active))
+        return (*state, *(self._state(child, active) for child in node.children))
+
+    def _outcomes(self, stub: Stub) -> list[Any]:
+        """True, then one reason for each way of reacting above, then `never` under a timeout."""
+        reacting: list[RecoverBy] = []
+        timed = False
+        for above, child in _ancestors(stub):
+            if child is above.children[0]:  # in the body, not in a recovery
+                reacting += [above] if isinstance(above, RecoverBy) else []
+                timed |= isinstance(above, Timeout)
+        leaf = stub.leaf
+        if isinstance(leaf, Condition):
+            possible = {leaf.reason}
+        else:
+            possible = set(leaf.reasons) if isinstance(leaf, Skill) else set()
+            possible |= set(FROM_OUTSIDE) if isinstance(leaf, Skill) else set()
+        ways: dict[Any, Reason] = {}  # reasons with the same recoveries all the way up lead to the same situations
+        for reason in sorted(possible, key=lambda reason: reason.name):
+            way = tuple(node.recoveries.get(reason) for node in reacting)
+            if any(way):
+                ways.setdefault(way, reason)
+        return [True, OTHER, *ways.values(), *([None] if timed and isinstance(leaf, Skill) else [])]
+
+    def _replace_leaves(self, root: Behaviour) -> Behaviour:
+        if not root.children:
+            return Stub(root, self)
+        for node in list(root.iterate()):
+            if isinstance(node, Wrapper):
+                node.bind(self._context)
+            for n, child in enumerate(node.children):
+                if child.children:
+                    continue
+                stub = Stub(child, self)
+                node.children[n] = stub
+                if isinstance(node, py_trees.decorators.Decorator):
+                    node.decorated = stub
+                if isinstance(node, Stage) and node.precondition is child:
+                    node.precondition = stub
+                if isinstance(node, RecoverBy):
+                    node.recoveries = {r: stub if tree is child else tree for r, tree in node.recoveries.items()}
+                policy = getattr(node, "policy", None)
+                if isinstance(policy, py_trees.common.ParallelPolicy.SuccessOnSelected):
+                    policy.children = [stub if each is child else each for each in policy.children]
+        return root
+
+
+def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:
+    """Each node above, with the child that leads down."""
+    child = node
+    while child.parent is not None:
+        yield child.parent, child
+        child = child.parent
+
+
+def _said(outcome: Any) -> str:
+    if outcome is None:
+        return "never ends"
+    return "succeeds" if outcome is True else f"fails ({outcome.name.lower()})"

@@ -1,0 +1,176 @@
+"""The pictures of a report: timeline, curves and key frames, each as the bytes of an image file."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...sim.evaluate.limits import STRETCH_MAX, STRETCH_P99_MAX, UPPER_ARM_MIN
+from ...sim.world import SIDES
+from ..guard.limits import DEFAULT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...sim.evaluate.series import Series
+    from .timeline import Span
+
+WIDTH = 9.6  # [in] of every figure, so that their time axes line up
+COLOURS = {"left": "#1f6fb2", "right": "#c8641b"}
+STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "running": "#d9a53a"}
+LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
+ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 40
+
+
+def _figure(rows: int, height: float) -> tuple[Figure, list[Axes]]:
+    """An empty figure with `rows` plots on one time axis."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)  # no display, no global state
+    axes = list(np.atleast_1d(figure.subplots(rows, 1, sharex=True)))
+    for axis in axes:
+        axis.grid(axis="x" if rows == 1 else "both", color="#e4e7ea", linewidth=0.7)
+        axis.set_axisbelow(True)
+        axis.spines[["top", "right"]].set_visible(False)
+        axis.tick_params(labelsize=8, length=3)
+    return figure, axes
+
+
+def _png(figure: Figure) -> bytes:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=130)
+    return buffer.getvalue()
+
+
+def timeline(stages: Sequence[Mapping[str, Any]], spans: Sequence[Span], end: float) -> bytes:
+    """Stages and skills as bars over time (PNG).
+
+    Args:
+        stages: of run.json.
+        spans: of the skills, in order of their start.
+        end: of the time axis [s].
+    """
+    bars: list[tuple[str, list[tuple[float, float, str]]]] = []
+    for stage in stages:
+        if stage.get("t_start") is not None:
+            stop = stage.get("t_end")
+            stop = end if stop is None else float(stop)
+            bars.append((str(stage.get("name")), [(float(stage["t_start"]), stop, str(stage.get("status")))]))
+    first_skill = len(bars)
+    names = list(dict.fromkeys(span.name for span in spans))
+    for name in names[:ROWS_MAX]:
+        bars.append((name, [(span.t_start, span.t_end, span.status.lower()) for span in spans if span.name == name]))
+    figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)))
+    for row, (_, pieces) in enumerate(bars):
+        for start, stop, status in pieces:
+            axis.barh(
+                row,
+                max(stop - start, 0.004 * end),
+                left=start,
+                height=0.72,
+                linewidth=0,
+                color=STATUS.get(status, STATUS["running"]),
+                alpha=1.0 if row < first_skill else 0.75,
+            )
+    axis.set_yticks(range(len(bars)), [name for name, _ in bars])
+    for label in axis.get_yticklabels()[:first_skill]:
+        label.set_fontweight("bold")
+    axis.set_ylim(len(bars) - 0.4, -0.6)
+    axis.set_xlim(0, max(end, 1e-3))
+    axis.set_xlabel("time [s]", fontsize=8)
+    if len(names) > ROWS_MAX:
+        axis.set_title(f"the first {ROWS_MAX} of {len(names)} skills", fontsize=8)
+    return _png(figure)
+
+
+def _line(axis: Axes, value: float, label: str) -> None:
+    """A limit, named beside the plot, where no curve runs."""
+    axis.axhline(value, **LIMIT)
+    axis.annotate(
+        label,
+        (1.0, value),
+        xycoords=("axes fraction", "data"),
+        xytext=(3, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=7,
+        color=LIMIT["color"],
+    )
+
+
+def _both(axis: Axes, t: np.ndarray, curves: np.ndarray) -> None:
+    for k, side in enumerate(SIDES):
+        axis.plot(t, curves[:, k], color=COLOURS[side], linewidth=1.0, label=side)
+    _legend(axis)
+
+
+def _legend(axis: Axes) -> None:
+    """Above the plot, where no curve runs."""
+    axis.legend(fontsize=7, loc="lower left", bbox_to_anchor=(0.0, 0.97), frameon=False, ncols=4, borderpad=0.1)
+
+
+def curves(series: Series) -> bytes:
+    """Loads, forces, hands, sleeves and stretch over time, with the limits drawn (PNG)."""
+    figure, (load, force, distance, speed, sleeves, stretch) = _figure(6, 9.6)
+    t = series.t
+    _both(load, t, np.where(series.holds, series.load, np.nan))
+    load.set_ylabel("cloth load [N]", fontsize=8)
+    _line(load, DEFAULT.cloth_load_slow, "slow down")
+    _line(load, DEFAULT.cloth_load_stop, "stop")
+    load.set_ylim(0, 1.25 * max(DEFAULT.cloth_load_stop, float(np.nanmax(series.load, initial=0.0))))
+
+    order = np.argsort(-np.nan_to_num(series.person_force).max(axis=0, initial=0.0))
+    for part in order[:4]:
+        force.plot(t, series.person_force[:, part], linewidth=1.0, label=series.person_parts[part].replace("_", " "))
+    force.set_ylabel("force on person [N]", fontsize=8)
+    force.set_ylim(bottom=0)
+    if len(order):
+        _line(force, DEFAULT.arm_load_stop, "stop, if it lasts")
+        force.set_ylim(0, 1.25 * max(DEFAULT.arm_load_stop, float(np.nanmax(series.person_force, initial=0.0))))
+        _legend(force)
+
+    _both(distance, t, series.distance)
+    distance.set_ylabel("hand to person [m]", fontsize=8)
+    distance.set_ylim(0, 1.0)
+    _line(distance, DEFAULT.near_person, "near")
+
+    near = np.where(series.distance < DEFAULT.near_person, series.speed, np.nan)
+    for k, side in enumerate(SIDES):
+        speed.plot(t, series.speed[:, k], color=COLOURS[side], linewidth=0.7, alpha=0.35, label=f"{side}, farther away")
+        speed.plot(t, near[:, k], color=COLOURS[side], linewidth=1.2, label=f"{side}, near the person")
+    speed.set_ylabel("hand speed [m/s]", fontsize=8)
+    _line(speed, DEFAULT.hand_speed, "limit, near")
+    speed.set_ylim(0, max(2.2 * DEFAULT.hand_speed, 1.1 * float(np.nanmax(series.speed, initial=0.0))))
+    _legend(speed)
+
+    _both(sleeves, t, series.upper_arm)
+    sleeves.set_ylabel("armhole up the\nupper arm", fontsize=8)
+    sleeves.set_ylim(0, 1.15)
+    _line(sleeves, UPPER_ARM_MIN, "at least")
+
+    stretch.plot(t, series.stretch_p99, color="#566573", linewidth=1.0, label="99th percentile")
+    stretch.plot(t, series.stretch_max, color="#a9b4bd", linewidth=1.0, label="longest")
+    stretch.set_ylabel("edge over rest", fontsize=8)
+    _line(stretch, STRETCH_P99_MAX, "99th at most")
+    _line(stretch, STRETCH_MAX, "longest at most")
+    stretch.set_ylim(0.9, 1.12 * max(STRETCH_MAX, float(np.nanmax(series.stretch_max, initial=0.0))))
+    _legend(stretch)
+    stretch.set_xlabel("time [s]", fontsize=8)
+    stretch.set_xlim(0, max(float(t[-1]), 1e-3))
+    figure.align_ylabels()
+    return _png(figure)
+
+
+def jpeg(image: np.ndarray) -> bytes:
+    """A key frame (H, W, 3) uint8 as JPEG."""
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    Image.fromarray(image).save(buffer, format="JPEG", quality=85)
+    return buffer.getvalue()

@@ -1,0 +1,400 @@
+"""Runs a tree on a world: ticks it, guards it, fences its errors in, and makes the person safe at every end.
+
+| the tree | fail-safe branch or last resort needed | outcome |
+|---|---|---|
+| succeeds | no | `success` |
+| fails | no | `failure` |
+| fails, is interrupted, raises, or the senses die | yes | `safe_stop` |
+
+Whatever happens, the last things done are: motions cancelled, `world.stop()` until nothing moves, and, where no
+safe branch succeeded, the fingers opened.
+"""
+
+from __future__ import annotations
+
+import difflib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from ...sim.errors import CaretreeError
+from ...sim.faults import FaultyWorld
+from ...sim.record.record import RunResult
+from ...sim.world import SIDES, GripperOpening, World, WorldError
+from ...skills.core.context import Context, Perception
+from ...skills.core.reasons import Failure, Reason
+from ...skills.core.skill import Skill
+from ..guard.guard import GuardedWorld
+from ..guard.limits import DEFAULT, Limits
+from ..nodes.decorators import FailSafe, Stage
+from ..nodes.failures import failure_of
+from .task import Task
+from .trace import Trace
+
+RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
+OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
+OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
+CALM_TICKS = 5
+FEW_NAMES = 12  # so many are listed whole in an error
+DEAD_CLOCK_TICKS = 30  # ticks without any progress of the world's clock
+
+
+class EventSink(Protocol):
+    """The part of a recorder that the runner uses; `finish` stays with whoever made it."""
+
+    def event(self, event: Mapping[str, Any]) -> None:
+        """Append one event to the trace on disk."""
+        ...
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One change worth telling the operator.
+
+    Attributes:
+        time: world clock [s].
+        kind: `stage` or `skill`.
+        name: of the node.
+        status: `running`, `success`, `failure` or `stopped`.
+        message: why, or what is going on.
+    """
+
+    time: float
+    kind: Literal["stage", "skill"]
+    name: str
+    status: str
+    message: str = ""
+
+
+class Run:
+    """One run of one tree; `run()` below is the usual way in.
+
+    Args:
+        task: what to do.
+        world: unguarded; the run puts the guard around it.
+        seed: of the run's chance.
+        rate_hz: ticks per second of world time.
+        recorder: gets every event of the trace.
+        on_progress: told of stages and skills as they begin and end.
+        perception: estimators to use instead of the task's own.
+        params: for the task's `build`.
+        limits: what the guard enforces.
+
+    Attributes:
+        context: shared by the skills.
+        root: the tree.
+        trace: what happened.
+        interrupted: somebody pressed Ctrl-C meanwhile; the run then ended in the safe stop, and who started it may
+            want to end too.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        world: World,
+        *,
+        seed: int = 0,
+        rate_hz: float = 15.0,
+        recorder: EventSink | None = None,
+        on_progress: Callable[[Progress], None] | None = None,
+        perception: Perception | None = None,
+        params: Mapping[str, Any] | None = None,
+        limits: Limits = DEFAULT,
+    ) -> None:
+        if not rate_hz > 0:
+            raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
+        self.world = world
+        self.limits = limits
+        self.guard = GuardedWorld(world, limits, on_command=lambda command: self.trace.command(command))
+        self.context = Context(world=self.guard, guard=self.guard, perception=perception, seed=seed)
+        self.context.lease.patience = limits.stop_patience
+        self.root = task.build(self.context, **(params or {}))
+        for node in self.root.iterate():
+            if hasattr(node, "bind"):
+                node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions
+        self.trace = Trace(self.root, self.context.now, recorder.event if recorder else None)
+        self._period = 1.0 / rate_hz
+        self._ticked = float("-inf")
+        self._tell = on_progress or (lambda progress: None)
+        self._told: dict[Behaviour, Status] = {}
+        self._stop: Failure | None = None
+        self.interrupted = False
+        self._timing = {"tree": 0.0, "world": 0.0}
+        if isinstance(world, FaultyWorld):
+            self._check_fault_nodes(world)
+            self.context.observers.append(world.on_phase)
+
+    def request_stop(self, reason: Reason = Reason.INTERRUPTED, detail: str = "") -> None:
+        """Ask for the safe stop at the next tick, as an operator's button does."""
+        if self._stop is None:
+            self._stop = Failure(reason, detail, "operator")
+
+    def _check_fault_nodes(self, world: FaultyWorld) -> None:
+        skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
+        for spec in world.faults:
+            if spec.node not in skills:
+                raise CaretreeError(f"fault {spec} names no skill of this task; {_nearest(spec.node, skills)}")
+
+    def run(self) -> RunResult:
+        """Tick to the end and make safe.  Raises only what the recorder or the world's owner must know."""
+        failure: Failure | None = None
+        try:
+            failure = self._tick_to_end()
+        except KeyboardInterrupt:
+            self.interrupted = True
+            failure = Failure(Reason.INTERRUPTED, "", "operator")
+        except (OSError, CaretreeError) as error:
+            if not isinstance(error, WorldError):
+                self._last_resort()
+                raise  # the record cannot be written: the caller says so in one sentence
+            failure = Failure(Reason.INTERNAL_ERROR, str(error), "runner")
+        except Exception as error:  # the fence: py_trees leaves ancestors running after an exception in a node
+            self.context.report(error)
+            failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", "runner")
+        except BaseException:
+            self._last_resort()
+            raise
+        try:
+            return self._end(failure)
+        except BaseException:  # interrupted once more, or the record cannot be written
+            self._last_resort()
+            raise
+
+    # -- ticking -----------------------------------------------------------------------------------------
+
+    def _tick_to_end(self) -> Failure | None:
+        """Tick until the tree is done; the failure that stops it from outside, if one does."""
+        started = self.context.now()
+        while True:
+            stop = self._stop or self.guard.check()
+            if stop is None and (stuck := self.context.lease.stuck()) is not None:
+                stop = Failure(Reason.MOTION_BLOCKED, "it does not stop", stuck.name)
+            if stop is None and self.context.now() - started > self.limits.run:
+                stop = Failure(Reason.TIMEOUT, f"no run may last over {self.limits.run:g} s", "runner")
+            if stop is not None:
+                return stop
+            self._tick(self.root)
+            if self.root.status != Status.RUNNING:
+                return None
+            self._pass_time()
+
+    def _tick(self, node: Behaviour) -> None:
+        began = time.perf_counter()
+        self._ticked = self.context.now()
+        self.context.lease.advance()
+        for visited in node.tick():
+            self.trace.visit(visited)
+            self._progress(visited)
+        self._sweep()
+        self._timing["tree"] += time.perf_counter() - began
+
+    def _pass_time(self) -> None:
+        """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
+        began = time.perf_counter()
+        now, due = self.context.now(), self._ticked + self._period
+        if now >= due:
+            return
+        for _ in range(DEAD_CLOCK_TICKS):
+            self.world.clock.wait_until(due)
+            if self.context.now() > now:
+                break
+        else:
+            raise WorldError("the world's clock stands still")
+        self._timing["world"] += time.perf_counter() - began
+
+    def _progress(self, node: Behaviour) -> None:
+        if not isinstance(node, (Skill, Stage)):
+            return
+        above, parent = [], node.parent
+        while parent is not None:
+            above += [parent] if isinstance(parent, Stage) and self._told.get(parent) != Status.RUNNING else []
+            parent = parent.parent
+        for stage in reversed(above):  # py_trees yields children first, an operator reads the stage first
+            self._announce(stage, Status.RUNNING)
+        self._announce(node, node.status)
+
+    def _sweep(self) -> None:
+        """Note and tell what was stopped without being visited; what is reset may be told of again."""
+        self.trace.sweep()
+        for node, told in list(self._told.items()):
+            if node.status == Status.INVALID and isinstance(node, (Skill, Stage)):
+                if told == Status.RUNNING:
+                    self._announce(node, Status.INVALID)
+                del self._told[node]
+
+    def _announce(self, node: Skill | Stage, status: Status) -> None:
+        if self._told.get(node) == status:
+            return
+        self._told[node] = status
+        failure = node.failure if status == Status.FAILURE else None
+        if failure is not None and failure.node == node.name:
+            failure = replace(failure, node="")  # the line names the node already
+        words = {Status.INVALID: "stopped"}.get(status, status.name.lower())
+        self._tell(
+            Progress(
+                self.context.now(),
+                "skill" if isinstance(node, Skill) else "stage",
+                node.name,
+                words,
+                failure.sentence() if failure else node.feedback_message,
+            )
+        )
+
+    # -- the end -----------------------------------------------------------------------------------------
+
+    def _end(self, failure: Failure | None) -> RunResult:
+        """Make safe, stop, and say how it went."""
+        if failure is not None:
+            self._halt(self.root)
+            self._run_safe_branches()
+        elif self.root.status == Status.FAILURE:
+            failure = failure_of(self.root)
+        elif self.root.status != Status.SUCCESS:
+            failure = Failure(Reason.INTERNAL_ERROR, f"the tree ended as {self.root.status.name}", self.root.name)
+        branches = [node for node in self.root.iterate() if isinstance(node, FailSafe)]
+        owed = failure is not None and (not branches or any(node.entered for node in branches))
+        made_safe = any(node.made_safe is not None for node in branches)
+        # even a safe branch that succeeded may have misread fingers that were on their way
+        stood = self._last_resort(release=failure is not None and (owed or made_safe))
+        self.trace.sweep()
+        if failure is None:
+            outcome, reason = "success", "The task is done."
+        else:
+            outcome = "safe_stop" if made_safe or owed else "failure"
+            reason = failure.sentence()
+        if not stood:
+            outcome, reason = "safe_stop", f"{reason} The robot did not come to rest: {Reason.MOTION_BLOCKED.value}"
+        self.trace.add("end", outcome=outcome, reason=failure.reason.name if failure else None)
+        stages = tuple(node.result for node in _in_order(self.root) if isinstance(node, Stage))
+        return RunResult(
+            outcome=outcome,
+            reason=reason,
+            stages=stages,
+            sim_time_s=self.context.now(),
+            timing=self._timing,
+            trace_hash=self.trace.digest(),
+        )
+
+    def _halt(self, node: Behaviour) -> None:
+        """End every node below `node`, leaves first, even where an exception left the statuses inconsistent."""
+        for each in node.iterate():
+            try:
+                if isinstance(each, Skill):
+                    each.terminate(Status.INVALID)
+                    each.status = Status.INVALID
+                elif each.status != Status.INVALID:
+                    each.stop(Status.INVALID)
+            except Exception as error:
+                self.context.report(error)
+                each.status = Status.INVALID
+        self._sweep()
+
+    def _run_safe_branches(self) -> None:
+        """Tick the safe branch of every fail-safe that was entered, innermost first."""
+        for node in [each for each in self.root.iterate() if isinstance(each, FailSafe) and each.entered]:
+            try:
+                node.made_safe = self._tick_safe(node.safe)
+                node.entered = not node.made_safe
+            except KeyboardInterrupt:  # the operator insists: leave the rest to the last resort
+                self.interrupted = True
+                return
+            except Exception as error:
+                self.context.report(error)
+                node.made_safe = False
+            finally:
+                self._halt(node.safe)
+
+    def _tick_safe(self, safe: Behaviour) -> bool:
+        """Tick a safe branch to its end; False when it fails or takes too long."""
+        ends = self.context.now() + self.limits.safe_branch
+        while self.context.now() < ends:
+            self.guard.check()  # stops on excess load; dead senses no longer change what has to be done
+            if self.context.lease.stuck() is not None:
+                self.guard.stop()  # releasing the person matters more than whose turn it is
+                self.context.lease.clear()
+            self._tick(safe)
+            if safe.status != Status.RUNNING:
+                return safe.status == Status.SUCCESS
+            self._pass_time()
+        return False
+
+    def _last_resort(self, release: bool = True) -> bool:
+        """Stop until nothing moves, open the fingers if asked to; True when the robot stands still.
+
+        A command may be lost on its way, so stop and open are sent until they are seen to have worked for some
+        ticks on end.  Errors are kept: nothing may keep the rest from happening.
+        """
+        ends = self.context.now() + self.limits.stop_patience
+        calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
+        before = np.zeros(2)
+        for _ in range(10_000):  # a dead clock must not keep us here
+            self._ticked = self.context.now()
+            self._try(self.context.lease.advance)
+            self._try(self.guard.stop)
+            if release:
+                for side in SIDES:
+                    self._try(lambda side=side: self.world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
+            rests = bool(self._try(self.guard.still, default=False))
+            opening = self._try(lambda: self.world.observe().gripper_opening, default=np.zeros(2))
+            opened = not release or bool((opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all())
+            before = opening
+            calm = calm + 1 if rests and opened and not self.context.lease.releasing() else 0
+            if calm >= wanted or self.context.now() >= ends:
+                break
+            if self._try(lambda: self._pass_time() or True, default=False) is False:
+                break
+        self.context.lease.clear()
+        self._try(self.guard.stop)
+        return calm > 0
+
+    def _try(self, action: Callable[[], Any], default: Any = None) -> Any:
+        try:
+            return action()
+        except (Exception, KeyboardInterrupt) as error:
+            self.interrupted |= isinstance(error, KeyboardInterrupt)
+            self.context.report(error)
+            return default
+
+
+def _nearest(name: str, names: list[str]) -> str:
+    """What could have been meant: all of a few names, else those most alike."""
+    if len(names) <= FEW_NAMES:
+        return f"there are {', '.join(map(repr, names))}"
+    alike = difflib.get_close_matches(name, names, n=5, cutoff=0.0)
+    return f"of {len(names)}, the nearest are {', '.join(map(repr, alike))}; `caretree check TASK --tree` shows all"
+
+
+def _in_order(node: Behaviour) -> list[Behaviour]:
+    """Nodes below `node`, parents before children, children in order."""
+    return [node] + [each for child in node.children for each in _in_order(child)]
+
+
+def run(
+    task: Task,
+    world: World,
+    *,
+    seed: int = 0,
+    rate_hz: float = 15.0,
+    recorder: EventSink | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
+    perception: Perception | None = None,
+    params: Mapping[str, Any] | None = None,
+    limits: Limits = DEFAULT,
+) -> RunResult:
+    """Build the task's tree on `world` and run it to its end; see `Run` for the arguments."""
+    return Run(
+        task,
+        world,
+        seed=seed,
+        rate_hz=rate_hz,
+        recorder=recorder,
+        on_progress=on_progress,
+        perception=perception,
+        params=params,
+        limits=limits,
+    ).run()

@@ -1,0 +1,57 @@
+"""Worlds by the name given on the command line; the heavy ones are imported only when asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...sim.errors import CaretreeError
+from ...sim.world import World
+from ...skills.core.context import Perception
+from .task import Task
+
+WORLDS = ("bullet", "scripted", "ros1")
+
+
+def make_world(
+    name: str,
+    task: Task,
+    *,
+    seed: int,
+    gown: str | None = None,
+    person: str | None = None,
+    model: str | None = None,
+    view: bool = False,
+) -> tuple[World, Perception | None]:
+    """The world called `name`, and its estimators where these are scripted.
+
+    Raises:
+        CaretreeError: an unknown world, an option that this world does not take, or a world that is not there.
+    """
+    if name == "scripted":
+        asked = {"--gown": gown, "--person": person, "--model": model, "--view": view}
+        given = [flag for flag, value in asked.items() if value]
+        if given:
+            raise CaretreeError(f"{given[0]} needs the bullet world: the scripted world has no cloth and no person")
+        return task.scripted(seed)
+    if name == "ros1":
+        raise CaretreeError("the ros1 adapter is not in this version; there are bullet and scripted")
+    if name != "bullet":
+        raise CaretreeError(f"unknown world {name!r}; there are {', '.join(WORLDS)}")
+    try:
+        from ...sim.bullet.world import BulletWorld  # pyright: ignore[reportMissingImports] pulls pybullet and pinocchio
+    except ImportError as error:
+        raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
+    options: dict[str, Any] = {"gown": gown, "person": person, "model": model}
+    options = {key: value for key, value in options.items() if value is not None}
+    return BulletWorld(seed=seed, view=view, **options), None
+
+
+def prepare_stage(world: World, stage: str | None) -> None:
+    """Bring `world` to where `stage` begins, where it can; None stands for the whole task.
+
+    Raises:
+        CaretreeError: this world cannot begin there.
+    """
+    prepare = getattr(world, "prepare_stage", None)
+    if prepare is not None and stage:
+        prepare(stage)

@@ -1,0 +1,137 @@
+"""Stage A of the dressing tree: from the side that shows the outside, take both ends of the neckline, lift it off."""
+
+from __future__ import annotations
+
+import numpy as np
+from py_trees.behaviour import Behaviour
+
+from ....skills.core.context import Context
+from ....skills.core.ports import Key
+from ....skills.core.reasons import Reason
+from ....skills.find_corner import FindCorner
+from ....skills.flip_side_check import FlipSideCheck
+from ....skills.navigate import Navigate
+from ....skills.pre_grasp_manipulate import PreGraspManipulate
+from ....skills.raise_corner import RaiseCorner
+from ....skills.release import Release
+from ....skills.retreat import Retreat
+from ....skills.segment_and_grasp import SegmentAndGrasp
+from ....skills.take_corner import TakeCorner
+from ....skills.take_down import TakeDown
+from ....skills.unhook import Unhook
+from ....skills.view_around import ViewAround
+from ...nodes.composers import fallback, sequence
+from ...nodes.decorators import Condition, Retry, Stage, Timeout
+
+NECKLINE = (0.70, 0.98)  # both strips of a hung gown's neckline together: less, and one was not held by its end [m]
+FARTHER_ROUND = float(np.deg2rad(60.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
+OPEN = 0.02  # of fingers that hold nothing [m]
+EDGE = -0.002  # of the fingertips beyond a corner: of 30 gowns one has another sheet a centimetre behind it [m]
+SEEN = 0.45  # confidence of a corner that is seen, not inferred
+
+
+def take_down(context: Context) -> Behaviour:
+    """Stage A."""
+    find_outside = fallback(
+        "find the outside",
+        FlipSideCheck("outside to the front", context, hung=True, sure=0.0),
+        Navigate("go behind the rail", context, goal="rail_back"),
+    )
+    by_both_ends = sequence(
+        "by both ends of the neckline",
+        fallback("free hands", Condition("nothing is held", _hands_open), Retreat("let go of both ends", context)),
+        take_ends(context),
+        TakeDown("lift it off the hook", context, hook=Key("hook")),
+    )
+    return Stage(
+        "A take down",
+        None,
+        Timeout(
+            "A in time",
+            sequence(
+                "take the gown down",
+                Navigate("go to the rail", context, goal="rail"),
+                find_outside,
+                fallback("take it", Retry("the other end first", by_both_ends, attempts=3), from_one_hand(context)),
+            ),
+            seconds=260.0,
+        ),
+    )
+
+
+def take_ends(context: Context) -> Behaviour:
+    """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one."""
+    hook, held, lengths = Key("hook"), Key("held"), (Key("strip"), Key("other_strip"))
+    found = {port: Key(f"corner_{port}") for port in ("found", "sleeve", "other", "hand", "other_hand")}
+    first, second = found["hand"], found["other_hand"]
+
+    def take(name: str, **ports: object) -> TakeCorner:
+        return TakeCorner(
+            name,
+            context,
+            hand=first,
+            sleeve=found["sleeve"],
+            hook=hook,
+            found=found["found"],
+            length=lengths[0],
+            **ports,
+        )
+
+    def take_other(how: str, **ports: object) -> TakeCorner:
+        return TakeCorner(
+            f"take the other corner {how}",
+            context,
+            hand=second,
+            sleeve=found["other"],
+            hook=hook,
+            held=held,
+            length=lengths[1],
+            **ports,
+        )
+
+    def complete(context: Context) -> bool:
+        """Both strips together are as long as a neckline."""
+        return NECKLINE[0] < sum(context.board.get(key.name) for key in lengths) < NECKLINE[1]
+
+    return sequence(
+        "take both ends",
+        FindCorner("look for a corner", context, hook=hook, **found),
+        fallback(
+            "a corner",
+            take("take a corner", opening=0.03, depth=EDGE),
+            take("take it deeper", opening=0.04, depth=0.006),
+        ),
+        RaiseCorner("draw it aside", context, hand=first, hook=hook, held=held),
+        FlipSideCheck("outside still to the front", context, sure=0.3),
+        fallback(
+            "the other corner",
+            take_other("as it hangs", sure=SEEN, opening=0.035),
+            sequence(
+                "from farther round",
+                RaiseCorner("draw it farther round", context, hand=first, hook=hook, held=held, away=FARTHER_ROUND),
+                take_other("from farther round"),
+            ),
+        ),
+        Condition("both ends of the neckline", complete, Reason.GRASP_MISSED),
+    )
+
+
+def from_one_hand(context: Context) -> Behaviour:
+    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
+    views, holder, former = Key("views"), Key("holder"), Key("former")
+    return sequence(
+        "from one hand",
+        Retreat("let go of the neckline", context),
+        SegmentAndGrasp("take it near the hook", context, side="right"),
+        Unhook("lift it off with one hand", context, side="right"),
+        ViewAround("look at it from all sides", context, side="right", views=views),
+        PreGraspManipulate("take one corner", context, views=views, holder=holder, former=former),
+        Release("let the place near the hook go", context, side=former),
+        ViewAround("look at it again from all sides", context, side=holder, views=views),
+        PreGraspManipulate("take the other corner", context, views=views, nearest=0.3),
+    )
+
+
+def _hands_open(context: Context) -> bool:
+    """Both grippers stand open [m]."""
+    return bool(np.all(context.world.observe().gripper_opening > OPEN))
