@@ -14,6 +14,7 @@ from ...sim.world import Clock, Command, Frame, Observation, RoomMap, Side
 from .lease import MotionLease
 from .ports import Board
 from .reasons import Failure
+from .settings import Settings
 
 T = TypeVar("T")
 Phase = Literal["start", "step", "cancel"]
@@ -119,6 +120,7 @@ class Context:
         guard: of that world.
         perception: estimators by name.
         seed: of the run.
+        settings: numbers that the run sets otherwise than its tree does.
 
     Attributes:
         board: values of ports by key.
@@ -129,10 +131,19 @@ class Context:
         errors: tracebacks of programming errors met so far.
     """
 
-    def __init__(self, *, world: SafeWorld, guard: Guard, perception: Perception | None = None, seed: int = 0) -> None:
+    def __init__(
+        self,
+        *,
+        world: SafeWorld,
+        guard: Guard,
+        perception: Perception | None = None,
+        seed: int = 0,
+        settings: Settings | None = None,
+    ) -> None:
         self.world = world
         self.guard = guard
         self.perception = perception or Perception()
+        self.settings = settings or Settings()
         self.board = Board()
         self.memory = Memory()
         self.seed = seed

@@ -1,12 +1,13 @@
 """Typed ports: what a skill reads and writes, declared on the class, bound to a key or a constant when built.
 
     class Grasp(Skill):
-        target = Input(GraspPoint)          # Grasp(..., target=Key("collar")) or target=GraspPoint(...)
-        force = Input(float, default=20.0)
-        held = Output(GraspPoint)           # Grasp(..., held=Key("held"))
+        target = Input(GraspPoint, doc="where to close the fingers")  # Grasp(..., target=Key("collar")) or a GraspPoint
+        force = Input(float, unit="N", doc="of the grip at most", default=20.0)
+        held = Output(GraspPoint, doc="where the cloth is held")  # Grasp(..., held=Key("held"))
 
 An input read before it was written, or a value of the wrong type, raises PortError; `caretree check` finds
 both before anything moves.  Outputs are unset whenever their skill is entered, so no skill sees stale data.
+`caretree skills NAME` prints types, units and documentation.
 """
 
 from __future__ import annotations
@@ -124,12 +125,14 @@ class Board:
 
 
 class _Port(Generic[T]):
-    """Common part of inputs and outputs: a name, a type, and a place in the owner's `bindings`."""
+    """Common part of inputs and outputs: a name, a type, a unit, a sentence, and a place in the owner's `bindings`."""
 
     name: str
 
-    def __init__(self, kind: type[T] | Any) -> None:
+    def __init__(self, kind: type[T] | Any, *, unit: str = "", doc: str = "") -> None:
         self.kind = kind
+        self.unit = unit
+        self.doc = doc
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -161,12 +164,19 @@ class Input(_Port[T]):
 
     Args:
         kind: a class, a union, a Literal or Any.
+        unit: SI unit of a number, or of the numbers of an array, frame included: `m, map`.
+        doc: what it is, one clause.
         default: constant used when nothing is given; without it the input must be given.
     """
 
-    def __init__(self, kind: type[T] | Any, *, default: T | None = _REQUIRED) -> None:
-        super().__init__(kind)
+    def __init__(self, kind: type[T] | Any, *, unit: str = "", doc: str = "", default: T | None = _REQUIRED) -> None:
+        super().__init__(kind, unit=unit, doc=doc)
         self.default = default
+
+    @property
+    def required(self) -> bool:
+        """Whether it must be given."""
+        return self.default is _REQUIRED
 
     def _check(self, owner: Any, value: Any) -> None:
         if value is not None or self.default is not None:  # a default of None makes the input optional

@@ -36,8 +36,10 @@ from ..motion.errors import MotionError, PathBlocked, Unreachable
 from .context import Context
 from .ports import Input, Output, bind_ports, ports_of
 from .reasons import Failure, Reason, SkillFailure
+from .scope import Scope
 from .world_handle import WorldHandle
 
+TUNING = "tuning"  # the input port of a leaf's numbers, which a run may set
 MOTION_REASONS = {Unreachable: Reason.UNREACHABLE, PathBlocked: Reason.PATH_BLOCKED}
 
 
@@ -45,8 +47,8 @@ class Skill(py_trees.behaviour.Behaviour):
     """One leaf of a tree.
 
     Args:
-        name: unique in its tree.
-        context: what the run shares.
+        name: unique in its tree; in a scope the scope's name comes before it.
+        context: what the run shares, or a scope of it, which wires the ports that it has keys or constants for.
         **ports: a `Key` or a constant for each input, a `Key` for each output.
 
     Attributes:
@@ -64,11 +66,15 @@ class Skill(py_trees.behaviour.Behaviour):
         super().__init_subclass__(**kwargs)
         Skill.registry.append(cls)
 
-    def __init__(self, name: str, context: Context, **ports: Any) -> None:
-        super().__init__(name)
-        self.context = context
-        self.world = WorldHandle(context, self)
-        self.bindings = bind_ports(self, ports)
+    def __init__(self, name: str, context: Context | Scope, **ports: Any) -> None:
+        scope = Scope.of(context)
+        super().__init__(scope.prefix + name)
+        self.context = scope.context
+        self.world = WorldHandle(self.context, self)
+        self.bindings = bind_ports(self, scope.wired(type(self), ports))
+        tuning = self.context.settings.applied(type(self), self.bindings.get(TUNING))
+        if TUNING in self.bindings:
+            self.bindings[TUNING] = tuning
         self.failure: Failure | None = None
         self._phase: Literal["idle", "waiting", "active"] = "idle"
         self._generator: Generator[None, None, None] | None = None

@@ -1,0 +1,54 @@
+"""Numbers that a run sets otherwise than its tree does: `--set present_sleeve.max_load=3.5`, or a tuning file."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ...sim.errors import CaretreeError
+from ...sim.quantity import Quantities, changed
+
+
+def setting_name(kind: type) -> str:
+    """How a skill is called where its numbers are set: `PresentSleeve` -> `present_sleeve`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", kind.__name__).lower()
+
+
+class Settings:
+    """Values by skill and number; they win over what the tree gives its leaves.
+
+    Args:
+        values: skill (`present_sleeve`) -> number (`max_load`) -> value.
+    """
+
+    def __init__(self, values: Mapping[str, Mapping[str, Any]] | None = None) -> None:
+        self.values: dict[str, dict[str, Any]] = {skill: dict(found) for skill, found in (values or {}).items()}
+        self._met: dict[str, bool] = {}  # skills that were built -> whether they have numbers
+
+    def applied(self, kind: type, tuning: object) -> Any:
+        """`tuning` of a leaf of class `kind` with the numbers that were set for it.
+
+        Raises:
+            QuantityError: a number that it does not have, or of another type.
+        """
+        name = setting_name(kind)
+        if not isinstance(tuning, Quantities):
+            self._met.setdefault(name, False)
+            return tuning
+        self._met[name] = True
+        return changed(tuning, self.values[name]) if name in self.values else tuning
+
+    def check(self) -> None:
+        """Refuse numbers of skills that the tree, once built, turned out not to have.
+
+        Raises:
+            CaretreeError: there is such a skill.
+        """
+        known = sorted(name for name, tunable in self._met.items() if tunable)
+        for name in self.values:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=1)
+                hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known) or 'none'}"
+                raise CaretreeError(f"this task has no skill {name!r} with numbers to set; {hint}")
