@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..world import ARM_JOINTS, SIDES, Side
+from .gripper import GRIPPER
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 HEAD_JOINT = "head_pan"
@@ -25,15 +26,15 @@ BASE_MASS = 135.0
 TORSO_IN_BASE = np.array((0.10, 0.0, 0.85))
 COLUMN_SIZE = np.array((0.28, 0.34))
 
-# Robotiq 2F-85: stroke 85 mm, fingertips 22 mm wide, about 0.15 from the flange to the fingertips, 0.9 kg.
-GRIPPER_STROKE = 0.085
-GRIPPER_FORCE = (5.0, 235.0)  # grip force range of the data sheet [N]
-GRIPPER_SPEED = 0.15  # between the fingertips, data sheet [m/s]
+# Robotiq 2F-85, 0.9 kg in all; its sizes and limits are those of `gripper.py`.
+GRIPPER_STROKE = GRIPPER.stroke
+GRIPPER_FORCE = GRIPPER.force
+GRIPPER_SPEED = GRIPPER.speed
 FLANGE_IN_HAND_LINK = 0.025  # the flange's face, beyond Baxter's hand_link frame along z
-FLANGE_TO_FINGERTIP = 0.15
+FLANGE_TO_FINGERTIP = GRIPPER.flange_to_fingertip
 PALM_SIZE = np.array((0.07, 0.10, 0.09))
 PALM_MASS = 0.8
-FINGER_SIZE = np.array((0.022, 0.012, 0.06))
+FINGER_SIZE = np.array((GRIPPER.pad_width, GRIPPER.finger_thickness, GRIPPER.finger_length))
 FINGER_MASS = 0.05
 
 # Cameras, optical frames (x right, y down, z forward).
