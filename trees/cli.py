@@ -1,4 +1,4 @@
-"""The command line: `caretree run|check|inject|replay|report|trials|evaluate|gap|learn`.
+"""The command line: `caretree run|check|inject|replay|skills|report|trials|evaluate|gap|learn`.
 
 A user's mistake is answered by one sentence and exit status 2.
 """
@@ -68,6 +68,14 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         metavar="FAULT@NODE:PHASE",
         help=f"may be repeated; FAULT: {FAULTS}; NODE: a skill, see `check --tree`; PHASE: start, step or cancel",
     )
+    run.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="SKILL.NUMBER=VALUE",
+        help="a number of every leaf of that skill, see `caretree skills SKILL`; may be repeated",
+    )
+    run.add_argument("--tuning", metavar="FILE", help="YAML file of such numbers: skill, number, value")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
@@ -91,6 +99,9 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
 
     replay = commands.add_parser("replay", help="run a record again and say where it differs")
     replay.add_argument("directory", metavar="DIR")
+
+    skills = commands.add_parser("skills", help="list the skills; of one its ports, reasons and numbers")
+    skills.add_argument("name", nargs="?", metavar="NAME", help="of a skill: present_sleeve or PresentSleeve")
 
     report = commands.add_parser("report", help="draw the page of a record, of a run cut short too")
     report.add_argument("directory", metavar="DIR")

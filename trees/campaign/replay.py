@@ -10,6 +10,7 @@ from typing import Any
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultyWorld, parse_fault
 from ...sim.record.record import RUN_FILE, TRACE_FILE, read_finished_run, versions
+from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
 from ..run.runner import Run
 from ..run.task import load_task
@@ -66,6 +67,7 @@ def replay(directory: Path) -> Replay:
             rate_hz=float(parameters.get("rate_hz", 15.0)),
             perception=perception,
             params={"stage": stage} if stage else None,
+            settings=Settings(parameters.get("tuning")),
         )
         prepare_stage(inner, stage)
         run.run()

@@ -16,8 +16,10 @@ from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
 from ...sim.record.recorder import Recorder
 from ...sim.world import World
 from ...skills.core.context import Perception
+from ...skills.core.settings import Settings
 from ..run.runner import Progress, Run
 from ..run.task import Task, load_task
+from ..run.tuning import read_settings
 from ..run.worlds import make_world, prepare_stage
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
@@ -39,6 +41,7 @@ def main(options: argparse.Namespace) -> int:
     """
     task = load_task(options.task)
     faults = [parse_fault(text) for text in options.inject]
+    settings = read_settings(options.set, options.tuning)
     parameters = {
         "gown": options.gown,
         "person": options.person,
@@ -46,8 +49,9 @@ def main(options: argparse.Namespace) -> int:
         "inject": options.inject,
         "rate_hz": RATE_HZ,
         "stage": options.stage,
+        "tuning": settings.values,
     }
-    parameters = {key: value for key, value in parameters.items() if value not in (None, [])}
+    parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
     # claimed before the world is built, which takes a while: two runs begun together get a folder each
     claim = (
         FolderClaim(Path(options.out))
@@ -66,7 +70,7 @@ def main(options: argparse.Namespace) -> int:
             view=options.view,
         )
         try:
-            return _run(options, task, inner, perception, faults, parameters, claim)
+            return _run(options, task, inner, perception, faults, settings, parameters, claim)
         finally:
             inner.close()
     finally:
@@ -80,6 +84,7 @@ def _run(
     inner: World,
     perception: Perception | None,
     faults: list[FaultSpec],
+    settings: Settings,
     parameters: dict[str, Any],
     claim: FolderClaim,
 ) -> int:
@@ -94,6 +99,7 @@ def _run(
         on_progress=show,
         perception=perception,
         params={"stage": options.stage} if options.stage else None,
+        settings=settings,
     )
     prepare_stage(inner, options.stage)
     directory = claim.directory

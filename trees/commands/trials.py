@@ -8,7 +8,7 @@ from pathlib import Path
 from ...sim.errors import CaretreeError
 from ..campaign.trials import TABLE, Plan, run_trials
 
-PASSED_ON = ("world", "gown", "person", "model")  # to every `caretree run`
+PASSED_ON = ("world", "gown", "person", "model", "tuning")  # to every `caretree run`
 INTERRUPTED = 130  # as shells count a Ctrl-C
 
 
@@ -36,6 +36,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default=[],
         metavar="FAULT@NODE:PHASE",
         help="a fault in every run; may be repeated",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="SKILL.NUMBER=VALUE",
+        help="a number in every run; may be repeated",
     )
     parser.set_defaults(main=main)
 
@@ -75,6 +82,7 @@ def main(args: argparse.Namespace) -> int:
     directory = args.out or Path("runs") / f"trials-{Path(args.task).stem}"
     arguments = [part for name in PASSED_ON if getattr(args, name) for part in (f"--{name}", getattr(args, name))]
     arguments += [part for fault in args.inject for part in ("--inject", fault)]
+    arguments += [part for text in args.set for part in ("--set", text)]
     plan = Plan(
         task=args.task,
         seeds=parse_seeds(args.n, args.seeds),

@@ -28,6 +28,7 @@ from ...sim.record.record import RunResult
 from ...sim.world import SIDES, GripperOpening, World, WorldError
 from ...skills.core.context import Context, Perception
 from ...skills.core.reasons import Failure, Reason
+from ...skills.core.settings import Settings
 from ...skills.core.skill import Skill
 from ..guard.guard import GuardedWorld
 from ..guard.limits import DEFAULT, Limits
@@ -84,6 +85,7 @@ class Run:
         perception: estimators to use instead of the task's own.
         params: for the task's `build`.
         limits: what the guard enforces.
+        settings: numbers of skills that this run sets otherwise than the tree does.
 
     Attributes:
         context: shared by the skills.
@@ -105,15 +107,17 @@ class Run:
         perception: Perception | None = None,
         params: Mapping[str, Any] | None = None,
         limits: Limits = DEFAULT,
+        settings: Settings | None = None,
     ) -> None:
         if not rate_hz > 0:
             raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
         self.world = world
         self.limits = limits
         self.guard = GuardedWorld(world, limits, on_command=lambda command: self.trace.command(command))
-        self.context = Context(world=self.guard, guard=self.guard, perception=perception, seed=seed)
+        self.context = Context(world=self.guard, guard=self.guard, perception=perception, seed=seed, settings=settings)
         self.context.lease.patience = limits.stop_patience
         self.root = task.build(self.context, **(params or {}))
+        self.context.settings.check()
         for node in self.root.iterate():
             if hasattr(node, "bind"):
                 node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions

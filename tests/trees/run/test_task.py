@@ -1,9 +1,11 @@
+import json
 from pathlib import Path
 
 import pytest
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
 from caretree.trees import tasks
+from caretree.trees.cli import main
 from caretree.trees.guard.guard import GuardedWorld
 from caretree.trees.nodes.decorators import FailSafe, Stage
 from caretree.trees.run.runner import run
@@ -132,3 +134,60 @@ def test_a_joint_that_is_where_it_should_be_need_not_move():
         return FailSafe("safely", move, LetGo("let go", context))
 
     assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"
+
+
+TUNED = '''
+from dataclasses import dataclass
+
+from caretree.sim.quantity import Quantities, quantity
+from caretree.skills import Input, Skill
+from caretree.trees import FailSafe
+
+
+@dataclass(frozen=True, kw_only=True)
+class RestTuning(Quantities):
+    """Numbers of a rest."""
+
+    seconds: float = quantity(1.0, "s", "how long it rests", "choice: for a test")
+
+
+class Rest(Skill):
+    """Rests."""
+
+    tuning = Input(RestTuning, default=RestTuning(), doc="its numbers")
+
+    def steps(self):
+        yield from self.wait(self.tuning.seconds)
+
+
+def build(context):
+    return FailSafe("safely", Rest("rest", context), Rest("rest again", context))
+'''
+
+
+def run_tuned(tmp_path, monkeypatch, *arguments):
+    monkeypatch.chdir(tmp_path)
+    Path("tuned.py").write_text(TUNED)
+    return main(["run", "tuned.py", "--world", "scripted", "--out", "record", *arguments])
+
+
+def test_numbers_set_for_a_run_act_and_are_recorded(tmp_path, monkeypatch, capsys):
+    assert run_tuned(tmp_path, monkeypatch, "--set", "rest.seconds=4") == 0
+    record = json.loads((tmp_path / "record" / "run.json").read_text())
+    assert record["sim_time_s"] > 4.0
+    assert record["parameters"]["tuning"] == {"rest": {"seconds": 4}}
+    assert main(["replay", "record"]) == 0  # with the same numbers, or it would differ
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("rest.secs=4", "did you mean seconds"),
+        ("rst.seconds=4", "did you mean rest"),
+        ("rest.seconds=long", "a number"),
+    ],
+)
+def test_numbers_that_are_not_there_are_refused(tmp_path, monkeypatch, capsys, setting, words):
+    assert run_tuned(tmp_path, monkeypatch, "--set", setting) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "record" / "run.json").exists()
