@@ -114,11 +114,12 @@ class Explorer:
         self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._seen: set[Any] = set()
-        self._met: set[Any] = set()  # situations of the present execution
         self._prefix: list[int] = []
         self._taken: list[int] = []
+        self._trail: list[Any] = []  # situations of the present execution, those of the prefix first
+        self._met: set[Any] = set()  # the same ones
         self._way: list[tuple[Stub, Any]] = []
-        self._stack: list[list[int]] = [[]]
+        self._stack: list[tuple[list[int], list[Any]]] = [([], [])]  # choices to begin with, and their situations
         self._hung = False  # some leaf chose in this tick never to end
 
     @property
@@ -131,7 +132,7 @@ class Explorer:
         while self._stack:
             if self.executions >= self._limit or len(self.findings) >= FINDINGS_MAX:
                 return
-            self._prefix = self._stack.pop()
+            self._prefix, self._trail = self._stack.pop()
             self.executions += 1
             self._execute()
         self.complete = True
@@ -140,18 +141,19 @@ class Explorer:
         """The outcome of `leaf` in this execution: True, a Reason, or None for never."""
         options = self._options[leaf]
         depth = len(self._taken)
-        situation = self._situation(leaf)
-        if situation in self._met:
-            raise _Round(f"the tree goes round for ever at {leaf.name}")
-        self._met.add(situation)
-        if depth < len(self._prefix):
+        if depth < len(self._prefix):  # an execution followed this way before and knows its situations
             choice = self._prefix[depth]
         else:
+            situation = self._situation(leaf)
+            if situation in self._met:
+                raise _Round(f"the tree goes round for ever at {leaf.name}")
+            self._met.add(situation)
+            self._trail = [*self._trail, situation]
             if situation in self._seen:
                 raise _Known
             self._seen.add(situation)
             choice = 0
-            self._stack += [[*self._taken, other] for other in range(1, len(options))]
+            self._stack += [([*self._taken, other], self._trail) for other in range(1, len(options))]
         self._taken.append(choice)
         self._way.append((leaf, options[choice]))
         self._hung |= options[choice] is None
@@ -194,7 +196,7 @@ class Explorer:
 
     def _reset(self) -> None:
         self.board.clear()
-        self._met.clear()
+        self._met = set(self._trail)
         self._taken, self._way, self._hung = [], [], False
         self._clock.time = 0.0
         for node in self._nodes:
