@@ -19,6 +19,7 @@ from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..control.hands import look_towards, move_hands
 from ..core.skill import Skill
+from ..core.tries import Tries
 from ..geometry.arm_path import UP
 from ..geometry.hold import Hold
 from ..geometry.stances import outwards
@@ -71,24 +72,20 @@ def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpeni
         SensorLost: the camera is dead.
         SkillFailure: its picture is stale.
     """
-    frame, lost = skill.world.look("head"), None
+    frame, tries = skill.world.look("head"), Tries(PerceptionFailure)
     memory = skill.context.memory.of(SeenWell, SeenWell)
     nears = [arm_in_map[3] * (1.0, 1.0, 0.0) + skill.world.room.bed[1, 2] * UP, arm_in_map[1]]
     for near in [*nears, memory.last[side]] if side in memory.last else nears:
-        try:
+        with tries:
             seen = skill.context.perceive("sleeve_opening", frame, side=side, near_in_map=near)
-        except PerceptionFailure as stop:
-            lost = lost or stop
-            continue
-        assert isinstance(seen, SleeveOpening)
-        memory.last[side] = seen.position_in_map
-        if seen.confidence > WELL:
-            memory.sleeves[side] = seen
-        return memory.sleeves.get(side, seen)
+            assert isinstance(seen, SleeveOpening)
+            memory.last[side] = seen.position_in_map
+            if seen.confidence > WELL:
+                memory.sleeves[side] = seen
+            return memory.sleeves.get(side, seen)
     if side in memory.sleeves:
         return memory.sleeves[side]
-    assert lost is not None
-    raise lost
+    raise tries.first
 
 
 def look_for_sleeve(
@@ -111,21 +108,17 @@ def look_for_sleeve(
         SkillFailure: its picture is stale, or a motion failed.
     """
     best: SleeveOpening | None = None
-    lost: PerceptionFailure | None = None
+    tries = Tries(PerceptionFailure)
     for place in (_ELBOW,) if worn else (None, _FINGERTIP, _ELBOW):
         if place is not None:
             yield from look_towards(skill, watch_arm(skill, side, hold=hold).points_in_map[place])
-        try:
+        with tries:
             seen = find_sleeve(skill, side, watch_arm(skill, side, hold=hold).points_in_map)
-        except PerceptionFailure as stop:
-            lost = lost or stop
-            continue
-        best = seen if best is None or seen.confidence > best.confidence else best
-        if best.confidence > WELL:
-            return best
+            best = seen if best is None or seen.confidence > best.confidence else best
+            if best.confidence > WELL:
+                return best
     if best is None:
-        assert lost is not None
-        raise lost
+        raise tries.first
     return best if worn else (yield from _from_above(skill, side, hand, best))
 
 

@@ -13,6 +13,7 @@ from ...sim.robot.kinematics import Kinematics, default_kinematics
 from ...sim.world import SIDES, Side
 from ..control.hands import collision_checker
 from ..core.skill import Skill
+from ..core.tries import Tries
 from ..geometry.arm_path import UP, ArmPath
 from ..geometry.stances import outwards, stance
 from ..geometry.strap_grip import StrapGrip, presenting, strap_grip
@@ -65,26 +66,22 @@ def way_in(skill: Skill, arm: Side, hand: Side, strap: SleeveOpening, path: ArmP
     limits = kinematics.limits[hand]
     accept = free_postures(collision_checker(skill), hand, base, seen.arm_positions)
     found: list[tuple[float, WayIn, StrapGrip, np.ndarray]] = []
-    problem: Unreachable | None = None
+    tries = Tries(Unreachable)
     for approach in _approaches(strap, arm):
         for sign in (1.0, -1.0):
             inside = hand_pose(strap.position_in_map + DEPTH * approach, approach, sign * strap.closing_in_map)
             before = inside.copy()
             before[:3, 3] -= (DEPTH + STANDOFF) * approach
             grip = strap_grip(arm, hand, strap, inside)
-            try:
+            with tries:
                 q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=6, accept=accept)
                 q1 = solve_ik(kinematics, hand, inside, base, q0, seeds=2, accept=accept)
                 q2 = q1 if worn else _presented(kinematics, grip, path, base, q1, accept)
-            except Unreachable as stop:
-                problem = stop
-                continue
-            room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
-            score = min(room, 0.4) - _BENT * float(np.abs(q2 - q1).max())
-            found.append((score, WayIn(before=before, inside=inside), grip, q2))
+                room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
+                score = min(room, 0.4) - _BENT * float(np.abs(q2 - q1).max())
+                found.append((score, WayIn(before=before, inside=inside), grip, q2))
     if not found:
-        assert problem is not None
-        raise problem
+        raise tries.last
     best: tuple[float, WayIn] | None = None
     begin = path.place_of(strap.position_in_map) if worn else np.inf
     for _, way, grip, q in sorted(found, key=lambda entry: -entry[0]):
@@ -131,15 +128,12 @@ def _presented(
     accept: Callable[[np.ndarray], bool],
 ) -> np.ndarray:
     """Arm angles (7,) that present the sleeve as far out as can be reached."""
-    problem: Unreachable | None = None
+    tries = Tries(Unreachable)
     for beyond in BEYOND:
         pose = presenting(grip, path.direction(2.5), presenting_place(path, beyond))
-        try:
+        with tries:
             return solve_ik(kinematics, grip.hand, pose, base, q, seeds=6, accept=accept)
-        except Unreachable as stop:
-            problem = stop
-    assert problem is not None
-    raise problem
+    raise tries.last
 
 
 def _approaches(strap: SleeveOpening, arm: Side) -> list[np.ndarray]:

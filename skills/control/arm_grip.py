@@ -11,6 +11,7 @@ from ...perception.image.cloud import unit
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..core.skill import Skill
+from ..core.tries import Tries
 from ..geometry.arm_path import UP, ArmPath
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
@@ -46,23 +47,19 @@ def top_down_reachable(
     n, limits = SIDES.index(side), kinematics.limits[side]
     accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     best: tuple[float, np.ndarray] | None = None
-    problem: Unreachable | None = None
+    tries = Tries(Unreachable)
     for turned in (pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))):
-        try:
+        with tries:
             room, q = np.inf, seen.arm_positions[n]
             for way in then:
                 there = turned.copy()
                 there[:3, 3] += way
                 q = solve_ik(kinematics, side, there, seen.pose_base_in_map, q, accept=accept)
                 room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
-        except Unreachable as stop:
-            problem = stop
-            continue
-        if best is None or room > best[0] + 0.05:
-            best = (room, turned)
+            if best is None or room > best[0] + 0.05:
+                best = (room, turned)
     if best is None:
-        assert problem is not None
-        raise problem
+        raise tries.last
     return best[1]
 
 

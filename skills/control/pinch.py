@@ -18,6 +18,7 @@ from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, GripperOpening, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
+from ..core.tries import Tries
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
 from ..motion.trajectory import free_postures
@@ -87,24 +88,20 @@ def grasp_poses(
     kinematics = default_kinematics()
     accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     across = np.cross(approach, closing)
-    failure: Unreachable | None = None
+    tries = Tries(Unreachable)
     for roll in _ROLLS:
         turned = np.cos(roll) * closing + np.sin(roll) * across
         before = hand_pose(position - standoff * approach, approach, turned)
         inside = hand_pose(position + depth * approach, approach, turned)
-        try:
+        with tries:
             q = solve_ik(kinematics, side, before, seen.pose_base_in_map, seen.arm_positions[n], seeds=5, accept=accept)
             q = solve_ik(kinematics, side, inside, seen.pose_base_in_map, q, seeds=2, accept=accept)
             if np.any(sweep):
                 swept = inside.copy()
                 swept[:3, 3] += sweep
                 solve_ik(kinematics, side, swept, seen.pose_base_in_map, q, seeds=2, accept=accept)
-        except Unreachable as stop:
-            failure = stop
-            continue
-        return before, inside
-    assert failure is not None
-    raise failure
+            return before, inside
+    raise tries.last
 
 
 def pinch(skill: Skill, side: Side, *, force: float = 30.0) -> Iterator[None]:

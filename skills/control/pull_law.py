@@ -1,4 +1,4 @@
-"""How fast and where to the gripper moves while it pulls a sleeve: first the force, then the way along the arm."""
+"""The velocity of a gripper that pulls a sleeve over an arm: first the force, then the way along the arm."""
 
 from __future__ import annotations
 
@@ -7,34 +7,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
 from ..geometry.arm_path import ArmPath
+
+_FOUND = "choice: found by trials on the simulated gowns"
 
 
 @dataclass(frozen=True, kw_only=True)
-class PullLaw:
-    """Constants of the pull, found on the simulated gowns.
+class PullLaw(Quantities):
+    """How fast and where to the gripper goes, by where it is and by how hard the sleeve pulls.
 
     1 to 3 N is a sleeve that slides; 10 N stretch a hundredth of the gown's threads by half.
-
-    Attributes:
-        clearance: of the gripper off the arm's axis [m].
-        look_ahead: distance along the arm of the place steered to [m].
-        slow_from: load from which the pull slows down [N].
-        stop_at: load at which it stands still and only gives way [N].
-        yielding: speed of giving way for each newton above `slow_from` [m/s/N].
-        steering: gain of the correction towards the path [1/s].
-        turning: gain of turning the hand [1/s].
-        turn_speed: greatest rate of turning [rad/s].
     """
 
-    clearance: float = 0.09
-    look_ahead: float = 0.04
-    slow_from: float = 5.5
-    stop_at: float = 9.0
-    yielding: float = 0.006
-    steering: float = 2.0
-    turning: float = 1.5
-    turn_speed: float = 0.6
+    clearance: float = quantity(0.09, "m", "of the gripper off the arm's axis", _FOUND)
+    look_ahead: float = quantity(0.04, "m", "distance along the arm of the point that is steered to", _FOUND)
+    slow_from: float = quantity(5.5, "N", "load from which the pull slows down", _FOUND)
+    stop_at: float = quantity(9.0, "N", "load at which the gripper goes no farther and only yields", _FOUND)
+    yielding: float = quantity(0.006, "m/s/N", "speed of yielding for each newton above `slow_from`", _FOUND)
+    steering: float = quantity(2.0, "1/s", "gain of the correction towards the path", _FOUND)
+    max_correction: float = quantity(
+        0.6,
+        "1",
+        "greatest speed of that correction, as a share of the speed along the arm",
+        "choice: below 1, so that the way along the arm prevails",
+    )
+    turning: float = quantity(1.5, "1/s", "gain of turning the hand", _FOUND)
+    turn_speed: float = quantity(0.6, "rad/s", "greatest rate of turning the hand", _FOUND)
 
     def ease(self, load: np.ndarray) -> float:
         """Share of the wanted speed under a load (3,) [N]: 1 below `slow_from`, 0 from `stop_at` on."""
@@ -47,7 +46,7 @@ class PullLaw:
 
         Args:
             path: of the arm now.
-            place: of the gripper along it.
+            place: arm coordinate of the gripper: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
             hand: (3,) position of the gripper [m].
             aside: wanted offset across the arm [m].
             speed: along the arm when nothing pulls [m/s].
@@ -62,7 +61,7 @@ class PullLaw:
         velocity = ease * speed * travel
         correction = self.steering * error
         size = float(np.linalg.norm(correction))
-        velocity = velocity + correction * min(1.0, 0.6 * speed / max(size, 1e-9))
+        velocity = velocity + correction * min(1.0, self.max_correction * speed / max(size, 1e-9))
         excess = float(np.linalg.norm(load)) - self.slow_from
         if excess > 0.0:
             velocity = velocity + self.yielding * excess * unit(load)
