@@ -7,18 +7,17 @@ the workflow found it shows whether the gown now moves as recorded.
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import yaml
 
-from ...sim.effects.cloth.carriers import spread_vertices
-from ...sim.effects.cloth.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
+from ...sim.effects.cloth.gown_patch import gown_effects, with_air
+from ...sim.effects.cloth.proxy_bodies import spread_vertices
 from ...sim.effects.model_file import EffectModel
 from ...sim.scene.gown import GownMesh
 from .cloth.obj import write_obj
-from .cloth.simulate import QuietClient
 from .errors import GapError
 from .table import write_table
 
@@ -48,6 +47,7 @@ def record(
         CaretreeError: an unknown gown, or a model file that does not fit one.
         GapError: a duration that is too short to move.
     """
+    from ...sim.bullet.soft_world import GRAVITY
     from ...sim.bullet.units import PER_SECOND
     from ...sim.bullet.world import TIME_STEP
     from ...sim.scene.gown import build_gown
@@ -66,7 +66,7 @@ def record(
     write_obj(out / "gown.obj", start, mesh.faces, mesh.stays)
     written, listed = [], []
     for k, pins in enumerate(_places(mesh)):
-        t, paths = _hang(mesh, start, pins, effects, duration, TIME_STEP)
+        t, paths = hung_path(mesh, start, pins, effects, duration, TIME_STEP)
         x = paths[:, markers].reshape(len(t), -1)
         x = x + rng.normal(size=x.shape) * noise
         names = [f"m{i}{a}" for i in range(len(markers)) for a in "xyz"]
@@ -81,7 +81,7 @@ def record(
         "damping_stiffness": spec.damping,
         "bending_stiffness": spec.bending,
         "friction": spec.friction,
-        "gravity": -9.81,
+        "gravity": -GRAVITY,
         "time_step": TIME_STEP,
         "per_second": PER_SECOND,
     }
@@ -97,29 +97,25 @@ def _places(mesh: GownMesh) -> list[list[int]]:
     return [[int(c) for c in mesh.corners], [int(mesh.corners[0]), middle], cuffs]
 
 
-def _hang(
+def hung_path(
     mesh: GownMesh, start: np.ndarray, pins: list[int], effects: EffectModel | None, duration: float, time_step: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times (T,) [s] and vertices (T, V, 3) [m] of one recording."""
-    from ...sim.bullet import units
-    from ...sim.bullet.cloth import GRAVITY, Cloth
+    """Times (T,) [s] and vertices (T, V, 3) [m] of one recording.
 
-    client: Any = QuietClient()
-    try:
-        client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
-        client.setGravity(0, 0, units.force(-GRAVITY))
-        client.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
-        client.setTimeStep(units.time(time_step))
-        patch = None
-        if effects is not None:
-            mesh = recalibrated(mesh, effects)
-            patch = gown_patch(effects, mesh, start, GRAVITY, set(pins), np.zeros((0, 7)), units.PER_SECOND)
-            mesh = loaded(mesh, patch)
-            client.setGravity(*(units.force(g) for g in patch.settings.gravity))
-        cloth = Cloth(client, mesh, start, time_step)
-        if patch is not None:
-            patch.attach(client, cloth.body)
-        held = cloth.pin(pins, -1, -1)
+    Args:
+        mesh: the gown.
+        start: (V, 3) where it is let go, at rest [m].
+        pins: vertices that stay.
+        effects: checked model file, or None.
+        duration: [s].
+        time_step: of the physics [s].
+    """
+    from ...sim.bullet.cloth import load_gown
+    from ...sim.bullet.soft_world import SoftWorld
+
+    with closing(SoftWorld(time_step)) as world:
+        cloth, patch = load_gown(world, mesh, start, effects, pins)
+        held = cloth.pin(pins)
         wanted = np.arange(0.0, duration, 1.0 / RATE)
         grid, path = [0.0], [start]
         for k in range(int(np.ceil(duration / time_step)) + 1):
@@ -128,11 +124,9 @@ def _hang(
                 if patch.release_t is not None and k * time_step >= patch.release_t:
                     cloth.unpin(held)
                     patch.release_t = None
-            client.stepSimulation()
+            world.step()
             grid.append((k + 1) * time_step)
             path.append(cloth.vertices())
-    finally:
-        client.disconnect()
     every = np.array(path).reshape(len(grid), -1)
     sampled = np.stack([np.interp(wanted, grid, column) for column in every.T], axis=1)
     return wanted, sampled.reshape(len(wanted), -1, 3)

@@ -55,9 +55,9 @@ def write_report(verdict: Verdict, curves: list[Curve]) -> str:
 
 def _words(text: str) -> str:
     """A sentence with the bank's names as words, for HTML; names of joints and files stay as they are."""
-    from ...sim.effects.body.body_bank import BODY_EFFECTS
-    from ...sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
-    from ...sim.effects.joint.joint_bank import JOINT_EFFECTS
+    from ...sim.effects.body.body_registry import BODY_EFFECTS
+    from ...sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
+    from ...sim.effects.joint.joint_registry import JOINT_EFFECTS
 
     names = sorted({*BODY_EFFECTS, *CLOTH_EFFECTS, *JOINT_EFFECTS}, key=len, reverse=True)
     return re.sub(rf"\b({'|'.join(names)})\b", lambda m: m[0].replace("_", " "), escape(text))

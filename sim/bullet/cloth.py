@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Collection, Iterable
-from pathlib import Path
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
+from ..effects.cloth.gown_patch import gown_patch, loaded, recalibrated
+from ..effects.cloth.proxy_bodies import ClothPatch
+from ..effects.model_file import EffectModel
 from ..errors import CaretreeError
 from ..scene.gown import GownMesh, edge_counts
-from . import units
-
-STABILITY_MAX = 0.7  # elastic * dt^2 / vertex mass: above it the explicit springs explode (measured, FACTS)
-MARGIN = 0.006  # collision margin [m]
-GRAVITY = 9.81  # [m/s^2]
+from .soft_world import GRAVITY, STABILITY_MAX, SoftWorld
 
 
 class UnstableClothError(CaretreeError, ValueError):
@@ -23,71 +20,61 @@ class UnstableClothError(CaretreeError, ValueError):
 
 
 class Cloth:
-    """One gown in a deformable world.
+    """One gown in a soft world.
 
     Args:
-        client: BulletClient reset with RESET_USE_DEFORMABLE_WORLD, in the units of `units`.
+        world: where it moves.
         mesh: rest shape; its spec holds mass and stiffness.
         vertices: (V, 3) where it starts, at rest, map frame [m].
-        time_step: of the physics [s].
+        options: of PyBullet's `loadSoftBody`, to try what they change.
 
     Raises:
-        UnstableClothError: the springs would be unstable at this time step.
+        UnstableClothError: the springs would be unstable at the world's time step.
     """
 
-    def __init__(self, client: Any, mesh: GownMesh, vertices: np.ndarray, time_step: float) -> None:
+    def __init__(
+        self, world: SoftWorld, mesh: GownMesh, vertices: np.ndarray, options: Mapping[str, Any] | None = None
+    ) -> None:
         spec = mesh.spec
-        stiffness = spec.elastic * time_step**2 / (spec.mass / len(mesh.vertices))
+        stiffness = spec.elastic * world.time_step**2 / (spec.mass / len(mesh.vertices))
         if stiffness > STABILITY_MAX:
             raise UnstableClothError(
                 f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
                 f"{STABILITY_MAX} is stable: lower the stiffness or the time step"
             )
-        self.client, self.mesh = client, mesh
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "gown.obj"
-            path.write_text(
-                "".join("v {:.9f} {:.9f} {:.9f}\n".format(*v) for v in mesh.vertices)
-                + "".join("f {} {} {}\n".format(*(face + 1)) for face in mesh.sewn)
-            )
-            self.body: int = client.loadSoftBody(
-                str(path),
-                mass=spec.mass,
-                useMassSpring=1,
-                useBendingSprings=1,
-                useNeoHookean=0,
-                springElasticStiffness=units.force(spec.elastic),
-                springDampingStiffness=units.rate(spec.damping),
-                springDampingAllDirections=1,
-                springBendingStiffness=units.force(spec.bending),
-                useSelfCollision=0,
-                frictionCoeff=spec.friction,
-                collisionMargin=MARGIN,
-            )
-        client.changeDynamics(self.body, -1, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
+        self.world, self.mesh = world, mesh
+        self.body = world.load_cloth(
+            mesh.vertices,
+            mesh.sewn,
+            mass=spec.mass,
+            elastic=spec.elastic,
+            damping=spec.damping,
+            bending=spec.bending,
+            friction=spec.friction,
+            options=options,
+        )
         self.edges = np.array(list(edge_counts(mesh.sewn)))
         self.rest_lengths = np.linalg.norm(mesh.vertices[self.edges[:, 0]] - mesh.vertices[self.edges[:, 1]], axis=1)
         self.place(vertices)
 
     def place(self, vertices: np.ndarray) -> None:
         """Put every vertex (V, 3) somewhere else [m], at rest."""
-        self.client.resetMeshData(self.body, np.asarray(vertices, float).tolist())
+        client = self.world.client
+        client.resetMeshData(self.body, np.asarray(vertices, float).tolist())
         # without the angular part only the mean velocity would go
-        self.client.resetBaseVelocity(self.body, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+        client.resetBaseVelocity(self.body, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
 
     def vertices(self) -> np.ndarray:
         """(V, 3) positions in the map frame [m]."""
-        _, data = self.client.getMeshData(self.body, -1, flags=self.client.MESH_DATA_SIMULATION_MESH)
-        return np.array(data)
+        return self.world.vertices(self.body)
 
-    def pin(self, ids: Iterable[int], body: int, link: int) -> list[int]:
-        """Hold vertices to a link where they are now; returns the constraints."""
-        return [self.client.createSoftBodyAnchor(self.body, int(k), body, link) for k in ids]
+    def pin(self, ids: Iterable[int], body: int = -1, link: int = -1) -> list[int]:
+        """Hold vertices to a link, or to the world, where they are now; returns the constraints."""
+        return self.world.anchor(self.body, ids, body, link)
 
     def unpin(self, constraints: Iterable[int]) -> None:
         """Let pinned vertices go."""
-        for constraint in constraints:
-            self.client.removeConstraint(constraint)
+        self.world.release(constraints)
 
     def load(self, held: Collection[int], vertices: np.ndarray) -> np.ndarray:
         """(3,) force that the cloth exerts on whatever holds the vertices `held` [N].
@@ -111,3 +98,35 @@ class Cloth:
     def stretch(self, vertices: np.ndarray) -> np.ndarray:
         """(E,) edge length over rest length."""
         return np.linalg.norm(vertices[self.edges[:, 0]] - vertices[self.edges[:, 1]], axis=1) / self.rest_lengths
+
+
+def load_gown(
+    world: SoftWorld,
+    mesh: GownMesh,
+    start: np.ndarray,
+    effects: EffectModel | None = None,
+    pinned: Collection[int] = (),
+    capsules: np.ndarray | None = None,
+) -> tuple[Cloth, ClothPatch | None]:
+    """A gown with the effects of a model file; gravity becomes what they make of it.
+
+    Args:
+        world: where it moves.
+        mesh: rest shape; its spec holds mass and stiffness.
+        start: (V, 3) where it starts, at rest, map frame [m].
+        effects: checked model file, or None.
+        pinned: vertices that are held at the start.
+        capsules: (K, 7) bodies that cloth may cling to: a, b, radius [m].
+
+    Raises:
+        CaretreeError: the gown is lighter than the proxy bodies that its effects act on.
+        UnstableClothError: the springs would be unstable at the world's time step.
+    """
+    if effects is None:
+        return Cloth(world, mesh, start), None
+    mesh = recalibrated(mesh, effects)
+    patch = gown_patch(effects, mesh, start, GRAVITY, set(pinned), capsules, world.unit.per_second)
+    world.set_gravity(patch.settings.gravity)
+    cloth = Cloth(world, loaded(mesh, patch), start)
+    patch.attach(world.client, cloth.body)
+    return cloth, patch

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from ..world import SIDES, Side
-from . import units
 from .cloth import Cloth
 from .handle import Handle
 from .person import Person
+from .units import ROOM
 
 PAD_HALF_WIDTH = 0.011  # Robotiq 2F-85 pads are 22 mm wide [m]
 PAD_DEPTH = (-0.038, 0.004)  # from the palm side of the pads to just past the fingertips [m]
@@ -133,7 +133,7 @@ class Grip:
             offset.tolist(),
             local,
         )
-        self.client.changeConstraint(self._constraint, maxForce=units.force(2 * FRICTION_SKIN * force))
+        self.client.changeConstraint(self._constraint, maxForce=ROOM.force(2 * FRICTION_SKIN * force))
         self.kind, self.thickness, self._armed = "arm", 2 * radius, False
         self.part = 1 + 3 * arm + part
         self._arm_link, self._arm_local, self._arm_offset = link, np.array(local), offset

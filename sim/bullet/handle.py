@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from . import units
-from .cloth import GRAVITY
+from .soft_world import GRAVITY
+from .units import ROOM
 
 MASS, LINK_MASS = 3.0, 1.0  # of the last link and of the five before it [kg]; lighter ones shake what they hold
 _LINK = 5
@@ -79,12 +79,12 @@ class Handle:
             targetPositions=self._target.tolist(),
             positionGains=[0.3] * 6,
             velocityGains=[1.0] * 6,
-            forces=[units.force(300.0)] * 3 + [units.force(20.0)] * 3,
+            forces=[ROOM.force(300.0)] * 3 + [ROOM.force(20.0)] * 3,
         )
 
     def feel(self) -> None:
         """Take a load reading; once per physics step, after it."""
-        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))]) / units.force(1.0)
+        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))]) / ROOM.force(1.0)
         motor[2] -= _LIFTED * GRAVITY
         self._load += _SMOOTHING * (-motor - self._load)
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..scene.person_spec import ARM_AXES, PersonSpec, shoulder_in_map, trunk_capsules
 from ..world import SIDES, Side
-from . import units
+from .units import ROOM
 
 PERSON_PARTS = (
     "trunk",
@@ -82,7 +82,7 @@ class Person:
         joints = [j for side in SIDES for j in self.joints[side]]
         states = self.client.getJointStates(self.body, joints)
         angles = np.array([state[0] for state in states])
-        speeds = np.array([state[1] for state in states]) / units.rate(1.0)
+        speeds = np.array([state[1] for state in states]) / ROOM.rate(1.0)
         dry = np.array([self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)])
         torques = dry + self.spec.viscous * np.abs(speeds)
         if self._swing:
@@ -95,7 +95,7 @@ class Person:
             targetPositions=self._stuck.tolist(),
             positionGains=[0.2] * 8,
             velocityGains=[1.0] * 8,
-            forces=[units.force(t) for t in torques],
+            forces=[ROOM.force(t) for t in torques],
         )
 
     def bend_arm(self, side: Side, angles: tuple[float, float, float, float]) -> None:

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene.person_spec import trunk_capsules
-from .handle import GRAVITY
 from .person import PERSON_PARTS, Person
+from .soft_world import GRAVITY
 
 TOUCH = 0.012  # a vertex this near to a surface touches it: twice the collision margin [m]
 

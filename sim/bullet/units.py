@@ -9,20 +9,39 @@ pinned vertices shake.  Everything that leaves `sim` is in SI units.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 PER_SECOND = 1.0e4
-RESIDUAL = 1e-7 / PER_SECOND**2  # Bullet's own default, in these units
+_RESIDUAL = 1e-7  # Bullet's own threshold, in seconds
 
 
-def time(seconds: float) -> float:
-    """A duration in the room's unit."""
-    return seconds * PER_SECOND
+@dataclass(frozen=True)
+class TimeUnit:
+    """A world's unit of time.  per_second: how many make a second."""
+
+    per_second: float
+
+    @property
+    def is_second(self) -> bool:
+        """Whether the world runs in plain SI."""
+        return self.per_second == 1.0
+
+    @property
+    def residual(self) -> float:
+        """The rigid solver's threshold, scaled from Bullet's own."""
+        return _RESIDUAL / self.per_second**2
+
+    def time(self, seconds: float) -> float:
+        """A duration in this unit."""
+        return seconds * self.per_second
+
+    def rate(self, per_second: float) -> float:
+        """A velocity, a damping, anything that is divided by one time."""
+        return per_second / self.per_second
+
+    def force(self, newtons: float) -> float:
+        """A force, a torque, a stiffness, an acceleration: anything that is divided by time squared."""
+        return newtons / self.per_second**2
 
 
-def rate(per_second: float) -> float:
-    """A velocity, a damping, anything that is divided by one time."""
-    return per_second / PER_SECOND
-
-
-def force(newtons: float) -> float:
-    """A force, a torque, a stiffness, an acceleration: anything that is divided by time squared."""
-    return newtons / PER_SECOND**2
+ROOM = TimeUnit(PER_SECOND)

@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..bullet_client import direct_client
-from ..effects.cloth.carriers import ClothPatch
-from ..effects.cloth.gown_patch import gown_effects, gown_patch, loaded, recalibrated, with_air
+from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..errors import CaretreeError
 from ..record.recorder import FRAME_PERIOD, Recorder
 from ..record.truth import TruthFrame, TruthStatic
@@ -31,14 +30,14 @@ from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
-from . import units
 from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
-from .cloth import GRAVITY, Cloth
+from .cloth import load_gown
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
 from .person import PERSON_PARTS, Person
 from .person_force import ForceBalance
+from .soft_world import GRAVITY, SoftWorld
 from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 
 TIME_STEP = 0.0025  # of the room [s]
@@ -81,7 +80,6 @@ class BulletWorld(World):
         view: bool = False,
     ) -> None:
         self._effects = None if model is None else gown_effects(model)
-        self._patch: ClothPatch | None = None
         self.scene = draw_scene(seed, gown, person)
         if self.scene.gown.air_drag > 0:
             self._effects = with_air(self._effects, self.scene.gown.air_drag)
@@ -97,7 +95,8 @@ class BulletWorld(World):
         self._still_since = 0.0
         self._asleep = False
         self._moving_person: list[float] = []
-        self._client: Any = direct_client()
+        self._soft = SoftWorld(TIME_STEP)
+        self._client: Any = self._soft.client
         self._build()
         self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
@@ -116,11 +115,6 @@ class BulletWorld(World):
 
     def _build(self) -> None:
         c, scene = self._client, self.scene
-        c.resetSimulation(c.RESET_USE_DEFORMABLE_WORLD)
-        c.setGravity(0, 0, units.force(-GRAVITY))
-        # resetSimulation keeps an old numSubSteps; 10 iterations instead of 50 change nothing that was measured
-        c.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
-        c.setTimeStep(units.time(TIME_STEP))
         turn = np.array(
             (
                 (np.cos(scene.hang_yaw), -np.sin(scene.hang_yaw), 0.0),
@@ -130,16 +124,11 @@ class BulletWorld(World):
         )
         hung = scene.mesh.vertices @ turn.T
         hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
-        start, mesh = hung - hung[scene.hang_vertex] + hook, scene.mesh
-        if self._effects is not None:
-            mesh = recalibrated(mesh, self._effects)
-            trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy)])
-            self._patch = gown_patch(self._effects, mesh, start, GRAVITY, {scene.hang_vertex}, trunk, units.PER_SECOND)
-            mesh = loaded(mesh, self._patch)
-            c.setGravity(*(units.force(g) for g in self._patch.settings.gravity))
-        self._cloth = Cloth(c, mesh, start, TIME_STEP)
-        if self._patch is not None:
-            self._patch.attach(c, self._cloth.body)
+        trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy)])
+        start = hung - hung[scene.hang_vertex] + hook
+        self._cloth, self._patch = load_gown(
+            self._soft, scene.mesh, start, self._effects, pinned={scene.hang_vertex}, capsules=trunk
+        )
         size = (*BED_HALF, BED_THICKNESS / 2)
         bed = c.createMultiBody(
             0,
@@ -185,7 +174,7 @@ class BulletWorld(World):
         if first == "A":
             return
         self._hook.release()
-        if self._patch is not None:  # carriers cannot jump with the cloth
+        if self._patch is not None:  # proxy bodies cannot jump with the cloth
             self._patch.detach()
         if first == "B":
             self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)

@@ -8,9 +8,9 @@ from typing import Any
 
 import yaml
 
-from .body.body_bank import BODY_EFFECTS
+from .body.body_registry import BODY_EFFECTS
 from .effect import EffectError
-from .joint.joint_bank import JOINT_EFFECTS
+from .joint.joint_registry import JOINT_EFFECTS
 from .joint.link_inertia import BODY_PARAMETERS, BODY_TERMS
 
 FORMAT = "caretree-model-1"
@@ -114,13 +114,14 @@ def check_effect(system: str, e: EffectEntry) -> None:
             if set(e.parameters) != wanted:
                 raise EffectError(f"effect {e.name} has parameters {sorted(e.parameters)}, it takes {sorted(wanted)}")
             return
-        bank: dict[str, Any] = dict(JOINT_EFFECTS)
+        registry: dict[str, Any] = dict(JOINT_EFFECTS)
     elif system == "fall":
-        bank = dict(BODY_EFFECTS)
+        registry = dict(BODY_EFFECTS)
     else:
-        from .cloth.cloth_bank import CLOTH_EFFECTS
+        from .cloth.cloth_registry import CLOTH_EFFECTS
 
-        bank = dict(CLOTH_EFFECTS)
-    if e.name not in bank:
-        raise EffectError(f"effect '{e.name}' does not exist for system {system}, it must be one of {', '.join(bank)}")
-    bank[e.name].check(e.parameters)
+        registry = dict(CLOTH_EFFECTS)
+    if e.name not in registry:
+        names = ", ".join(registry)
+        raise EffectError(f"effect '{e.name}' does not exist for system {system}, it must be one of {names}")
+    registry[e.name].check(e.parameters)

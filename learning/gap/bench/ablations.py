@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ....sim.effects.effect import Parameter
 from ..fall.drop import height
 from ..fall.fit import RELEASE, fit_drops, table_of

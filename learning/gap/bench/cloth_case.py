@@ -1,6 +1,7 @@
 """Hidden cases for cloth: a sheet that swings, falls over a limb or is dragged across it, recorded from PyBullet.
 
-Effects go into the recording world as loads on its own carriers and through its own settings; the truth is kept apart.
+Effects go into the recording world as loads on its own proxy bodies and through its own settings; the truth is kept
+apart.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
 from ..cloth.obj import write_obj
 from ..cloth.scene import ClothEpisode, read_scene
@@ -20,7 +21,7 @@ from .case import STEPS, Truth, coloured, draw_kind, rounded
 
 STILL = EffectEntry(name="wind", target="cloth", parameters={"x": 1e-6, "y": 0.0})
 LEAST = 0.5  # size over the noise below which nothing is hidden: another effect is drawn instead
-CARRIERS = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
+IDLE = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})
 INSIDE = (
     "air_drag",
     "wind",
@@ -195,7 +196,7 @@ def _sized(rng, name, size, vertices, duration, noise, scene, parsed):
         "delay": lambda s: {"time": min(0.01 * s, 0.2)},
         "offset": lambda s: {"x": 0.002 * s * float(direction[0]), "y": 0.002 * s * float(direction[1]), "z": 0.0},
     }[name]
-    idle = (CARRIERS,) if CLOTH_EFFECTS[name].carried else ()  # what carriers do alone is not the effect's size
+    idle = (IDLE,) if CLOTH_EFFECTS[name].needs_proxies else ()  # what proxy bodies do alone is not the effect's size
     idle = (STILL,) if name == "wind" else idle  # nor what still air does: a wind of nothing is air drag
     base = [simulate(scene, e, idle, {}) for e in parsed[:2]]
     s, got = 1.0, 0.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....sim.effects.cloth.adhesion import surface
-from ....sim.effects.cloth.carriers import spread_vertices
+from ....sim.effects.cloth.proxy_bodies import spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothModel, Free
 from .scene import ClothEpisode, ClothScene

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....sim.effects.cloth.carriers import carrier_count, spread_vertices
+from ....sim.effects.cloth.proxy_bodies import proxy_count, spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothFit, ClothFitter, ClothModel, Free
 from .scene import ClothScene
@@ -34,7 +34,7 @@ def best_catch(fitter: ClothFitter, fit: ClothFit, scene: ClothScene, steps: dic
         steps: of the free parameters.
     """
     held = {i for e in fitter.episodes for pin in e.pins for i in pin.vertices}
-    parts = scene.vertices[spread_vertices(scene.vertices, carrier_count(len(scene.vertices)), held)]
+    parts = scene.vertices[spread_vertices(scene.vertices, proxy_count(len(scene.vertices)), held)]
     end = float(max(e.t[-1] for e in fitter.episodes))
     model = _place(fitter, fit.model, parts)
     model = _span(fitter, model, end)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
 from .scene import ClothEpisode
 from .simulate import Simulator

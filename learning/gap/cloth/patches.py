@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....sim.effects.cloth.carriers import carrier_count, spread_vertices
+from ....sim.effects.cloth.proxy_bodies import proxy_count, spread_vertices
 from ....sim.effects.model_file import EffectEntry
 from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled_to
 from .scene import ClothScene
@@ -34,7 +34,7 @@ def best_patch(fitter: ClothFitter, fit: ClothFit, scene: ClothScene, steps: dic
     entry = next(e for e in fit.model.effects if e.name == NAME)
     centre = np.array([entry.parameters[a] for a in "xyz"])
     held = {i for e in fitter.episodes for pin in e.pins for i in pin.vertices}
-    parts = scene.vertices[spread_vertices(scene.vertices, carrier_count(len(scene.vertices)), held)]
+    parts = scene.vertices[spread_vertices(scene.vertices, proxy_count(len(scene.vertices)), held)]
     parts = parts[np.argsort(np.linalg.norm(parts - centre, axis=1))[:PARTS]]
     each = max(entry.parameters["mass"], 1e-4) / 3.0
     without = _placed(fit.model, entry, centre, 0.0, 0.0)

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ....sim.effects.cloth.carriers import CARRIER_MASS, carrier_count
+from ....sim.bullet.soft_world import GRAVITY, STABILITY_MAX
+from ....sim.effects.cloth.proxy_bodies import PROXY_MASS, proxy_count
 from ..errors import GapError
 from ..measurement import Episode, MeasurementSet, require_columns
 from ..table import read_table
@@ -23,7 +24,6 @@ DEFAULTS = {
 }
 FINEST = 2e-5  # [s]; a finer time step than this is no simulation any more
 FAR = 10.0  # [m] a marker may move beyond the mesh's own size
-STABLE = 0.7  # elastic * dt^2 / vertex mass above which explicit springs explode
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,20 +149,20 @@ def _physics(file: Path, given: Any, count: int) -> Physics:
         ):
             raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
         values[key] = float(x)
-    least = 1.5 * CARRIER_MASS * carrier_count(count)
+    least = 1.5 * PROXY_MASS * proxy_count(count)
     if values["mass"] < least:
         raise GapError(
-            f"{file}: physics.mass is {values['mass']:g} kg, effects act through carriers of "
+            f"{file}: physics.mass is {values['mass']:g} kg, effects act through proxy bodies of "
             f"{least / 1.5:g} kg together, so a cloth of {count} vertices must weigh at least {least:g} kg"
         )
-    g = given.get("gravity", -9.81)
+    g = given.get("gravity", -GRAVITY)
     g = (0.0, 0.0, -abs(g)) if isinstance(g, int | float) else g
     if not isinstance(g, list | tuple) or len(g) != 3 or not all(_finite(x) for x in g):
         raise GapError(f"{file}: physics.gravity is {g!r}, a number or three numbers [m/s^2] are needed")
     step = given.get("time_step", 0.002)
     if not _finite(step) or not 1e-5 <= step <= 0.02:
         raise GapError(f"{file}: physics.time_step is {step!r}, a number from 0.00001 to 0.02 [s] is needed")
-    limit = float(np.sqrt(STABLE * values["mass"] / count / max(values["elastic_stiffness"], 1e-9)))
+    limit = float(np.sqrt(STABILITY_MAX * values["mass"] / count / max(values["elastic_stiffness"], 1e-9)))
     if limit < FINEST:
         raise GapError(
             f"{file}: physics.elastic_stiffness is {values['elastic_stiffness']:g} at a mass of {values['mass']:g} kg "
@@ -258,8 +258,3 @@ def _episode(e: Episode, scene: ClothScene, pins: tuple[Pin, ...]) -> ClothEpiso
     return ClothEpisode(
         name=e.name, role=e.role, t=e.t - min(0.0, float(e.t[0])), markers=markers, load=load, pins=pins
     )
-
-
-def with_physics(scene: ClothScene, **changes: float) -> ClothScene:
-    """The scene with some physics changed."""
-    return replace(scene, physics=replace(scene.physics, **changes))

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import multiprocessing
-import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ....sim.effects.cloth.carriers import ClothPatch
-from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
+from ....sim.bullet.soft_world import SoftWorld
 from ....sim.effects.cloth.cloth_effect import ClothSettings
+from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
+from ....sim.effects.cloth.proxy_bodies import ClothPatch
 from ....sim.effects.model_file import EffectEntry
-from .obj import write_obj
-from .scene import ClothEpisode, ClothScene
+from .scene import ClothEpisode, ClothScene, Pin
 
-MARGIN = 0.006  # collision margin [m]
 HAND = 0.2  # mass of the body that drags a pin along [kg]
 PULL = 200.0  # most that may drag it [N]
 
@@ -111,7 +109,7 @@ class Simulator:
 
 
 def canonical(effects: tuple[EffectEntry, ...]) -> tuple[tuple[EffectEntry, ...], tuple[EffectEntry, ...]]:
-    """Effects that act in the simulation and effects on the reading; those of zero size only bring their carriers."""
+    """Effects that act in the simulation, and on the reading; those of zero size only bring their proxy bodies."""
     reading = tuple(e for e in effects if e.name in READING)
     acting, idle = [], False
     for e in effects:
@@ -119,10 +117,10 @@ def canonical(effects: tuple[EffectEntry, ...]) -> tuple[tuple[EffectEntry, ...]
             continue
         size = [e.parameters[k] for k in SIZES.get(e.name, ())]
         if size and not any(size):
-            idle |= CLOTH_EFFECTS[e.name].carried
+            idle |= CLOTH_EFFECTS[e.name].needs_proxies
         else:
             acting.append(e)
-    if idle and not any(CLOTH_EFFECTS[e.name].carried for e in acting):
+    if idle and not any(CLOTH_EFFECTS[e.name].needs_proxies for e in acting):
         acting.append(EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0}))
     return tuple(acting), reading
 
@@ -163,72 +161,40 @@ def dense(
     scene: ClothScene, episode: ClothEpisode, effects: tuple[EffectEntry, ...], physics: dict[str, float]
 ) -> np.ndarray:
     """One run sampled about twice as often as measured: (N, 1 + 3 M + 3) time, markers, load."""
-    client = QuietClient()
-    try:
-        return _run(client, scene, episode, effects, physics)
-    finally:
-        client.disconnect()
-
-
-class QuietClient:
-    """One pybullet connection; BulletClient prints its arguments when it connects."""
-
-    def __init__(self) -> None:
-        import pybullet
-
-        self._pybullet = pybullet
-        self._id = pybullet.connect(pybullet.DIRECT)
-
-    def __getattr__(self, name: str) -> Any:
-        found = getattr(self._pybullet, name)
-        return functools.partial(found, physicsClientId=self._id) if callable(found) else found
-
-
-def _run(
-    p: Any, scene: ClothScene, episode: ClothEpisode, effects: tuple[EffectEntry, ...], changed: dict[str, float]
-) -> np.ndarray:
-    ph = {**scene.physics.__dict__, **changed}
-    pinned = {i for pin in episode.pins for i in pin.vertices}
+    ph = {**scene.physics.__dict__, **physics}
     patch = ClothPatch(
         effects,
         scene.vertices,
         scene.faces,
         ph["mass"],
         ClothSettings(friction=ph["friction"], gravity=tuple(ph["gravity"])),
-        pinned=pinned,
+        pinned={i for pin in episode.pins for i in pin.vertices},
         capsules=scene.capsules,
         per_second=ph["per_second"],
     )
-    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
-    dt, unit = ph["time_step"], ph["per_second"]
-    p.setGravity(*(g / unit**2 for g in patch.settings.gravity))
-    p.setPhysicsEngineParameter(numSubSteps=0)
-    if unit != 1.0:  # as the dressing world sets its solver
-        p.setPhysicsEngineParameter(numSolverIterations=10, solverResidualThreshold=1e-7 / unit**2)
-    p.setTimeStep(dt * unit)
+    with closing(SoftWorld(ph["time_step"], per_second=ph["per_second"], gravity=patch.settings.gravity)) as world:
+        return _run(world, patch, scene, episode, ph)
+
+
+def _run(
+    world: SoftWorld, patch: ClothPatch, scene: ClothScene, episode: ClothEpisode, ph: dict[str, Any]
+) -> np.ndarray:
+    p, dt = world.client, world.time_step
     for c in scene.capsules:
         _capsule(p, c)
-    with tempfile.TemporaryDirectory() as folder:
-        write_obj(Path(folder) / "cloth.obj", scene.vertices, scene.sewn)
-        cloth = p.loadSoftBody(
-            str(Path(folder) / "cloth.obj"),
-            mass=patch.cloth_mass,
-            useMassSpring=1,
-            useBendingSprings=1,
-            useNeoHookean=0,
-            springElasticStiffness=ph["elastic_stiffness"] / unit**2,
-            springDampingStiffness=ph["damping_stiffness"] / unit,
-            springDampingAllDirections=1,
-            springBendingStiffness=ph["bending_stiffness"] / unit**2,
-            useSelfCollision=0,
-            frictionCoeff=patch.settings.friction,
-            collisionMargin=MARGIN,
-        )
-    if unit != 1.0:  # in small units of time everything is slow enough to fall asleep
-        p.changeDynamics(cloth, -1, activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING)
+    cloth = world.load_cloth(
+        scene.vertices,
+        scene.sewn,
+        mass=patch.cloth_mass,
+        elastic=ph["elastic_stiffness"],
+        damping=ph["damping_stiffness"],
+        bending=ph["bending_stiffness"],
+        friction=patch.settings.friction,
+    )
     patch.attach(p, cloth)
+    pull = world.unit.force(PULL)
     held: list[dict[str, Any] | None] = [
-        _hold(p, cloth, pin, scene, k == 0 and episode.load is not None, ph["mass"], PULL / unit**2)
+        _hold(world, cloth, pin, scene, k == 0 and episode.load is not None, ph["mass"], pull)
         for k, pin in enumerate(episode.pins)
     ]
     release = [pin.release_t for pin in episode.pins]
@@ -243,37 +209,38 @@ def _run(
         t = k * dt
         for j, (pin, hold) in enumerate(zip(episode.pins, held, strict=True)):
             if hold is not None and t >= release[j]:
-                for constraint in hold["anchors"]:
-                    p.removeConstraint(constraint)
+                world.release(hold["anchors"])
                 held[j] = hold = None
             if hold is not None and hold["drive"] is not None and pin.path is not None:
                 at = hold["start"] + np.array([np.interp(t, pin.path[:, 0], pin.path[:, a]) for a in (1, 2, 3)])
-                p.changeConstraint(hold["drive"], at.tolist(), maxForce=PULL / unit**2)
+                p.changeConstraint(hold["drive"], at.tolist(), maxForce=pull)
         patch.apply(t)
-        p.stepSimulation()
+        world.step()
         if (k + 1) % every == 0 or k == steps - 1:
-            mesh = np.array(p.getMeshData(cloth, -1, flags=p.MESH_DATA_SIMULATION_MESH)[1])
             times.append((k + 1) * dt)
-            markers.append(mesh[ids])
+            markers.append(world.vertices(cloth)[ids])
             first = held[0] if held else None
-            loads.append(np.zeros(3) if first is None else _load(p, first, patch.settings.gravity, unit))
+            loads.append(np.zeros(3) if first is None else _load(world, first, patch.settings.gravity))
     grid, path = np.array(times), np.array(markers)
     loads[0] = loads[1]
     out = np.column_stack([grid, path.reshape(len(grid), -1), np.array(loads)])
     return np.clip(np.nan_to_num(out, nan=50.0), -50.0, 50.0)  # a blown-up run must lose, not crash
 
 
-def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total: float, pull: float) -> dict[str, Any]:
+def _hold(
+    world: SoftWorld, cloth: int, pin: Pin, scene: ClothScene, measured: bool, total: float, pull: float
+) -> dict[str, Any]:
     """Pin vertices: to the world where they never move, else to a body that is dragged along."""
     start = scene.vertices[list(pin.vertices)].mean(axis=0)
     mass = total * len(pin.vertices) / len(scene.vertices)
     if pin.path is None and not measured:
         return {
-            "anchors": [p.createSoftBodyAnchor(cloth, int(i), -1, -1) for i in pin.vertices],
+            "anchors": world.anchor(cloth, pin.vertices),
             "drive": None,
             "start": start,
             "mass": mass,
         }
+    p = world.client
     body = p.createMultiBody(
         HAND, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.005] * 3), basePosition=start.tolist()
     )
@@ -283,15 +250,15 @@ def _hold(p: Any, cloth: int, pin: Any, scene: ClothScene, measured: bool, total
     )
     drive = p.createConstraint(body, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], start.tolist())
     p.changeConstraint(drive, start.tolist(), maxForce=pull)
-    anchors = [p.createSoftBodyAnchor(cloth, int(i), body, -1) for i in pin.vertices]
+    anchors = world.anchor(cloth, pin.vertices, body)
     return {"anchors": anchors, "drive": drive, "start": start, "mass": mass}
 
 
-def _load(p: Any, hold: dict[str, Any], gravity: tuple[float, float, float], unit: float) -> np.ndarray:
+def _load(world: SoftWorld, hold: dict[str, Any], gravity: tuple[float, float, float]) -> np.ndarray:
     """Force the cloth exerts on the first pin's body, own weight removed (3,) [N]."""
     if hold["drive"] is None:
         return np.zeros(3)
-    force = np.array(p.getConstraintState(hold["drive"])[:3]) * unit**2
+    force = np.array(world.client.getConstraintState(hold["drive"])[:3]) * world.unit.per_second**2
     # the constraint feels the free part of the cloth; the pinned vertices' own weight is carried too
     return -(force + HAND * np.array(gravity)) + hold["mass"] * np.array(gravity)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
+from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
 from ..measurement import MeasurementSet

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ..findings import released, told_apart
 from .drop import GRAVITY, height
 from .fit import Drop, DropFit, fit_drops, table_of

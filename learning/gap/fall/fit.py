@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from .drop import GRAVITY, fallen, height
 
 RELEASE = 0.6  # [s] the release may lie this far before or after the first sample

@@ -14,7 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ..findings import FollowUp
 from .colour import colour
 from .drop import GRAVITY, height

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.stats import f as fisher
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from .colour import Colour, grid, likelihood
 from .drop import height
 from .fit import RELEASE, Drop, DropFit, table_of

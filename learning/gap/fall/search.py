@@ -14,7 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ....sim.effects.body.buoyancy import AIR_DENSITY
 from .colour import Colour, estimated, grid
 from .fit import MODES, Drop, DropFit, fit_drops

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2
 
-from ....sim.effects.body.body_bank import BODY_EFFECTS
+from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ..findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Value, VerdictName, Where
 from ..pictures import Curve
 from ..regions import phase_of

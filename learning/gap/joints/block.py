@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....sim.effects.effect import JointEffect, Parameter, Spread
-from ....sim.effects.joint.joint_bank import JOINT_EFFECTS
+from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .log import JointLog, spread
 from .rigid import BodyTerm, RigidModel
 

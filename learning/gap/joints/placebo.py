@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....sim.effects.joint.joint_bank import JOINT_EFFECTS
+from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from ..findings import Placebo
 from .block import Block, joint_block
 from .log import JointLog

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize
 
-from ....sim.effects.joint.joint_bank import JOINT_EFFECTS
+from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .block import Block, body_block, joint_block
 from .log import JointLog
 from .rigid import RigidModel

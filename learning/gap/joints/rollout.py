@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....sim.effects.effect import JointMotion
-from ....sim.effects.joint.joint_bank import JOINT_EFFECTS
+from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .block import Block
 from .log import JointLog
 from .rigid import RigidModel

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import chi2
 
-from ....sim.effects.joint.joint_bank import JOINT_EFFECTS
+from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .block import joint_block
 from .gram import exchange
 from .log import JointLog, spread

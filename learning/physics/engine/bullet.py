@@ -8,38 +8,22 @@ the released vertex is never pinned: the simulation begins at the instant of rel
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ....sim.bullet import units
-from ....sim.bullet.cloth import GRAVITY, Cloth
-from ....sim.effects.cloth.carriers import CARRIER_MASS, ClothPatch
+from ....sim.bullet.cloth import Cloth
+from ....sim.bullet.soft_world import GRAVITY, SoftWorld
+from ....sim.bullet.units import PER_SECOND
 from ....sim.effects.cloth.cloth_effect import ClothSettings
+from ....sim.effects.cloth.proxy_bodies import PROXY_MASS, ClothPatch
 from ....sim.effects.model_file import EffectEntry
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GownSpec
 from .fall import CLAMP_MASS, FRAMES, RATE, cut_of, steps_per_frame
-
-
-class _Client:
-    """A PyBullet connection that loads cloth with `options` changed; unlike BulletClient it does not print."""
-
-    def __init__(self, options: Mapping[str, Any]) -> None:
-        from ....sim.bullet_client import pybullet
-
-        self._pybullet, self._options = pybullet, options
-        self._id = pybullet.connect(pybullet.DIRECT)
-
-    def __getattr__(self, name: str) -> Any:
-        found = getattr(self._pybullet, name)
-        return functools.partial(found, physicsClientId=self._id) if callable(found) else found
-
-    def loadSoftBody(self, path: str, **options: Any) -> int:  # noqa: N802 PyBullet's name
-        return self._pybullet.loadSoftBody(path, **{**options, **self._options}, physicsClientId=self._id)
 
 
 def bullet_fall(
@@ -51,7 +35,7 @@ def bullet_fall(
 ) -> np.ndarray:
     """(frames, V, 3) vertices at the instants of the frames, from `start` (V, 3) with one vertex let go [m].
 
-    The air acts on 12 to 60 carriers, not on every vertex, and their mass is taken off the cloth.
+    The air acts on 12 to 60 proxy bodies, not on every vertex, and their mass is taken off the cloth.
 
     Args:
         spec: the gown.
@@ -61,7 +45,7 @@ def bullet_fall(
         options: of PyBullet's `loadSoftBody`, to try what they change.
 
     Raises:
-        CaretreeError: with air, a gown lighter than its carriers.
+        CaretreeError: with air, a gown lighter than its proxy bodies.
     """
     mesh, _ = cut_of(spec)
     steps = steps_per_frame(spec, len(start))
@@ -69,25 +53,20 @@ def bullet_fall(
     if spec.air_drag > 0:
         air = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": spec.air_drag})
         settings = ClothSettings(friction=spec.friction, gravity=(0.0, 0.0, -GRAVITY))
-        patch = ClothPatch(
-            (air,), mesh.vertices, mesh.faces, spec.mass, settings, set(mesh.corners), None, units.PER_SECOND
-        )
+        patch = ClothPatch((air,), mesh.vertices, mesh.faces, spec.mass, settings, set(mesh.corners), None, PER_SECOND)
         if patch.cloth_mass < spec.mass / 2:
             raise CaretreeError(
                 f"gown '{spec.name}' weighs {spec.mass * 1e3:.0f} g, with air PyBullet needs more than "
-                f"{2e3 * CARRIER_MASS * len(patch.vertices):.0f} g"
+                f"{2e3 * PROXY_MASS * len(patch.vertices):.0f} g"
             )
         spec = replace(spec, mass=patch.cloth_mass)
         steps = max(steps, steps_per_frame(spec, len(start)))
-    client: Any = _Client(options or {})
-    try:
-        client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
-        client.setGravity(0, 0, units.force(-GRAVITY))
-        client.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
-        client.setTimeStep(units.time(1.0 / RATE / steps))
-        cloth = Cloth(client, replace(mesh, spec=spec), mesh.vertices, 1.0 / RATE / steps)
-        client.createSoftBodyAnchor(cloth.body, mesh.corners[0], -1, -1)
-        client.stepSimulation()  # takes the rest lengths
+    time_step = 1.0 / RATE / steps
+    with closing(SoftWorld(time_step)) as world:
+        client = world.client
+        cloth = Cloth(world, replace(mesh, spec=spec), mesh.vertices, options)
+        cloth.pin([mesh.corners[0]])
+        world.step()  # takes the rest lengths
         cloth.place(start)
         if clamp > 0:
             shape = client.createCollisionShape(client.GEOM_SPHERE, radius=0.004)
@@ -100,7 +79,7 @@ def bullet_fall(
                 angularDamping=0.0,
                 activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING,
             )
-            client.createSoftBodyAnchor(cloth.body, mesh.corners[1], body, -1)
+            cloth.pin([mesh.corners[1]], body)
         if patch is not None:
             patch.attach(client, cloth.body, start)
         out = [cloth.vertices()]
@@ -108,8 +87,6 @@ def bullet_fall(
             for step in range(steps):
                 if patch is not None:
                     patch.apply((frame + step / steps) / RATE)
-                client.stepSimulation()
+                world.step()
             out.append(cloth.vertices())
-        return np.array(out)
-    finally:
-        client.disconnect()
+    return np.array(out)

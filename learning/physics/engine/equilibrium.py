@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....sim.bullet.cloth import GRAVITY
+from ....sim.bullet.soft_world import GRAVITY
 from ....sim.compiled import njit
 from ....sim.scene.gown import GownMesh
 from .banded_cholesky import factor, solve

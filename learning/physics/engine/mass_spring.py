@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sparse
 
-from ....sim.bullet.cloth import GRAVITY
+from ....sim.bullet.soft_world import GRAVITY
 from ....sim.compiled import njit
 from ....sim.scene.gown import GownMesh, edge_counts
 from .banded_cholesky import Band, factor, solve

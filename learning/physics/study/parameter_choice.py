@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....sim.bullet.cloth import MARGIN
+from ....sim.bullet.soft_world import MARGIN
 from ....sim.scene.gown import GOWNS, GownSpec
 from ..clips.camera import standard_camera
 from ..clips.parameters import BASE, NAMES

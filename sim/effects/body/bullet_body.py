@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..effect import EffectError, JointMotion
-from ..joint.joint_bank import JOINT_EFFECTS
+from ..joint.joint_registry import JOINT_EFFECTS
 from ..joint.link_inertia import BODY_TERMS
 from ..model_file import EffectModel
-from .body_bank import BODY_EFFECTS
+from .body_registry import BODY_EFFECTS
 
 
 class EffectBody:

@@ -9,10 +9,10 @@ from .cloth_effect import ClothEffect
 
 
 class AddedMass(ClothEffect):
-    """Weight and inertia of `mass` spread over the carriers within `radius` of a place in the start pose.
+    """Weight and inertia of `mass` spread over the proxy bodies within `radius` of a place in the start pose.
 
-    The inertia acts through the carriers' acceleration, which the caller adds to their mass where it can; the weight
-    alone is a force.
+    The inertia acts through the proxy bodies' acceleration, which the caller adds to their mass where it can; the
+    weight alone is a force.
     """
 
     name = "added_mass"
@@ -23,11 +23,11 @@ class AddedMass(ClothEffect):
         Parameter(name="z", unit="m"),
         Parameter(name="radius", unit="m", lower=0.0),
     )
-    carried = True
+    needs_proxies = True
     sentence = "something heavy on part of the cloth"
 
     def share(self, start: np.ndarray, values: dict[str, float]) -> np.ndarray:
-        """Mass each carrier takes, (N,) [kg]; the nearest one takes all where none is within the radius."""
+        """Mass each proxy body takes, (N,) [kg]; the nearest one takes all where none is within the radius."""
         away = np.linalg.norm(start - np.array([values["x"], values["y"], values["z"]]), axis=1)
         inside = away <= max(values["radius"], float(away.min()) + 1e-9)
         return values["mass"] * inside / inside.sum()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..effect import Parameter
-from .cloth_effect import CarrierState, ClothEffect
+from .cloth_effect import ClothEffect, ProxyState
 
 REACH = 0.03  # [m] from the surface within which cloth clings
 
@@ -29,10 +29,10 @@ class Adhesion(ClothEffect):
 
     name = "adhesion"
     parameters = (Parameter(name="pressure", unit="N/m^2", lower=0.0, upper=500.0),)
-    carried = True
+    needs_proxies = True
     sentence = "cloth that clings to the body"
 
-    def forces(self, state: CarrierState, values: dict[str, float]) -> np.ndarray:
+    def forces(self, state: ProxyState, values: dict[str, float]) -> np.ndarray:
         """Towards the body, (N, 3) [N]."""
         if not len(state.capsules):
             return np.zeros_like(state.x)

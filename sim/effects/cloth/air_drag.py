@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..effect import Parameter
-from .cloth_effect import CarrierState, ClothEffect
+from .cloth_effect import ClothEffect, ProxyState
 
 
 class AirDrag(ClothEffect):
@@ -13,10 +13,10 @@ class AirDrag(ClothEffect):
 
     name = "air_drag"
     parameters = (Parameter(name="coefficient", unit="N s^2/m^4", lower=0.0, upper=50.0),)
-    carried = True
+    needs_proxies = True
     sentence = "drag of the air on moving cloth"
 
-    def forces(self, state: CarrierState, values: dict[str, float]) -> np.ndarray:
+    def forces(self, state: ProxyState, values: dict[str, float]) -> np.ndarray:
         """Against the velocity, (N, 3) [N]."""
         speed = np.linalg.norm(state.v, axis=1, keepdims=True)
         return -values["coefficient"] * state.area[:, None] * speed * state.v

@@ -1,7 +1,8 @@
-"""Effects on cloth: forces on carriers, changes of the soft body's settings, or of how markers are read.
+"""Effects on cloth: forces on proxy bodies, changes of the soft body's settings, or of how markers are read.
 
-`applyExternalForce` does nothing on a PyBullet soft body, so forces act on small rigid carriers anchored to vertices
-spread over the cloth (`carriers.py`).  An effect overrides one of `forces`, `settings`, `release` and `read`.
+`applyExternalForce` does nothing on a PyBullet soft body, so forces act on small rigid proxy bodies anchored to
+vertices spread over the cloth (`proxy_bodies.py`).  An effect overrides one of `forces`, `settings`, `release` and
+`read`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from ..effect import Parameter, check_values
 
 
 @dataclass(frozen=True, kw_only=True)
-class CarrierState:
-    """The carriers at one instant, N of them.
+class ProxyState:
+    """The proxy bodies at one instant, N of them.
 
     Attributes:
         t: [s].
@@ -56,12 +57,12 @@ class ClothEffect(abc.ABC):
 
     name: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
-    carried: ClassVar[bool] = False  # needs carriers
+    needs_proxies: ClassVar[bool] = False  # acts on proxy bodies
     contains: ClassVar[frozenset[str]] = frozenset()
     sentence: ClassVar[str]
 
-    def forces(self, state: CarrierState, values: dict[str, float]) -> np.ndarray:
-        """Forces on the carriers (N, 3) [N]."""
+    def forces(self, state: ProxyState, values: dict[str, float]) -> np.ndarray:
+        """Forces on the proxy bodies (N, 3) [N]."""
         return np.zeros_like(state.x)
 
     def settings(self, given: ClothSettings, values: dict[str, float]) -> ClothSettings:

@@ -15,8 +15,8 @@ from ...errors import CaretreeError
 from ...scene.gown import GownMesh
 from ..effect import EffectError
 from ..model_file import EffectEntry, EffectModel, load_model
-from .carriers import ClothPatch
 from .cloth_effect import ClothSettings
+from .proxy_bodies import ClothPatch
 
 SPEC = {"mass": "mass", "elastic_stiffness": "elastic", "damping_stiffness": "damping", "bending_stiffness": "bending"}
 
@@ -61,7 +61,7 @@ def gown_patch(
     start: np.ndarray,
     gravity: float,
     pinned: set[int],
-    capsules: np.ndarray,
+    capsules: np.ndarray | None,
     per_second: float,
 ) -> ClothPatch:
     """The effects laid out on a gown.
@@ -72,7 +72,7 @@ def gown_patch(
         start: (V, 3) where it starts [m].
         gravity: [m/s^2].
         pinned: vertices that are held at the start.
-        capsules: (K, 7) the person's trunk and limbs where cloth may cling.
+        capsules: (K, 7) the person's trunk and limbs where cloth may cling, or None.
         per_second: the world's units of time in a second.
     """
     settings = ClothSettings(friction=mesh.spec.friction, gravity=(0.0, 0.0, -gravity))
@@ -80,10 +80,10 @@ def gown_patch(
 
 
 def loaded(mesh: GownMesh, patch: ClothPatch) -> GownMesh:
-    """The gown as its soft body must be loaded: carriers' mass taken off, friction changed.
+    """The gown as its soft body must be loaded: proxy bodies' mass taken off, friction changed.
 
     Raises:
-        CaretreeError: the gown is lighter than its carriers.
+        CaretreeError: the gown is lighter than its proxy bodies.
     """
     if patch.cloth_mass <= 0:
         raise CaretreeError(

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..effect import Parameter
-from .cloth_effect import CarrierState, ClothEffect
+from .cloth_effect import ClothEffect, ProxyState
 
 SETTLING = 0.1  # [s] damping over stiffness, so that the caught place does not ring
-MOST_DAMPING = 0.3  # [N s/m]; more would be unstable on a carrier
+MOST_DAMPING = 0.3  # [N s/m]; more would be unstable on a proxy body
 
 
 class Snag(ClothEffect):
-    """The carrier nearest to a place in the start pose is held where it is from `t0` to `t1` by a spring, damped."""
+    """The proxy body nearest to a place in the start pose is held where it is from `t0` to `t1` by a spring, damped."""
 
     name = "snag"
     parameters = (
@@ -23,7 +23,7 @@ class Snag(ClothEffect):
         Parameter(name="t0", unit="s", lower=0.0),
         Parameter(name="t1", unit="s", lower=0.0),
     )
-    carried = True
+    needs_proxies = True
     sentence = "a place that catches on something for a while"
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Snag(ClothEffect):
         """Forget where anything was caught (a new run begins)."""
         self._held.clear()
 
-    def forces(self, state: CarrierState, values: dict[str, float]) -> np.ndarray:
+    def forces(self, state: ProxyState, values: dict[str, float]) -> np.ndarray:
         """The pull of the snag, (N, 3) [N]."""
         out = np.zeros_like(state.x)
         place = np.array([values["x"], values["y"], values["z"]])

@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from ..effect import Parameter
-from .cloth_effect import CarrierState, ClothEffect
+from .cloth_effect import ClothEffect, ProxyState
 
 
 class StrainStiffening(ClothEffect):
-    """A spring between neighbouring carriers that pulls once their distance exceeds (1 + onset) times the start's."""
+    """A spring between neighbouring proxy bodies that pulls once (1 + onset) times as long as at the start."""
 
     name = "strain_stiffening"
     parameters = (
         Parameter(name="stiffness", unit="N/m", lower=0.0, upper=2000.0),
         Parameter(name="onset", unit="1", lower=0.0, upper=2.0),
     )
-    carried = True
+    needs_proxies = True
     sentence = "cloth that grows stiffer when stretched"
 
-    def forces(self, state: CarrierState, values: dict[str, float]) -> np.ndarray:
+    def forces(self, state: ProxyState, values: dict[str, float]) -> np.ndarray:
         """Pull between neighbours that are too far apart, (N, 3) [N]."""
         i, j = state.pairs.T
         apart = state.x[j] - state.x[i]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..effect import EffectError, JointMotion
 from ..model_file import EffectModel
-from .joint_bank import JOINT_EFFECTS
+from .joint_registry import JOINT_EFFECTS
 from .link_inertia import BODY_TERMS, with_point_mass, with_scaled_mass
 
 if TYPE_CHECKING:

@@ -5,42 +5,34 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-import pybullet
 import pytest
-from caretree.sim.bullet import units
-from caretree.sim.bullet.cloth import GRAVITY, Cloth
+from caretree.sim.bullet.cloth import Cloth
 from caretree.sim.bullet.handle import Handle
+from caretree.sim.bullet.soft_world import GRAVITY, SoftWorld
 from caretree.sim.scene.gown import GOWNS, build_gown
-from pybullet_utils.bullet_client import BulletClient
-
-STEP = 0.0025
 
 
 @pytest.fixture
-def client():
-    """A deformable world."""
-    client = BulletClient(pybullet.DIRECT)
-    client.resetSimulation(client.RESET_USE_DEFORMABLE_WORLD)
-    client.setGravity(0, 0, units.force(-GRAVITY))
-    client.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=10, solverResidualThreshold=units.RESIDUAL)
-    client.setTimeStep(units.time(STEP))
-    yield client
-    client.disconnect()
+def world():
+    """An empty deformable world."""
+    world = SoftWorld(0.0025)
+    yield world
+    world.close()
 
 
-def hang(client, mass: float) -> tuple[np.ndarray, Cloth]:
+def hang(world: SoftWorld, mass: float) -> tuple[np.ndarray, Cloth]:
     spec = dataclasses.replace(GOWNS["medium"], mass=mass, damping=0.02)
     mesh = build_gown(spec)
-    cloth = Cloth(client, mesh, mesh.vertices + (0.0, 0.0, 1.6), STEP)
+    cloth = Cloth(world, mesh, mesh.vertices + (0.0, 0.0, 1.6))
     pose = np.eye(4)
     pose[:3, 3] = cloth.vertices()[mesh.collar[7]]
-    handle = Handle(client, pose)
+    handle = Handle(world.client, pose)
     near = np.argsort(np.linalg.norm(cloth.vertices() - pose[:3, 3], axis=1))[:4]
     cloth.pin(near, handle.body, handle.link)
     loads = []
     for k in range(2000):
         handle.follow(pose)
-        client.stepSimulation()
+        world.step()
         if k >= 1000 and k % 10 == 0:
             loads.append(cloth.load(near, cloth.vertices()))
     assert np.abs(handle.position() - pose[:3, 3]).max() < 0.003
@@ -48,14 +40,14 @@ def hang(client, mass: float) -> tuple[np.ndarray, Cloth]:
 
 
 @pytest.mark.parametrize("mass", [0.45, 0.9])
-def test_a_hanging_gown_weighs_what_it_weighs(client, mass):
-    load, cloth = hang(client, mass)
+def test_a_hanging_gown_weighs_what_it_weighs(world, mass):
+    load, cloth = hang(world, mass)
     assert load[2] == pytest.approx(-mass * GRAVITY, rel=0.02)
     assert np.abs(load[:2]).max() < 0.05 * mass * GRAVITY  # it still swings a little
     assert np.percentile(cloth.stretch(cloth.vertices()), 99) < 1.25
 
 
-def test_an_unstable_gown_is_refused(client):
+def test_an_unstable_gown_is_refused(world):
     mesh = build_gown(dataclasses.replace(GOWNS["medium"], elastic=400.0))
     with pytest.raises(ValueError, match=r"at most 0\.7 is stable"):
-        Cloth(client, mesh, mesh.vertices, STEP)
+        Cloth(world, mesh, mesh.vertices)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from caretree.sim.bullet.cloth import GRAVITY
 from caretree.sim.bullet.person import PERSON_PARTS
+from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.evaluate.crossings import sleeve

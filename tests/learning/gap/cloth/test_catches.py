@@ -4,7 +4,7 @@ import numpy as np
 from caretree.learning.gap.cloth.catches import best_catch
 from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
 from caretree.learning.gap.cloth.scene import ClothEpisode
-from caretree.sim.effects.cloth.carriers import spread_vertices
+from caretree.sim.effects.cloth.proxy_bodies import spread_vertices
 from caretree.sim.effects.model_file import EffectEntry
 
 from ..sheet import VERTICES, plain_sheet

@@ -5,7 +5,7 @@ from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
 from caretree.learning.gap.cloth.patches import best_patch
 from caretree.learning.gap.cloth.scene import ClothEpisode, Pin
 from caretree.sim.effects.cloth.added_mass import AddedMass
-from caretree.sim.effects.cloth.carriers import spread_vertices
+from caretree.sim.effects.cloth.proxy_bodies import spread_vertices
 from caretree.sim.effects.model_file import EffectEntry
 
 from ..sheet import VERTICES, plain_sheet

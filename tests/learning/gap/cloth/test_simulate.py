@@ -86,7 +86,7 @@ def test_tilted_gravity_swings_the_free_edge_towards_the_tilt(cloth_set):
     assert change[-1, 3 * 3 + 1] > 0.005
 
 
-def test_an_effect_of_no_size_changes_nothing_but_brings_its_carriers(cloth_set):
+def test_an_effect_of_no_size_changes_nothing_but_brings_its_proxy_bodies(cloth_set):
     scene, episodes = read_scene(load_set(cloth_set))
     sim = Simulator(scene)
     drag = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 0.0})

@@ -25,7 +25,7 @@ def test_a_recalibrated_gown_has_the_files_numbers(tmp_path):
     assert recalibrated(mesh, model).spec.elastic == 33.0
 
 
-def test_the_soft_body_is_lighter_by_its_carriers(tmp_path):
+def test_the_soft_body_is_lighter_by_its_proxy_bodies(tmp_path):
     mesh = build_gown(next(iter(GOWNS.values())))
     patch = patch_of(gown_effects(written(tmp_path)), mesh, mesh.vertices, 9.81, {0}, np.zeros((0, 7)), 1e4)
     assert len(patch.vertices) >= 12

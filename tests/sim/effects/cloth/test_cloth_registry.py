@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
-from caretree.sim.effects.cloth.carriers import ClothPatch, spread_vertices
-from caretree.sim.effects.cloth.cloth_bank import CLOTH_EFFECTS
-from caretree.sim.effects.cloth.cloth_effect import CarrierState, ClothSettings
+from caretree.sim.effects.cloth.cloth_effect import ClothSettings, ProxyState
+from caretree.sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
+from caretree.sim.effects.cloth.proxy_bodies import ClothPatch, spread_vertices
 from caretree.sim.effects.effect import EffectError
 from caretree.sim.effects.model_file import EffectEntry
 
@@ -26,7 +26,7 @@ def sheet(n=8, h=0.05):
 def state(seed=0, capsules=()):
     rng = np.random.default_rng(seed)
     x = rng.normal(size=(6, 3))
-    return CarrierState(
+    return ProxyState(
         t=1.0,
         x=x,
         v=rng.normal(size=(6, 3)),
@@ -40,7 +40,7 @@ def state(seed=0, capsules=()):
     )
 
 
-def test_drag_takes_power_from_every_carrier():
+def test_drag_takes_power_from_every_proxy_body():
     s = state()
     force = CLOTH_EFFECTS["air_drag"].forces(s, {"coefficient": 1.0})
     assert np.all(np.sum(force * s.v, axis=1) < 0)
@@ -56,7 +56,7 @@ def test_adhesion_pulls_towards_the_body_and_only_near_it():
     s = state(capsules=np.array([[-1.0, 0, 0, 1.0, 0, 0, 0.05]]))
     x = s.x.copy()
     x[0], x[1] = (0.0, 0.0, 0.06), (0.0, 0.0, 0.5)
-    near = CarrierState(**{**s.__dict__, "x": x})
+    near = ProxyState(**{**s.__dict__, "x": x})
     force = CLOTH_EFFECTS["adhesion"].forces(near, {"pressure": 10.0})
     assert force[0, 2] < 0
     assert np.allclose(force[1], 0.0)
@@ -75,7 +75,7 @@ def test_delay_reads_the_past():
     assert late[50, 0, 0] == pytest.approx(0.4)
 
 
-def test_carriers_are_spread_and_avoid_pins():
+def test_proxy_bodies_are_spread_and_avoid_pins():
     v, _ = sheet()
     chosen = spread_vertices(v, 9, {0, 7})
     assert len(set(chosen)) == 9
@@ -84,13 +84,13 @@ def test_carriers_are_spread_and_avoid_pins():
     assert away[~np.eye(9, dtype=bool)].min() > 0.09
 
 
-def test_added_mass_is_shared_by_the_carriers_in_its_region():
+def test_added_mass_is_shared_by_the_proxy_bodies_in_its_region():
     share = CLOTH_EFFECTS["added_mass"].share(state().start, {"mass": 0.3, "x": 0.0, "y": 0.0, "z": 0.0, "radius": 1.0})
     assert share.sum() == pytest.approx(0.3)
     assert np.all(share >= 0)
 
 
-def test_mass_of_the_carriers_is_taken_off_the_cloth():
+def test_mass_of_the_proxy_bodies_is_taken_off_the_cloth():
     v, f = sheet()
     entry = EffectEntry(name="air_drag", target="cloth", parameters={"coefficient": 1.0})
     patch = ClothPatch((entry,), v, f, 0.2, GIVEN)

@@ -1,4 +1,4 @@
-"""Forces on PyBullet cloth through small rigid carriers anchored to vertices spread over it.
+"""Forces on PyBullet cloth through small rigid proxy bodies anchored to vertices spread over it.
 
 A world loads its soft body with `ClothPatch.settings` and `ClothPatch.cloth_mass`, then hands the body to
 `ClothPatch.attach` and calls `ClothPatch.apply` before every step.
@@ -10,18 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from ..model_file import EffectEntry, EffectModel
+from ..model_file import EffectEntry
 from .added_mass import AddedMass
-from .cloth_bank import CLOTH_EFFECTS
-from .cloth_effect import CarrierState, ClothSettings
+from .cloth_effect import ClothSettings, ProxyState
+from .cloth_registry import CLOTH_EFFECTS
 from .snag import Snag
 
-CARRIER_MASS = 5e-4  # [kg]; lighter ones do not pass a force on to the cloth
+PROXY_MASS = 5e-4  # [kg]; lighter ones do not pass a force on to the cloth
 RADIUS = 0.004  # [m] of the sphere, which collides with nothing
 
 
-def carrier_count(vertices: int) -> int:
-    """How many carriers a cloth of so many vertices gets."""
+def proxy_count(vertices: int) -> int:
+    """How many proxy bodies a cloth of so many vertices gets."""
     return int(np.clip(vertices // 12, 12, 60))
 
 
@@ -47,7 +47,7 @@ class ClothPatch:
 
     Attributes:
         settings: friction and gravity the soft body must be loaded with.
-        cloth_mass: mass it must be loaded with, the carriers' taken off [kg].
+        cloth_mass: mass it must be loaded with, the proxy bodies' taken off [kg].
         release_t: when the first pin lets go [s], or None.
     """
 
@@ -70,7 +70,7 @@ class ClothPatch:
             faces: (F, 3).
             mass: of the whole cloth [kg].
             settings: as the world would load it.
-            pinned: vertices that are held; they get no carrier.
+            pinned: vertices that are held; they get no proxy body.
             capsules: (K, 7) bodies cloth may cling to.
             per_second: the world's units of time in a second; forces and velocities are converted.
         """
@@ -83,15 +83,15 @@ class ClothPatch:
         self.settings = settings
         released = [effect.release(values) for effect, values in self.effects]
         self.release_t = min((r for r in released if r is not None), default=None)
-        self._carried = [(e, v) for e, v in self.effects if e.carried]
+        self._on_proxies = [(e, v) for e, v in self.effects if e.needs_proxies]
         self._capsules = np.zeros((0, 7)) if capsules is None else np.asarray(capsules, dtype=float)
         self._bodies: list[int] = []
         self._anchors: list[int] = []
         self.vertices = np.zeros(0, dtype=int)
-        if self._carried:
-            self.vertices = spread_vertices(vertices, carrier_count(len(vertices)), pinned or set())
+        if self._on_proxies:
+            self.vertices = spread_vertices(vertices, proxy_count(len(vertices)), pinned or set())
             self._lay_out(vertices, faces, mass)
-        self.cloth_mass = mass - CARRIER_MASS * len(self.vertices)
+        self.cloth_mass = mass - PROXY_MASS * len(self.vertices)
 
     def _lay_out(self, vertices: np.ndarray, faces: np.ndarray, mass: float) -> None:
         self._start = vertices[self.vertices]
@@ -106,12 +106,11 @@ class ClothPatch:
         pairs = np.unique(np.sort(touching[touching[:, 0] != touching[:, 1]], axis=1), axis=0)
         self._pairs = pairs
         self._lengths = np.linalg.norm(self._start[pairs[:, 0]] - self._start[pairs[:, 1]], axis=1)
-        self._extra = sum(
-            (e.share(self._start, v) for e, v in self._carried if isinstance(e, AddedMass)), np.zeros(len(self._start))
-        )
+        shares = (e.share(self._start, v) for e, v in self._on_proxies if isinstance(e, AddedMass))
+        self._extra = sum(shares, np.zeros(len(self._start)))
 
     def attach(self, client: Any, cloth: int, places: np.ndarray | None = None) -> None:
-        """Create the carriers and anchor them; added mass is mass of the carriers, so it has inertia too.
+        """Create the proxy bodies and anchor them; added mass is mass of the proxy bodies, so it has inertia too.
 
         Args:
             client: pybullet client the cloth lives in.
@@ -124,14 +123,14 @@ class ClothPatch:
         where = self._start if places is None else places[self.vertices]
         shape = client.createCollisionShape(client.GEOM_SPHERE, radius=RADIUS)
         for k, (vertex, place) in enumerate(zip(self.vertices, where, strict=True)):
-            body = client.createMultiBody(CARRIER_MASS + float(self._extra[k]), shape, basePosition=place.tolist())
+            body = client.createMultiBody(PROXY_MASS + float(self._extra[k]), shape, basePosition=place.tolist())
             client.setCollisionFilterGroupMask(body, -1, 0, 0)
             client.changeDynamics(body, -1, linearDamping=0.0, angularDamping=0.0)
             self._anchors.append(client.createSoftBodyAnchor(cloth, int(vertex), body, -1))
             self._bodies.append(body)
 
     def detach(self) -> None:
-        """Remove the carriers, for instance before the cloth is put somewhere else."""
+        """Remove the proxy bodies, for instance before the cloth is put somewhere else."""
         for anchor, body in zip(self._anchors, self._bodies, strict=True):
             self._client.removeConstraint(anchor)
             self._client.removeBody(body)
@@ -139,13 +138,13 @@ class ClothPatch:
 
     def apply(self, t: float) -> None:
         """Apply the forces of one step at time `t` [s]."""
-        pushing = [(e, v) for e, v in self._carried if not isinstance(e, AddedMass)]
+        pushing = [(e, v) for e, v in self._on_proxies if not isinstance(e, AddedMass)]
         if not pushing or not self._bodies:
             return
         p = self._client
         x = np.array([p.getBasePositionAndOrientation(b)[0] for b in self._bodies])
         v = np.array([p.getBaseVelocity(b)[0] for b in self._bodies]) * self._per_second
-        state = CarrierState(
+        state = ProxyState(
             t=t,
             x=x,
             v=v,
@@ -169,21 +168,3 @@ class ClothPatch:
         for effect, values in self.effects:
             markers = effect.read(t, markers, values)
         return markers
-
-
-def cloth_patch(
-    model: EffectModel,
-    vertices: np.ndarray,
-    faces: np.ndarray,
-    mass: float,
-    settings: ClothSettings,
-    pinned: set[int] | None = None,
-    capsules: np.ndarray | None = None,
-) -> ClothPatch:
-    """The patch a model file asks for.
-
-    Raises:
-        EffectError: the file is for another system.
-    """
-    model.require("cloth")
-    return ClothPatch(model.effects, vertices, faces, mass, settings, pinned, capsules)

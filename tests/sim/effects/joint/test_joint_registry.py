@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.sim.effects.effect import EffectError, JointMotion, Spread
-from caretree.sim.effects.joint.joint_bank import JOINT_EFFECTS
+from caretree.sim.effects.joint.joint_registry import JOINT_EFFECTS
 
 T = np.arange(0.0, 4.0, 0.01)
 MOTION = JointMotion(

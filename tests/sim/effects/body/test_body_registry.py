@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caretree.sim.effects.body.body_bank import BODY_EFFECTS
+from caretree.sim.effects.body.body_registry import BODY_EFFECTS
 
 VALUES = {"rate": 0.3, "coefficient": 0.02, "speed": 3.0, "fraction": 0.1, "value": 0.2, "time": 0.1}
 
