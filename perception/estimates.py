@@ -37,13 +37,6 @@ class Estimate:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GarmentMask(Estimate):
-    """Pixels of the gown.  mask: (H, W) bool."""
-
-    mask: np.ndarray
-
-
-@dataclass(frozen=True, kw_only=True)
 class GraspPoint(Estimate):
     """Where to close the fingers.
 
@@ -88,24 +81,6 @@ class LayerCount(Estimate):
 
     side: Side
     layers: int
-
-
-@dataclass(frozen=True, kw_only=True)
-class CollarLine(Estimate):
-    """The neck binding as it is seen, from one end of the image to the other.
-
-    Attributes:
-        points_in_map: (n, 3) along the binding [m].
-        whole: (2,) bool, whether the first and last point are ends of what is seen inside the image, not its border.
-        length: along the points [m].
-        straightness: distance between the ends divided by the length; near 1 when the gown is stretched out between
-            two hands (then the ends are there), and also where the binding hangs straight down from one.
-    """
-
-    points_in_map: np.ndarray
-    whole: np.ndarray
-    length: float
-    straightness: float
 
 
 @dataclass(frozen=True, kw_only=True)

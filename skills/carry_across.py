@@ -9,7 +9,7 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
-from ..sim.world import Side
+from ..sim.world import Frame, Side
 from .belief.person_tracking import careful
 from .belief.sleeve_search import SeenWell
 from .control.base import drive_to
@@ -22,7 +22,8 @@ from .core.skill import Skill
 from .geometry.arm_path import UP
 from .geometry.stances import AHEAD, FACING, HEADWARD, LANE, LIFTING, outwards
 from .motion.errors import MotionError
-from .scripted.scripted_person import laid_strap, offer_person
+from .scripted.scripted_person import laid_strap
+from .scripted.scripted_senses import ScriptedSenses
 
 STRAY = (0.28, 0.35)  # about where such a sleeve lies: beyond the bed's middle, feetward of it [m]
 WRONG_SIDE = 0.02  # beyond the bed's middle [m]
@@ -82,10 +83,9 @@ class CarryAcross(Skill):
         """The sleeve, where it lies beyond the middle of the bed."""
         near = self._place(-STRAY[0], STRAY[1], 0.0)
         try:
-            seen = self.context.perceive("sleeve_opening", self.world.look("head"), side=self.side, near_in_map=near)
+            seen = self.context.senses.sleeve_opening(self.world.look("head"), side=self.side, near_in_map=near)
         except PerceptionFailure:
             return None
-        assert isinstance(seen, SleeveOpening)
         out = float((seen.position_in_map - self._place(0.0, 0.0, 0.0)) @ outwards(self.side))
         return seen if out < -WRONG_SIDE else None
 
@@ -111,6 +111,12 @@ class CarryAcross(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        context.perception.offer("sleeve_opening", lambda frame, **_: laid_strap("right", frame.stamp))
-        offer_person(context)
+        context.offer_senses(_StraySleeve(context.world))
         return cls("carry across", context, side="left")
+
+
+class _StraySleeve(ScriptedSenses):
+    """Sees every sleeve on the right side of the bed."""
+
+    def sleeve_opening(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
+        return laid_strap("right", frame.stamp)

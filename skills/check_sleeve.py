@@ -7,14 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
-from ..perception.estimates import WornSleeve
 from ..sim.world import Side
 from .belief.person_tracking import watch_arm
 from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 # The cuff of a sleeve with the arm inside shows at least so far down the upper arm: 0.29 to 0.77 of it in recorded
 # runs, 0.01 and 0.05 where the sleeve had missed the arm and lay in a heap at the shoulder.
@@ -42,11 +41,10 @@ class CheckSleeve(Skill):
         """One look."""
         arm = watch_arm(self, self.side).points_in_map
         try:
-            seen = self.context.perceive("worn_sleeve", self.world.look("head"), side=self.side, arm_in_map=arm)
+            seen = self.context.senses.worn_sleeve(self.world.look("head"), side=self.side, arm_in_map=arm)
         except PerceptionFailure:
             self.note(f"cannot see the {self.side} sleeve's bindings")
             return
-        assert isinstance(seen, WornSleeve)
         self.note(
             f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
             f"{seen.round_arm:.0%} round it"
@@ -68,5 +66,5 @@ class CheckSleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("check sleeve", context, side="right")

@@ -15,7 +15,7 @@ from .core.context import Context
 from .core.ports import Output
 from .core.reasons import Reason
 from .core.skill import Skill
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 
 STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
 ROUND = tuple(np.deg2rad((0.0, -30.0, 30.0)))  # about the hook, from squarely before the rail [rad]
@@ -62,7 +62,7 @@ class FindCorner(Skill):
         )
         tried = self.context.memory.of(Tried, Tried).sleeves
         wanted = OTHER[tried[-1]] if tried else None
-        hook = self.context.perceive("hook", self.world.look("head"))
+        hook = self.context.senses.hook(self.world.look("head"))
         try:
             front = float(waypoints[sides[0]][2]) if sides else yaw
             hook, found = yield from self._look_round(hook, front, wanted)
@@ -71,7 +71,7 @@ class FindCorner(Skill):
                 raise
             self.note("looks for a corner of the neckline from the other side of the rail")
             yield from drive_to(self, sides[1])
-            hook = self.context.perceive("hook", self.world.look("head"))
+            hook = self.context.senses.hook(self.world.look("head"))
             hook, found = yield from self._look_round(hook, float(waypoints[sides[1]][2]), wanted)
         sleeve: Side = "left" if found.target == CORNER_OF["left"] else "right"
         tried.append(sleeve)
@@ -109,7 +109,7 @@ class FindCorner(Skill):
         return hook, self._shown(frame, hook, best[2])
 
     def _shown(self, frame: Frame, hook: GraspPoint, side: Side | None) -> GraspPoint:
-        return self.context.perceive("shown_corner", frame, hook_in_map=hook.position_in_map, side=side)
+        return self.context.senses.shown_corner(frame, hook_in_map=hook.position_in_map, side=side)
 
     def _stand(self, hook: GraspPoint, yaw: float) -> Generator[None, None, tuple[GraspPoint, Frame]]:
         """Step to where the hook is straight ahead at a heading; the hook and what is seen from there."""
@@ -117,10 +117,10 @@ class FindCorner(Skill):
         if np.linalg.norm(goal - self.world.observe().pose_base_in_map) > NEAR_ENOUGH:
             yield from drive_to(self, goal, straight=True)
         frame = self.world.look("head")
-        return self.context.perceive("hook", frame), frame
+        return self.context.senses.hook(frame), frame
 
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("find corner", context)

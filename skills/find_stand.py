@@ -26,7 +26,7 @@ from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .motion.path import is_free
 from .motion.trajectory import free_postures
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 # Steps off the usual stance that are tried, farther from the bed and towards its head [m].
 _OUT, _HEADWARD = (0.0, 0.08, 0.16, 0.24, -0.08), (0.0, 0.1, -0.1, 0.2, -0.2, 0.3)
@@ -99,5 +99,5 @@ class FindStand(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("find stand", context, side="right", lifting="left", pulling="right")

@@ -9,6 +9,7 @@ from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill, SkillFailure
+from .scripted.scripted_senses import ScriptedSenses
 
 
 class FlipSideCheck(Skill):
@@ -29,7 +30,8 @@ class FlipSideCheck(Skill):
         """Look a few times and take the majority."""
         votes, side = 0, None
         for _ in range(self.looks):
-            side = self.context.perceive("hung_side" if self.hung else "gown_side", self.world.look("head"))
+            senses, frame = self.context.senses, self.world.look("head")
+            side = senses.hung_side(frame) if self.hung else senses.gown_side(frame)
             votes += -1 if not side.outside and side.confidence > self.sure else 1
             yield
         if side is not None:
@@ -40,5 +42,5 @@ class FlipSideCheck(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        context.perception.offer("gown_side", lambda frame: GownSide(stamp=frame.stamp, confidence=1.0, outside=True))
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("flip side check", context)

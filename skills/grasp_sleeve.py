@@ -23,7 +23,7 @@ from .geometry.arm_path import ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, strap_grip
 from .motion.errors import MotionError
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 AIMED = 0.05  # a strap that far from the middle of the picture is looked at again [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
@@ -112,8 +112,7 @@ class GraspSleeve(Skill):
                 continue
             yield from self.wait(RESTS)
             try:
-                return self.context.perceive(
-                    "sleeve_strap",
+                return self.context.senses.sleeve_strap(
                     self.world.look(f"{self.hand}_hand"),
                     side=self.side,
                     near_in_map=far.position_in_map,
@@ -126,5 +125,5 @@ class GraspSleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("grasp sleeve", context, side="right", hand="right")

@@ -8,7 +8,6 @@ from contextlib import suppress
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
-from ..perception.estimates import SleeveOpening
 from ..sim.world import SIDES, Side
 from .control.base import drive_to
 from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
@@ -18,7 +17,7 @@ from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.stances import AHEAD, FACING, LANE
 from .motion.errors import MotionError
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
@@ -79,10 +78,9 @@ class LayGown(Skill):
         near = hand_now(self, NEAR)[:3, 3]
         yield from look_towards(self, near)
         try:
-            seen = self.context.perceive("sleeve_opening", self.world.look("head"), side=OVER_NEAR, near_in_map=near)
+            seen = self.context.senses.sleeve_opening(self.world.look("head"), side=OVER_NEAR, near_in_map=near)
         except PerceptionFailure:
             return  # it stays as it was taken
-        assert isinstance(seen, SleeveOpening)
         askew = float(np.median(seen.ring_points_in_map[:, 0])) + HIDDEN - (self.width + BEYOND) / 2
         if askew < -STRAIGHT:
             self._middle = CENTRE + min(-FOLLOWS * askew, FARTHEST)
@@ -117,5 +115,5 @@ class LayGown(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("lay gown", context, width=0.8)

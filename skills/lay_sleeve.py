@@ -19,7 +19,7 @@ from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
 from .geometry.strap_grip import StrapGrip
 from .motion.errors import MotionError
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 LAID = np.array((0.36, 0.14, 0.06))  # of the strap: outwards of and feetward from the bed's middle, above it [m]
 ABOVE, ASIDE, BEFORE = 0.30, 0.16, 0.12  # where the way down begins: higher, farther out, farther towards the feet [m]
@@ -62,6 +62,6 @@ class LaySleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
         return cls("lay sleeve", context, grip=grip)

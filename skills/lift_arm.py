@@ -21,7 +21,7 @@ from .core.skill import Skill
 from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 ABOVE = 0.12  # the open hand waits this far above the arm [m]
 DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
@@ -138,7 +138,7 @@ class LiftArm(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("lift arm", context, side="right", hand="left")
 
 

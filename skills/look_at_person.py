@@ -13,7 +13,7 @@ from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 _PANS = (0.0, 0.35, -0.35)  # tried one after the other [rad]
 _SETTLED = 0.035  # deviation of every joint at which an arm counts as found [m]
@@ -66,5 +66,5 @@ class LookAtPerson(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("look at person", context, side="right")

@@ -14,7 +14,7 @@ from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 
 class LookForSleeve(Skill):
@@ -48,5 +48,5 @@ class LookForSleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("look for the sleeve", context, side="right", hand="right")

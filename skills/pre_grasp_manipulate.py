@@ -21,7 +21,7 @@ from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError, Unreachable
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 from .view_around import Attempts, Views
 
 ATTEMPTS = 3  # corners tried from the same views
@@ -84,10 +84,8 @@ class PreGraspManipulate(Skill):
         views = self.views
         hand: Side = SIDES[1 - SIDES.index(views.side)]
         attempts = self.context.memory.of(Attempts, Attempts, name=views.side)
-        chosen = self.context.perceive(
-            "pre_grasp",
-            views.frames[-1],
-            frames=views.frames[:-1],
+        chosen = self.context.senses.pre_grasp(
+            views.frames,
             poses_hand_in_map=views.poses_hand_in_map,
             exclude=attempts.given_up(),
             distance=(self.nearest, self.farthest),
@@ -161,9 +159,8 @@ class PreGraspManipulate(Skill):
     def _look_again(self, chosen: PreGrasp, side: Side) -> PreGrasp:
         """The same corner in a fresh frame, or `chosen` where it does not show."""
         try:
-            now = self.context.perceive(
-                "pre_grasp",
-                self.world.look("head"),
+            now = self.context.senses.pre_grasp(
+                (self.world.look("head"),),
                 poses_hand_in_map=(hand_now(self, side),),
                 distance=(self.nearest, self.farthest),
             )
@@ -198,13 +195,11 @@ class PreGraspManipulate(Skill):
 
     def _sheets(self, hand: Side, views: Views, pose: np.ndarray) -> int:
         """How many sheets the fingers would take at a pose (4, 4), by everything that was seen of the gown."""
-        frames, poses = views.frames[1:], (*views.poses_hand_in_map[1:], hand_now(self, views.side))
-        return self.context.perceive(
-            "layers",
-            self.world.look("head"),
+        poses = (*views.poses_hand_in_map[1:], hand_now(self, views.side))
+        return self.context.senses.layers(
+            (*views.frames[1:], self.world.look("head")),
             side=hand,
             pose_hand_in_map=pose,
-            frames=frames,
             poses_cloth_in_map=poses,
             opening=self.opening,
         ).layers
@@ -212,7 +207,7 @@ class PreGraspManipulate(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
+        context.offer_senses(ScriptedSenses(context.world))
         frame = context.world.look("head")
         views = Views(side="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
         return cls("pre-grasp manipulate", context, views=views, weight=-1.0)

@@ -22,7 +22,7 @@ from .geometry.hold import Hold
 from .geometry.stances import outwards
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.errors import MotionError
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 _SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
@@ -137,13 +137,11 @@ class PresentSleeve(Skill):
 
     def _heading(self) -> SleeveHeading:
         """Which way the sleeve points, as the head's camera sees it."""
-        seen = self.context.perceive(
-            "sleeve_heading",
+        seen = self.context.senses.sleeve_heading(
             self.world.look("head"),
             side=self.grip.arm,
             near_in_map=hand_now(self, self.grip.hand)[:3, 3],
         )
-        assert isinstance(seen, SleeveHeading)
         return seen
 
     def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
@@ -163,6 +161,6 @@ class PresentSleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
         return cls("present sleeve", context, grip=grip)

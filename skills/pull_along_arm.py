@@ -21,7 +21,7 @@ from .geometry.arm_path import ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 SPEED = 0.08  # along the arm; the guard lets the base come along with what is left of a hand's speed [m/s]
 BASE_SPEED = 0.10  # of the base at most [m/s]
@@ -164,6 +164,6 @@ class PullAlongArm(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
         return cls("pull along arm", context, grip=grip, upto=1.45)

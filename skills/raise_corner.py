@@ -15,7 +15,7 @@ from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 
 BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
 AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
@@ -81,6 +81,6 @@ class RaiseCorner(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
-        hook = context.perceive("hook", context.world.look("head"))
+        context.offer_senses(ScriptedSenses(context.world))
+        hook = context.senses.hook(context.world.look("head"))
         return cls("raise corner", context, hand="right", hook=hook, weight=-1.0)

@@ -18,7 +18,7 @@ from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
 from .retreat import withdraw
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 _SPEED = 0.04  # of lowering [m/s]
 _RESTS = 4.0  # an arm that loads the hand with less than this lies on the bed [N]
@@ -71,5 +71,5 @@ class ReleaseArm(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("release arm", context, hand="left", lower=True)

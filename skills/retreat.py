@@ -17,7 +17,7 @@ from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 Hands = Literal["left", "right", "both"]
 _SPEED = 0.12  # of the hands on their way back [m/s]
@@ -57,7 +57,7 @@ class Retreat(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("retreat", context, back=0.3)
 
 

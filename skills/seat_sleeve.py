@@ -20,7 +20,7 @@ from .core.skill import Skill
 from .geometry.stances import HEADWARD
 from .geometry.strap_grip import StrapGrip
 from .pull_along_arm import EASING, SLOWEST
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 FARTHEST = 0.08  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]
@@ -116,6 +116,6 @@ class SeatSleeve(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
         return cls("seat sleeve", context, grip=grip)

@@ -13,7 +13,7 @@ from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 
 
 class SegmentAndGrasp(Skill):
@@ -39,7 +39,7 @@ class SegmentAndGrasp(Skill):
         """Look, step to where the hand reaches it, reach in, pinch."""
         self.note("looks for the gown's hanging point")
         yield from pan_head(self, 0.0)
-        point = self.context.perceive("hang_point", self.world.look("head"))
+        point = self.context.senses.hang_point(self.world.look("head"))
         self.note("reaches for the gown")
         yield from stand_for(self, self.side, point.position_in_map)
         yield from reach_in(self, self.side, point.position_in_map, point.approach_in_map, point.closing_in_map)
@@ -54,5 +54,5 @@ class SegmentAndGrasp(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("segment and grasp", context, side="right")

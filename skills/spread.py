@@ -23,7 +23,7 @@ from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards
 from .motion.errors import MotionError
 from .retreat import withdraw
-from .scripted.scripted_person import offer_person
+from .scripted.scripted_senses import ScriptedSenses
 
 TUGS = 2  # cloth that is stuck under the arm follows a little each time
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
@@ -71,8 +71,8 @@ class Spread(Skill):
         """Take the collar, draw it, let it go."""
         self.note(f"looks for the collar near the {self.side} shoulder")
         path = ArmPath.of(watch_arm(self, self.side))
-        point = self.context.perceive(
-            "collar_near_shoulder", self.world.look("head"), side=self.side, shoulder_in_map=path.points[0]
+        point = self.context.senses.collar_near_shoulder(
+            self.world.look("head"), side=self.side, shoulder_in_map=path.points[0]
         )
         approach = _from_above(point.approach_in_map, outwards(self.side))
         yield from reach_in(self, self.hand, point.position_in_map, approach, point.closing_in_map)
@@ -114,7 +114,7 @@ class Spread(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_person(context)
+        context.offer_senses(ScriptedSenses(context.world))
         return cls("spread", context, side="left", hand="left")
 
 

@@ -19,7 +19,7 @@ from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 
 TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the hand's own side [degrees]
 DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
@@ -89,8 +89,7 @@ class TakeCorner(Skill):
 
     def _look(self, hook: GraspPoint) -> GraspPoint:
         found = self.found
-        return self.context.perceive(
-            "hung_corner",
+        return self.context.senses.hung_corner(
             self.world.look("head"),
             side=self.sleeve,
             hook_in_map=hook.position_in_map,
@@ -104,8 +103,7 @@ class TakeCorner(Skill):
         As it was where it no longer shows.
         """
         try:
-            now = self.context.perceive(
-                "hung_corner",
+            now = self.context.senses.hung_corner(
                 self.world.look("head"),
                 side=self.sleeve,
                 hook_in_map=hook.position_in_map,
@@ -188,6 +186,6 @@ class TakeCorner(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
-        hook = context.perceive("hook", context.world.look("head"))
+        context.offer_senses(ScriptedSenses(context.world))
+        hook = context.senses.hook(context.world.look("head"))
         return cls("take corner", context, hand="right", sleeve="left", hook=hook, feel=-1.0)

@@ -15,7 +15,7 @@ from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_gown import offer_gown
+from .scripted.scripted_senses import ScriptedSenses
 
 ANGLES = (-35.0, -5.0, 10.0, 20.0, 30.0, 40.0)  # of the neckline from the hook to each hand, above level [degrees]
 SLACK = 0.95  # how much of that distance the hands use: the hook may not pull at them
@@ -73,6 +73,6 @@ class TakeDown(Skill):
     @classmethod
     def example(cls, context: Context) -> Skill:
         """For the law tests."""
-        offer_gown(context)
-        hook = context.perceive("hook", context.world.look("head"))
+        context.offer_senses(ScriptedSenses(context.world))
+        hook = context.senses.hook(context.world.look("head"))
         return cls("take down", context, hook=hook, weight=-1.0, each=-1.0)

@@ -1,4 +1,4 @@
-"""The neck binding: its line, its two ends, and its part near a shoulder."""
+"""The neck binding: its two ends, and its part near a shoulder."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
-from ..estimates import COLLAR_OF, CORNER_OF, CollarLine, GraspPoint
+from ..estimates import COLLAR_OF, GraspPoint
 from ..image.cloud import (
     across,
     clusters,
@@ -53,43 +53,6 @@ def _binding(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
     points = points_in_map(frame)[rows, columns]
     step = max(1, len(rows) // _MOST + (len(rows) % _MOST > 0))
     return np.column_stack([columns, rows])[::step], points[::step]
-
-
-def collar_line(frame: Frame) -> CollarLine:
-    """Follow the largest visible piece of the neck binding.
-
-    Raises:
-        PerceptionFailure: no gown or no binding.
-    """
-    pixels, points = _binding(frame)
-    piece = clusters(points, _GAP) == 0
-    pixels, points = pixels[piece], points[piece]
-    if len(points) < 15:
-        raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding of the gown")
-    far = int(np.argmax(geodesic(points, 0, _GAP)))
-    along = geodesic(points, far, _GAP)
-    count = max(4, int(along.max() / 0.03))
-    bins = np.minimum((along / along.max() * count).astype(int), count - 1)
-    line = np.array([np.median(points[bins == k], axis=0) for k in range(count) if (bins == k).any()])
-    if project(frame, line[0])[0, 0] > project(frame, line[-1])[0, 0]:
-        line = line[::-1]
-    height, width = frame.depth.shape
-    border = 4
-    ends = project(frame, line[[0, -1]])[:, :2]
-    reach = 0.03 * frame.intrinsics[0] / max(project(frame, line.mean(axis=0))[0, 2], 0.1) + border
-    whole = (
-        (ends[:, 0] > reach) & (ends[:, 0] < width - 1 - reach) & (ends[:, 1] > border) & (ends[:, 1] < height - border)
-    )
-    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-    span = float(np.linalg.norm(line[-1] - line[0]))
-    return CollarLine(
-        stamp=frame.stamp,
-        confidence=min(1.0, len(points) / 150),
-        points_in_map=line,
-        whole=whole,
-        length=length,
-        straightness=span / max(length, 1e-6),
-    )
 
 
 def corner_candidates(frame: Frame) -> list[CornerCandidate]:
@@ -144,36 +107,6 @@ def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.nd
     towards = frame.pose_camera_in_map[:3, 3]
     facing = abs(surface_normal(end, towards) @ unit(towards - position))
     return float((0.25 + 0.75 * min(1.0, close / 10)) * (0.4 + 0.6 * size) * (0.4 + 0.6 * facing))
-
-
-def collar_corner(frame: Frame, corner: Side, exclude: np.ndarray | None = None, below: float = 0.0) -> GraspPoint:
-    """The end of the neck binding that looks most like a corner, where it meets the shoulder seam.
-
-    Args:
-        frame: a view of the gown hanging from one hand.
-        corner: what to call it; the two ends look alike.
-        exclude: (3,) point in the map, ends within 12 cm of it are not wanted (where it is already held) [m].
-        below: least score that is accepted.
-
-    Raises:
-        PerceptionFailure: no end is seen, or none is free.
-    """
-    wanted = [
-        c for c in corner_candidates(frame) if exclude is None or np.linalg.norm(c.position_in_map - exclude) > 0.12
-    ]
-    if not wanted or wanted[0].score <= below:
-        raise PerceptionFailure(Problem.OUT_OF_REACH, "corner of the neck binding")
-    best = wanted[0]
-    approach = best.position_in_map - frame.pose_camera_in_map[:3, 3]
-    approach = unit(np.array((approach[0], approach[1], 0.0)))
-    return GraspPoint(
-        stamp=frame.stamp,
-        confidence=best.score,
-        target=CORNER_OF[corner],
-        position_in_map=best.position_in_map,
-        approach_in_map=approach,
-        closing_in_map=across(best.outward_in_map, approach),
-    )
 
 
 def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:

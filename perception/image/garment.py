@@ -6,7 +6,7 @@ import numpy as np
 
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
-from ..estimates import GarmentMask, GownSide
+from ..estimates import GownSide
 from .surfaces import GOWN_SURFACES, Surface, surfaces
 
 _SMALLEST = 0.0012  # share of the image below which a patch is noise
@@ -32,18 +32,6 @@ def gown_labels(frame: Frame) -> np.ndarray:
     if not (frame.depth[keep] > 0).any():
         raise PerceptionFailure(Problem.NO_DEPTH, "gown")
     return np.where(keep, labels, Surface.OTHER).astype(np.uint8)
-
-
-def garment_mask(frame: Frame) -> GarmentMask:
-    """Pixels of the gown.
-
-    Raises:
-        PerceptionFailure: see `gown_labels`.
-    """
-    mask = gown_labels(frame) != Surface.OTHER
-    with_depth = float((frame.depth[mask] > 0).mean())
-    size = min(1.0, mask.mean() / 0.02)  # a hung gown fills some 5 % of the image
-    return GarmentMask(stamp=frame.stamp, confidence=with_depth * size, mask=mask)
 
 
 def gown_side(frame: Frame) -> GownSide:

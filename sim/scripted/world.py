@@ -1,7 +1,7 @@
 """A world of numbers: arms go where they are sent, fingers close, and an hour passes in milliseconds.
 
 It has no cloth and no images of its own.  Tests and task authors script what matters: frames by a function,
-loads and what is between the fingers by attributes, and estimates in the context's `Perception`.
+loads and what is between the fingers by attributes, and what is seen by scripted senses.
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
-from ...perception.estimates import Cover, SleeveOpening
 from ...sim.world import Side
 from ..core.skill import Skill
 from ..geometry.arm_path import ArmPath
@@ -60,12 +59,11 @@ class RingWatch:
         edges = []
         for camera in ("head", f"{self._hand}_hand"):
             try:
-                ring = self._skill.context.perceive(
-                    "held_armhole", self._skill.world.look(camera), side=self._arm, near_in_map=grip_in_map
+                ring = self._skill.context.senses.held_armhole(
+                    self._skill.world.look(camera), side=self._arm, near_in_map=grip_in_map
                 )
             except PerceptionFailure:
                 continue
-            assert isinstance(ring, SleeveOpening)
             edges.append(np.percentile((ring.ring_points_in_map - path.point(place)) @ (side * across), 97))
         if not edges:
             return
@@ -79,14 +77,13 @@ class RingWatch:
             return
         self._looked = now
         try:
-            ring = self._skill.context.perceive(
-                "held_armhole", self._skill.world.look("head"), side=self._arm, near_in_map=grip_in_map
+            ring = self._skill.context.senses.held_armhole(
+                self._skill.world.look("head"), side=self._arm, near_in_map=grip_in_map
             )
         except PerceptionFailure:
             if now - self._placed > _STALE:
                 self.place = None
             return
-        assert isinstance(ring, SleeveOpening)
         some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // _SOME)]
         self.place, self._placed = float(np.median([path.place_of(point) for point in some])), now
 
@@ -95,18 +92,16 @@ class RingWatch:
         points = np.array([path.point(float(place)) for place in _HAND])
         camera = self._skill.world.look(f"{self._hand}_hand")
         try:
-            cover = self._skill.context.perceive("hand_cover", camera, points_in_map=points)
+            cover = self._skill.context.senses.hand_cover(camera, points_in_map=points)
         except PerceptionFailure:
             return False
-        assert isinstance(cover, Cover)
         return cover.share < _COVERED
 
     def beside(self, path: ArmPath) -> bool:
         """Whether the head's camera sees the cuff on one side of the arm only; False where it cannot tell."""
         chain = np.array([path.point(place) for place in _CHAIN])
         try:
-            cover = self._skill.context.perceive("cuff_round", self._skill.world.look("head"), points_in_map=chain)
+            cover = self._skill.context.senses.cuff_round(self._skill.world.look("head"), points_in_map=chain)
         except PerceptionFailure:
             return False
-        assert isinstance(cover, Cover)
         return cover.share < ROUND

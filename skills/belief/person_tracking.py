@@ -90,7 +90,7 @@ def watch_arm(
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
             else:
                 watch.searched[side] = now
-                _take(skill, frame, side, None, afresh=True)
+                _keep(skill, side, skill.context.senses.relocalised_arm(frame, side=side))
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
@@ -127,19 +127,26 @@ def see_person(skill: Skill) -> list[Side]:
         except PerceptionFailure:
             continue
     try:
-        _tell_body(skill, skill.context.perceive("head", frame))
+        _tell_body(skill, skill.context.senses.head(frame))
     except PerceptionFailure:
         if not found:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "person") from None
     return found
 
 
-def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, *, afresh: bool = False) -> None:
+def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
     """Update one arm from a frame and tell the guard."""
-    details: dict[str, object] = {"afresh": True} if afresh else {}
-    if hold is not None:
-        details = {"grip_in_map": _held_at(skill, hold), "fraction": hold.place}
-    posture = skill.context.perceive("arm", frame, side=side, **details)
+    if hold is None:
+        posture = skill.context.senses.arm(frame, side=side)
+    else:
+        posture = skill.context.senses.arm(
+            frame, side=side, grip_in_map=_held_at(skill, hold), arm_coordinate=hold.place
+        )
+    _keep(skill, side, posture)
+
+
+def _keep(skill: Skill, side: Side, posture: ArmPosture) -> None:
+    """Remember one arm as it was seen now and tell the guard."""
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
     _tell(skill, f"{side} arm", posture.points_in_map, _ARM_RADIUS)

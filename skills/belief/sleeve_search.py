@@ -77,8 +77,7 @@ def find_sleeve(skill: Skill, side: Side, arm_in_map: np.ndarray) -> SleeveOpeni
     nears = [arm_in_map[3] * (1.0, 1.0, 0.0) + skill.world.room.bed[1, 2] * UP, arm_in_map[1]]
     for near in [*nears, memory.last[side]] if side in memory.last else nears:
         with tries:
-            seen = skill.context.perceive("sleeve_opening", frame, side=side, near_in_map=near)
-            assert isinstance(seen, SleeveOpening)
+            seen = skill.context.senses.sleeve_opening(frame, side=side, near_in_map=near)
             memory.last[side] = seen.position_in_map
             if seen.confidence > WELL:
                 memory.sleeves[side] = seen
@@ -131,12 +130,11 @@ def _from_above(skill: Skill, side: Side, hand: Side, best: SleeveOpening) -> Ge
             continue
         yield from skill.wait(RESTS)
         try:
-            seen = skill.context.perceive(
-                "sleeve_opening", skill.world.look(f"{hand}_hand"), side=side, near_in_map=best.position_in_map
+            seen = skill.context.senses.sleeve_opening(
+                skill.world.look(f"{hand}_hand"), side=side, near_in_map=best.position_in_map
             )
         except PerceptionFailure:
             continue
-        assert isinstance(seen, SleeveOpening)
         if seen.confidence > WELL:
             seen_well(skill)[side] = seen
             return seen

@@ -120,7 +120,7 @@ def holds_cloth(skill: Skill, side: Side) -> float:
     """How sure the camera of the hand is that the fingers hold cloth, 0 to 1."""
     frame = skill.world.look(f"{side}_hand")
     try:
-        return skill.context.perceive("gripped_cloth", frame, pose_hand_in_map=hand_now(skill, side)).confidence
+        return skill.context.senses.gripped_cloth(frame, pose_hand_in_map=hand_now(skill, side)).confidence
     except PerceptionFailure:
         return 0.0
 

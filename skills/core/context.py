@@ -1,4 +1,4 @@
-"""What a skill is given when it is built: a guarded world, estimators, the board, memory and chance."""
+"""What a skill is given when it is built: a guarded world, senses, the board, memory and chance."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
-from ...perception.estimates import Estimate
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.world import Clock, Command, Frame, Observation, RoomMap, Side
 from .lease import MotionLease
@@ -19,7 +19,6 @@ from .settings import Settings
 T = TypeVar("T")
 Phase = Literal["start", "step", "cancel"]
 Grip = Literal["nothing", "cloth", "arm"]
-Estimator = Callable[..., Estimate]
 
 
 class SafeWorld(Protocol):
@@ -65,29 +64,6 @@ class Guard(Protocol):
         ...
 
 
-class Perception:
-    """Named estimators: `name -> function(frame, **details) -> Estimate`, raising PerceptionFailure."""
-
-    def __init__(self, estimators: dict[str, Estimator] | None = None) -> None:
-        self._estimators = dict(estimators or {})
-
-    def offer(self, name: str, estimator: Estimator) -> None:
-        """Add an estimator unless the name is taken: a task offers its own, a test or a user has set theirs before."""
-        self._estimators.setdefault(name, estimator)
-
-    def estimate(self, name: str, frame: Frame, **details: Any) -> Estimate:
-        """Ask the estimator `name`.
-
-        Raises:
-            CaretreeError: there is none of that name.
-            PerceptionFailure: the image does not hold the answer.
-        """
-        if name not in self._estimators:
-            known = ", ".join(sorted(self._estimators)) or "none"
-            raise CaretreeError(f"no estimator is called {name!r}; there are {known}")
-        return self._estimators[name](frame, **details)
-
-
 class Memory:
     """Objects shared by the skills of one run (trackers, robot models), one for each type and name."""
 
@@ -118,7 +94,7 @@ class Context:
     Args:
         world: behind the guard.
         guard: of that world.
-        perception: estimators by name.
+        senses: to be used instead of those that the task offers.
         seed: of the run.
         settings: numbers that the run sets otherwise than its tree does.
 
@@ -136,13 +112,13 @@ class Context:
         *,
         world: SafeWorld,
         guard: Guard,
-        perception: Perception | None = None,
+        senses: Senses | None = None,
         seed: int = 0,
         settings: Settings | None = None,
     ) -> None:
         self.world = world
         self.guard = guard
-        self.perception = perception or Perception()
+        self._senses = senses
         self.settings = settings or Settings()
         self.board = Board()
         self.memory = Memory()
@@ -156,9 +132,21 @@ class Context:
         """World clock [s]."""
         return self.world.clock.now()
 
-    def perceive(self, name: str, frame: Frame, **details: Any) -> Any:
-        """Ask an estimator; see `Perception.estimate`.  Typed Any because the name decides the estimate's type."""
-        return self.perception.estimate(name, frame, **details)
+    @property
+    def senses(self) -> Senses:
+        """What is estimated from images.
+
+        Raises:
+            CaretreeError: this run has none.
+        """
+        if self._senses is None:
+            raise CaretreeError("this run has no senses: the task's build() offers none with context.offer_senses(...)")
+        return self._senses
+
+    def offer_senses(self, senses: Senses) -> None:
+        """Set the senses of a task or an example; those that the run was given, or was offered first, win."""
+        if self._senses is None:
+            self._senses = senses
 
     def notify(self, name: str, phase: Phase) -> None:
         """Tell the observers which phase a skill enters."""

@@ -1,13 +1,12 @@
 """A dressing without physics: fingers meet cloth, or an arm where one lies; the gown follows as light cloth does.
 
-What is seen comes from a script too (`scripted_gown`, `scripted_person`).  Every grasp succeeds, so that a whole task
+What is seen comes from a script too (`scripted_senses`).  Every grasp succeeds, so that a whole task
 can be rehearsed, and every recovery and safe branch reached by injecting faults; how cloth behaves is not shown.
 """
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,9 +15,8 @@ from ...sim.robot.kinematics import default_kinematics
 from ...sim.scene.scene import room_map
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import SIDES, Command, GripperOpening, Observation, Side
-from ..core.context import Perception
-from .scripted_gown import offer_gown
-from .scripted_person import LYING, mirrored, offer_person
+from .scripted_person import LYING, mirrored
+from .scripted_senses import ScriptedSenses
 
 CLOSING = 0.03  # a hand sent to less than this takes hold [m]
 NEAR_ARM = 0.10  # of an arm's axis: fingers that close within it hold the arm [m]
@@ -79,17 +77,7 @@ def _distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     return float(np.linalg.norm(start + share * along - point))
 
 
-@dataclass(frozen=True)
-class _Set:
-    """What the scripted estimators need of a context."""
-
-    world: RehearsalWorld
-    perception: Perception
-
-
-def rehearsal(seed: int) -> tuple[RehearsalWorld, Perception]:
+def rehearsal(seed: int) -> tuple[RehearsalWorld, ScriptedSenses]:
     """A world to rehearse the dressing task on, and what is seen there."""
-    stage = _Set(RehearsalWorld(seed), Perception())
-    offer_gown(stage)
-    offer_person(stage)
-    return stage.world, stage.perception
+    world = RehearsalWorld(seed)
+    return world, ScriptedSenses(world)

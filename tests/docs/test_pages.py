@@ -40,7 +40,7 @@ def test_python_blocks_run(page, code):
     if callable(build):
         script = names.get("scripted")
         task = Task("page", build, ROOT / page, script if callable(script) else None)
-        world, perception = task.scripted(0)
+        world, senses = task.scripted(0)
         assert check(task).ok
-        result = run(task, world, perception=perception)
+        result = run(task, world, senses=senses)
         assert result.outcome == "success", result.reason

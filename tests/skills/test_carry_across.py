@@ -14,10 +14,11 @@ from caretree.skills.belief.sleeve_search import SeenWell
 from caretree.skills.carry_across import ABOVE, LAID, CarryAcross
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.stances import stance
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import laid_strap
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 
 def ran(sleeve, load=(0.0, 0.0, -1.0)):
@@ -30,9 +31,7 @@ def ran(sleeve, load=(0.0, 0.0, -1.0)):
         world=guard,
         guard=guard,
         seed=1,
-        perception=scripted_perception(
-            {"sleeve_opening": sleeve, "gripped_cloth": Estimate(stamp=0.0, confidence=0.9)}
-        ),
+        senses=fake_senses(sleeve_opening=sleeve, gripped_cloth=Estimate(stamp=0.0, confidence=0.9)),
     )
     skill = CarryAcross("across", context, side="left")
     for _ in range(6000):

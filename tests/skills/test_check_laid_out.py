@@ -9,10 +9,11 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_laid_out import AT_HAND, CheckLaidOut
 from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 
 def away(distance):
@@ -35,8 +36,8 @@ def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, shar
     monkeypatch.setattr("caretree.skills.belief.person_tracking.visible_share", lambda frame, posture: 1.0)
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    perception = scripted_perception({"sleeve_opening": sleeve, "arm": lying_posture("left")})
-    skill = CheckLaidOut("laid out", Context(world=guard, guard=guard, perception=perception), side="left")
+    senses = fake_senses(sleeve_opening=sleeve, arm=lying_posture("left"))
+    skill = CheckLaidOut("laid out", Context(world=guard, guard=guard, senses=senses), side="left")
     for _ in range(10):
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)

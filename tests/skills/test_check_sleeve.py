@@ -8,10 +8,11 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 UPPER_ARM = float(np.linalg.norm(np.diff(lying_posture("left").points_in_map[:2], axis=0)))  # [m]
 
@@ -24,9 +25,7 @@ def ran(seen, **options):
     """The skill after one run."""
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    context = Context(
-        world=guard, guard=guard, perception=scripted_perception({"worn_sleeve": seen, "arm": lying_posture("left")})
-    )
+    context = Context(world=guard, guard=guard, senses=fake_senses(worn_sleeve=seen, arm=lying_posture("left")))
     skill = CheckSleeve("inside", context, side="left", **options)
     for _ in range(10):
         skill.tick_once()

@@ -7,9 +7,10 @@ from caretree.perception.estimates import CORNER_OF, GraspPoint
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
 from caretree.skills.find_corner import ROUND, STAND, FindCorner
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 HOOK = np.array((2.7, 0.4, 1.55))
 NOTHING = PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
@@ -42,7 +43,7 @@ class Room:
             world=self.guard,
             guard=self.guard,
             seed=1,
-            perception=scripted_perception({"hook": grasp("near_hang"), "shown_corner": corner}),
+            senses=fake_senses(hook=grasp("near_hang"), shown_corner=corner),
         )
 
     def run(self):

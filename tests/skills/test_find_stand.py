@@ -9,10 +9,11 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
 from caretree.skills.find_stand import FindStand
 from caretree.skills.geometry.stances import stance
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 
 def chosen(sleeve):
@@ -22,7 +23,7 @@ def chosen(sleeve):
     context = Context(
         world=guard,
         guard=guard,
-        perception=scripted_perception({"sleeve_opening": sleeve, "arm": lying_posture("right")}),
+        senses=fake_senses(sleeve_opening=sleeve, arm=lying_posture("right")),
     )
     skill = FindStand("stand", context, side="right", lifting="left", pulling="right")
     for _ in range(60):

@@ -13,10 +13,11 @@ from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.stances import AHEAD, FACING, LANE
 from caretree.skills.lay_gown import BEGIN, BEYOND, BY, FARTHEST, FOLLOWS, HIDDEN, LayGown
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import laid_strap
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 WIDTH = 0.84  # [m]
 STRAIGHT_AT = (WIDTH + BEYOND) / 2 - HIDDEN  # where the near armhole shows in a gown that lies straight [m]
@@ -33,7 +34,7 @@ def let_go_at(seen, taut_until=1.0):
     room.waypoints["start"] = (LANE, BEGIN + AHEAD, FACING)
     world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, seed=1, perception=scripted_perception({"sleeve_opening": seen}))
+    context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen))
     skill = LayGown("lay", context, width=WIDTH)
     places = []
     for _ in range(6000):

@@ -11,10 +11,11 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance
 from caretree.skills.geometry.strap_grip import StrapGrip
 from caretree.skills.present_sleeve import CAUGHT, PresentSleeve
-from caretree.skills.scripted.scripted_perception import scripted_perception
 from caretree.skills.scripted.scripted_person import LYING, lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from .fake_senses import fake_senses
 
 ALONG = (LYING[3] - LYING[2]) * (1.0, 1.0, 0.0) / np.linalg.norm((LYING[3] - LYING[2])[:2])  # the right hand
 
@@ -30,7 +31,7 @@ def ran(seen, load=1.0):
     world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
     world.load["right"] = np.array((0.0, 0.0, -load, 0.0, 0.0, 0.0))  # the sleeve that hangs from it [N]
     guard = GuardedWorld(world)
-    looks = []
+    looks, arm = [], lying_posture("right")
 
     def answer(frame, **details):
         looks.append(frame.stamp)
@@ -40,7 +41,7 @@ def ran(seen, load=1.0):
         world=guard,
         guard=guard,
         seed=1,
-        perception=scripted_perception({"arm": lying_posture("right"), "sleeve_heading": answer}),
+        senses=fake_senses(arm=arm, relocalised_arm=arm, sleeve_heading=answer),
     )
     grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
     skill = PresentSleeve("present", context, grip=grip, taut=4.0, opens=0.05)

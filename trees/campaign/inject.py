@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ...perception.senses import Senses
 from ...sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld
 from ...sim.record.record import RunResult
 from ...sim.world import SIDES, World
-from ...skills.core.context import Perception, Phase
+from ...skills.core.context import Phase
 from ...skills.core.reasons import Reason, SkillFailure
 from ...skills.core.skill import Skill
 from ..nodes.decorators import FailSafe, RecoverBy
@@ -25,7 +26,7 @@ from ..run.runner import OPEN, Run
 from ..run.task import Task
 
 FaultKey = tuple[str, str, str]  # node, phase, fault
-MakeWorld = Callable[[], tuple[World, Perception | None]]
+MakeWorld = Callable[[], tuple[World, Senses | None]]
 SETTLE = 1.0  # [s] watched after the end for anything that still moves
 MOVED = 0.02  # [rad] or [m] in that time
 SIGNS = {"success": "ok", "safe_stop": "stop", "failure": "fail", "not_reached": "-"}
@@ -69,7 +70,7 @@ class Campaign:
 
     Args:
         task: to try.
-        make_world: a fresh world, and estimators if they are scripted, for every run.
+        make_world: a fresh world, and senses if they are scripted, for every run.
         seed: of every run.
         faults: which ones.
 
@@ -148,8 +149,8 @@ class Campaign:
         return node if phase == "cancel" else None
 
     def _prepare(self, faults: tuple[FaultSpec, ...]) -> Run:
-        inner, perception = self._make_world()
-        return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, perception=perception)
+        inner, senses = self._make_world()
+        return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, senses=senses)
 
 
 def _finished(run: Run) -> RunResult:

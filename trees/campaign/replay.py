@@ -48,7 +48,7 @@ def replay(directory: Path) -> Replay:
         raise CaretreeError(f"{directory / RUN_FILE} is damaged: task, seed and world are asked for") from error
     before = read_trace(directory / TRACE_FILE)
     loaded = load_task(task)
-    inner, perception = make_world(
+    inner, senses = make_world(
         world_name,
         loaded,
         seed=seed,
@@ -65,7 +65,7 @@ def replay(directory: Path) -> Replay:
             world,
             seed=seed,
             rate_hz=float(parameters.get("rate_hz", 15.0)),
-            perception=perception,
+            senses=senses,
             params={"stage": stage} if stage else None,
             settings=Settings(parameters.get("tuning")),
         )

@@ -9,13 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
 from ...sim.record.recorder import Recorder
 from ...sim.world import World
-from ...skills.core.context import Perception
 from ...skills.core.settings import Settings
 from ..run.runner import Progress, Run
 from ..run.task import Task, load_task
@@ -60,7 +60,7 @@ def main(options: argparse.Namespace) -> int:
     )
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # being told to end is being interrupted
     try:
-        inner, perception = make_world(
+        inner, senses = make_world(
             options.world,
             task,
             seed=options.seed,
@@ -70,7 +70,7 @@ def main(options: argparse.Namespace) -> int:
             view=options.view,
         )
         try:
-            return _run(options, task, inner, perception, faults, settings, parameters, claim)
+            return _run(options, task, inner, senses, faults, settings, parameters, claim)
         finally:
             inner.close()
     finally:
@@ -82,7 +82,7 @@ def _run(
     options: argparse.Namespace,
     task: Task,
     inner: World,
-    perception: Perception | None,
+    senses: Senses | None,
     faults: list[FaultSpec],
     settings: Settings,
     parameters: dict[str, Any],
@@ -97,7 +97,7 @@ def _run(
         rate_hz=RATE_HZ,
         recorder=events,
         on_progress=show,
-        perception=perception,
+        senses=senses,
         params={"stage": options.stage} if options.stage else None,
         settings=settings,
     )

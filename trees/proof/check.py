@@ -84,9 +84,9 @@ def fresh_tree(task: Task) -> Behaviour:
     Raises:
         TaskError: it cannot be built.
     """
-    world, perception = task.scripted(0)
+    world, senses = task.scripted(0)
     guard = GuardedWorld(world)
-    return task.build(Context(world=guard, guard=guard, perception=perception))
+    return task.build(Context(world=guard, guard=guard, senses=senses))
 
 
 def _names(root: Behaviour) -> list[str]:

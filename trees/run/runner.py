@@ -22,11 +22,12 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultyWorld
 from ...sim.record.record import RunResult
 from ...sim.world import SIDES, GripperOpening, World, WorldError
-from ...skills.core.context import Context, Perception
+from ...skills.core.context import Context
 from ...skills.core.reasons import Failure, Reason
 from ...skills.core.settings import Settings
 from ...skills.core.skill import Skill
@@ -82,7 +83,7 @@ class Run:
         rate_hz: ticks per second of world time.
         recorder: gets every event of the trace.
         on_progress: told of stages and skills as they begin and end.
-        perception: estimators to use instead of the task's own.
+        senses: to be used instead of those that the task offers.
         params: for the task's `build`.
         limits: what the guard enforces.
         settings: numbers of skills that this run sets otherwise than the tree does.
@@ -104,7 +105,7 @@ class Run:
         rate_hz: float = 15.0,
         recorder: EventSink | None = None,
         on_progress: Callable[[Progress], None] | None = None,
-        perception: Perception | None = None,
+        senses: Senses | None = None,
         params: Mapping[str, Any] | None = None,
         limits: Limits = DEFAULT,
         settings: Settings | None = None,
@@ -114,7 +115,7 @@ class Run:
         self.world = world
         self.limits = limits
         self.guard = GuardedWorld(world, limits, on_command=lambda command: self.trace.command(command))
-        self.context = Context(world=self.guard, guard=self.guard, perception=perception, seed=seed, settings=settings)
+        self.context = Context(world=self.guard, guard=self.guard, senses=senses, seed=seed, settings=settings)
         self.context.lease.patience = limits.stop_patience
         self.root = task.build(self.context, **(params or {}))
         self.context.settings.check()
@@ -386,7 +387,7 @@ def run(
     rate_hz: float = 15.0,
     recorder: EventSink | None = None,
     on_progress: Callable[[Progress], None] | None = None,
-    perception: Perception | None = None,
+    senses: Senses | None = None,
     params: Mapping[str, Any] | None = None,
     limits: Limits = DEFAULT,
 ) -> RunResult:
@@ -398,7 +399,7 @@ def run(
         rate_hz=rate_hz,
         recorder=recorder,
         on_progress=on_progress,
-        perception=perception,
+        senses=senses,
         params=params,
         limits=limits,
     ).run()

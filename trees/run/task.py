@@ -1,6 +1,6 @@
 """Tasks by name, one file each: a module with `build(context, **params)` that returns the tree's root.
 
-A module may also have `scripted(seed) -> (ScriptedWorld, Perception or None)`: the world on which `caretree
+A module may also have `scripted(seed) -> (ScriptedWorld, Senses or None)`: the world on which `caretree
 check`, `caretree inject` and `--world scripted` try the task.  A user's own file works the same: `caretree run
 path/to/task.py`.
 """
@@ -21,10 +21,11 @@ from typing import Any, cast
 
 from py_trees.behaviour import Behaviour
 
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import World
-from ...skills.core.context import Context, Perception
+from ...skills.core.context import Context
 from .. import tasks
 
 JUDGED = ("dressing",)  # tasks after which somebody should be dressed
@@ -42,26 +43,29 @@ class Task:
         name: as given on the command line.
         function: `build(context, **params)` of its module.
         file: where it is written.
-        script: `scripted(seed)` of its module, if it has one: the scripted world and estimators to try it on.
+        script: `scripted(seed)` of its module, if it has one: the scripted world and senses to try it on.
     """
 
     name: str
     function: Callable[..., Behaviour]
     file: Path
-    script: Callable[[int], tuple[World, Perception | None]] | None = None
+    script: Callable[[int], tuple[World, Senses | None]] | None = None
 
-    def scripted(self, seed: int) -> tuple[World, Perception | None]:
-        """A scripted world for this task, and its scripted estimators.
+    def scripted(self, seed: int) -> tuple[World, Senses | None]:
+        """A scripted world for this task, and its scripted senses.
 
         Raises:
-            TaskError: the file's own code fails.
+            TaskError: the file's own code fails, or its senses lack some that skills may ask for.
         """
         if self.script is None:
             return ScriptedWorld(seed=seed), None
         try:
-            return self.script(seed)
+            world, senses = self.script(seed)
         except (Exception, SystemExit) as error:
             raise TaskError(_located(self.file, error)) from error
+        if senses is not None and not isinstance(senses, Senses):
+            raise TaskError(f"{self.file}:1: scripted() gave {type(senses).__name__} as senses, which is no Senses")
+        return world, senses
 
     def build(self, context: Context, **params: Any) -> Behaviour:
         """The tree, fresh.

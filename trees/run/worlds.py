@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.world import World
-from ...skills.core.context import Perception
 from .task import Task
 
 WORLDS = ("bullet", "scripted", "ros1")
@@ -21,8 +21,8 @@ def make_world(
     person: str | None = None,
     model: str | None = None,
     view: bool = False,
-) -> tuple[World, Perception | None]:
-    """The world called `name`, and its estimators where these are scripted.
+) -> tuple[World, Senses | None]:
+    """The world called `name`, and its senses where these are scripted.
 
     Raises:
         CaretreeError: an unknown world, an option that this world does not take, or a world that is not there.

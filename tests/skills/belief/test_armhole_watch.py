@@ -4,13 +4,15 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, SleeveOpening
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.belief.armhole_watch import EDGE, RingWatch
-from caretree.skills.core.context import Context, Perception
+from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.strap_grip import StrapGrip
 from caretree.skills.pull_along_arm import PullAlongArm
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.guard.guard import GuardedWorld
+
+from ..fake_senses import fake_senses
 
 PATH = ArmPath.of(lying_posture("right"))
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
@@ -23,11 +25,11 @@ class Watcher(Skill):
 def make(points=None, share=1.0):
     """A watch that sees an armhole at `points` (n, 3), or none, a hand covered by `share`, a cuff as far round it."""
 
-    def ring(frame, **_):
-        if points is None:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
-        return SleeveOpening(
-            stamp=frame.stamp,
+    if points is None:
+        ring = PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
+    else:
+        ring = SleeveOpening(
+            stamp=0.0,
             confidence=0.9,
             target="sleeve_right",
             position_in_map=points[0],
@@ -36,17 +38,14 @@ def make(points=None, share=1.0):
             ring_points_in_map=points,
             centre_in_map=points.mean(axis=0),
         )
-
+    if share is None:
+        cover = PerceptionFailure(Problem.NOTHING_SEEN, "hand")
+    else:
+        cover = Cover(stamp=0.0, confidence=0.9, share=share)
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-
-    def cover(frame, **_):
-        if share is None:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, "hand")
-        return Cover(stamp=frame.stamp, confidence=0.9, share=share)
-
-    estimators = {"held_armhole": ring, "hand_cover": cover, "cuff_round": cover}
-    skill = Watcher("watch", Context(world=guard, guard=guard, perception=Perception(estimators)))
+    senses = fake_senses(held_armhole=ring, hand_cover=cover, cuff_round=cover)
+    skill = Watcher("watch", Context(world=guard, guard=guard, senses=senses))
     return RingWatch(skill, GRIP.arm, GRIP.hand), world
 
 

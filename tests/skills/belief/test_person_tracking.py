@@ -6,11 +6,13 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import Frame
 from caretree.skills.belief.person_tracking import NEAR_SPEED, careful, visible_share, watch_arm, watch_of
-from caretree.skills.core.context import Context, Perception
+from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.hold import Hold
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.guard.guard import GuardedWorld
+
+from ..fake_senses import fake_senses
 
 DOWN = np.array(((0.0, 1.0, 0.0, 0.4), (1.0, 0.0, 0.0, -0.2), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
@@ -31,20 +33,24 @@ def looking_down(stamp=0.0, covered=(), colour=(0, 0, 0)):
     )
 
 
+LOST = PerceptionFailure(Problem.ARM_LOST, "right arm")
+
+
 class Watcher(Skill):
     commands = False
 
 
-def make(arm, frames=None):
+def make(arm, elsewhere=LOST, frames=None):
+    """A skill that sees an arm as `arm` says, and as `elsewhere` says where it does not show any more."""
     world = ScriptedWorld(frames=frames or (lambda camera, time: looking_down(time)))
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, perception=Perception({"arm": arm}))
+    context = Context(world=guard, guard=guard, senses=fake_senses(arm=arm, relocalised_arm=elsewhere))
     return Watcher("watch", context), world
 
 
 def test_one_look_serves_several_ticks():
     asked = []
-    skill, world = make(lambda frame, side, **_: asked.append(frame.stamp) or lying_posture(side, frame.stamp))
+    skill, world = make(lambda frame, side: asked.append(frame.stamp) or lying_posture(side))
     for _ in range(15):
         watch_arm(skill, "right")
         world.clock.wait_until(world.clock.now() + 1 / 15)
@@ -61,13 +67,15 @@ def test_an_arm_in_front_of_where_it_was_is_not_hidden():
 def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
     covered, asked, searched = [], [], []
 
-    def arm(frame, side, afresh=False, **_):
-        (searched if afresh else asked).append(frame.stamp)
-        if afresh:
-            raise PerceptionFailure(Problem.ARM_LOST, "right arm")
-        return lying_posture(side, frame.stamp)
+    def arm(frame, side):
+        asked.append(frame.stamp)
+        return lying_posture(side)
 
-    skill, world = make(arm, lambda camera, time: looking_down(time, covered))
+    def elsewhere(frame, side):
+        searched.append(frame.stamp)
+        return LOST
+
+    skill, world = make(arm, elsewhere, lambda camera, time: looking_down(time, covered))
     assert visible_share(looking_down(), lying_posture("right")) == 1.0
     first = watch_arm(skill, "right", period=0.0)
     covered.extend(range(200))
@@ -87,29 +95,23 @@ def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():
     there = lying_posture("right")
     elsewhere = replace(there, points_in_map=there.points_in_map + (0.2, 0.0, 0.0))
     covered = []
-    skill, world = make(
-        lambda frame, side, afresh=False, **_: elsewhere if afresh else there,
-        lambda camera, time: looking_down(time, covered),
-    )
+    skill, world = make(there, elsewhere, lambda camera, time: looking_down(time, covered))
     watch_arm(skill, "right")
     covered.extend(range(200))
     world.clock.wait_until(1.0)
     assert watch_arm(skill, "right", hold=Hold("left", 0.9)).points_in_map[0] == pytest.approx(there.points_in_map[0])
     world.clock.wait_until(2.0)
-    assert watch_arm(skill, "right") is elsewhere
+    np.testing.assert_array_equal(watch_arm(skill, "right").points_in_map, elsewhere.points_in_map)
 
 
 def test_an_arm_never_found_is_not_invented():
-    def nothing(frame, side, **_):
-        raise PerceptionFailure(Problem.NOTHING_SEEN, "right arm")
-
-    skill, _ = make(nothing)
+    skill, _ = make(PerceptionFailure(Problem.NOTHING_SEEN, "right arm"))
     with pytest.raises(PerceptionFailure):
         watch_arm(skill, "right")
 
 
 def test_hands_are_slow_near_what_was_seen_and_fast_elsewhere():
-    skill, _ = make(lambda frame, side, **_: lying_posture(side, frame.stamp))
+    skill, _ = make(lying_posture("right"))
     assert careful(skill, 0.5)(np.array((3.0, 3.0, 1.0))) == NEAR_SPEED, "nobody seen yet"
     watch_arm(skill, "right")
     limit = careful(skill, 0.5)

@@ -10,34 +10,34 @@ from caretree.skills.belief.sleeve_search import find_sleeve, seen_well
 from caretree.skills.core.context import Context
 from caretree.skills.grasp_sleeve import GraspSleeve
 from caretree.skills.look_for_sleeve import LookForSleeve
-from caretree.skills.scripted.scripted_person import laid_strap, lying_posture, offer_person
+from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
+from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from ..fake_senses import fake_senses
 
 WELL, BADLY = laid_strap("right"), replace(laid_strap("right"), confidence=0.2, position_in_map=np.zeros(3))
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "sleeve")
 
 
-def room(*views):
+def room(*views, hide_strap=False):
     """A context whose camera shows the sleeve in these ways, one after the other, and as in the last from then on."""
     world = ScriptedWorld()
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard)
-    rest = list(views)
+    sleeve = fake_senses(sleeve_opening=list(views))
 
-    def opening(frame, **_):
-        view = rest.pop(0) if len(rest) > 1 else rest[0]
-        if isinstance(view, Exception):
-            raise view
-        return replace(view, stamp=frame.stamp)
+    class Seen(ScriptedSenses):
+        sleeve_opening = sleeve.sleeve_opening
 
-    context.perception.offer("sleeve_opening", opening)
-    offer_person(context)
+        def sleeve_strap(self, frame, *, side, near_in_map):
+            if hide_strap:
+                raise HIDDEN
+            return super().sleeve_strap(frame, side=side, near_in_map=near_in_map)
+
+    context.offer_senses(Seen(guard))
     return context
-
-
-def hide(frame, **_):
-    raise HIDDEN
 
 
 def ran(skill):
@@ -64,8 +64,7 @@ def test_a_sleeve_that_never_shows_is_no_failure_to_look_but_one_to_take():
 
 
 def test_a_sleeve_that_is_not_where_it_was_seen_well_is_forgotten():
-    context = room(WELL, BADLY)
-    context.perception.offer("sleeve_strap", hide)
+    context = room(WELL, BADLY, hide_strap=True)
     assert ran(LookForSleeve("look", context, side="right", hand="right")) == Status.SUCCESS
     skill = GraspSleeve("grasp", context, side="right", hand="right")
     assert seen_well(skill)

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import HandTwist, SensorLost
-from caretree.skills.core.context import Context, Perception
+from caretree.skills.core.context import Context
 from caretree.skills.core.ports import Input, Key, Output, PortError
 from caretree.skills.core.reasons import Failure, Reason, SkillFailure
 from caretree.skills.core.skill import Skill
@@ -11,6 +12,8 @@ from caretree.skills.core.world_handle import LeaseError
 from caretree.skills.motion.errors import MotionBlocked, PathBlocked
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
+
+from ..fake_senses import fake_senses
 
 
 def make_context(**kwargs):
@@ -236,14 +239,20 @@ def test_waiting_and_until_follow_the_worlds_clock():
     assert times == {Reason.COMMAND_LOST: pytest.approx(1.5, abs=0.11)}
 
 
-def test_estimators_of_a_task_do_not_replace_those_given_before():
-    context, world = make_context(perception=Perception({"side": lambda frame: "scripted"}))
-    context.perception.offer("side", lambda frame: "real")
-    context.perception.offer("mask", lambda frame: "real")
-    frame = world.look("head")
-    assert (context.perceive("side", frame), context.perceive("mask", frame)) == ("scripted", "real")
-    with pytest.raises(Exception, match="no estimator is called 'face'; there are mask, side"):
-        context.perceive("face", frame)
+def test_senses_that_a_task_offers_do_not_replace_those_given_before():
+    given, offered = fake_senses(), fake_senses()
+    context, _ = make_context(senses=given)
+    context.offer_senses(offered)
+    assert context.senses is given
+    context, _ = make_context()
+    context.offer_senses(offered)
+    assert context.senses is offered
+
+
+def test_a_run_without_senses_says_so_when_it_is_asked():
+    context, _ = make_context()
+    with pytest.raises(CaretreeError, match="this run has no senses"):
+        context.senses  # noqa: B018 - asking is what fails
 
 
 def test_memory_makes_an_object_once():

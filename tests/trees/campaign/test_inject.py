@@ -54,8 +54,8 @@ def test_every_fault_at_every_node_and_phase_that_a_bare_world_reaches_ends_safe
 
 def test_the_dressing_is_rehearsed_from_the_rail_to_the_bed():
     task = load_task("dressing")
-    world, perception = task.scripted(0)
-    result = run(task, world, perception=perception)
+    world, senses = task.scripted(0)
+    result = run(task, world, senses=senses)
     assert [(stage.name[0], stage.status, stage.attempts) for stage in result.stages] == [
         (letter, "success", 1) for letter in "ABCD"
     ]
@@ -65,9 +65,9 @@ def test_the_dressing_is_rehearsed_from_the_rail_to_the_bed():
 @pytest.mark.parametrize(("stage", "end"), [("B", 60.0), ("D", 90.0)])
 def test_a_stage_of_the_dressing_is_rehearsed_alone(stage, end):
     task = load_task("dressing")
-    world, perception = task.scripted(1)
+    world, senses = task.scripted(1)
     prepare_stage(world, stage)
-    result = run(task, world, seed=1, perception=perception, params={"stage": stage})
+    result = run(task, world, seed=1, senses=senses, params={"stage": stage})
     assert (result.outcome, [each.name[0] for each in result.stages]) == ("success", [stage]), result.reason
     assert result.sim_time_s < end
 

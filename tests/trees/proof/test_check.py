@@ -5,6 +5,8 @@ import itertools
 import numpy as np
 import py_trees
 import pytest
+from caretree.perception.senses import Senses
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.ports import Input, Key, Output
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
@@ -12,7 +14,7 @@ from caretree.trees.nodes.composers import fallback, parallel, sequence, watch
 from caretree.trees.nodes.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout
 from caretree.trees.proof.check import check
 from caretree.trees.proof.explore import Explorer
-from caretree.trees.run.task import load_task
+from caretree.trees.run.task import TaskError, load_task
 
 from ..planted import Release, task_of
 
@@ -328,3 +330,16 @@ def _context():
 
     guard = GuardedWorld(ScriptedWorld())
     return Context(world=guard, guard=guard)
+
+
+def test_a_scripted_twin_has_to_be_whole():
+    methods = {name: lambda self, *_, **__: None for name in Senses.__abstractmethods__ - {"head", "arm"}}
+    half = type(Senses)("Half", (Senses,), methods)
+
+    def build(context):
+        return safe(context, See("see", context, seen=K))
+
+    with pytest.raises(TaskError, match=r"^planted\.py:1: the senses Half lack arm, head$"):
+        check(task_of(build, lambda seed: (ScriptedWorld(seed=seed), half())))
+    with pytest.raises(TaskError, match=r"^planted\.py:1: scripted\(\) gave dict as senses, which is no Senses$"):
+        check(task_of(build, lambda seed: (ScriptedWorld(seed=seed), {"arm": None})))

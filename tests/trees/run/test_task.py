@@ -47,9 +47,9 @@ def build(task, **params):
 def test_named_tasks_build():
     assert "wave" in task_names()
     for name in task_names():
-        world, perception = load_task(name).scripted(0)
+        world, senses = load_task(name).scripted(0)
         guard = GuardedWorld(world)
-        load_task(name).build(Context(world=guard, guard=guard, perception=perception))
+        load_task(name).build(Context(world=guard, guard=guard, senses=senses))
 
 
 @pytest.mark.parametrize(("stage", "first_letters"), [("", "ABCD"), ("C", "C"), ("C-D", "CD")])

@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
-from ....perception.estimates import Cover
 from ....sim.world import SIDES, Side
 from ....skills.carry_across import CarryAcross
 from ....skills.core.context import Context
@@ -125,6 +124,5 @@ def _chest_covered(context: Context) -> bool:
     """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
     bed = context.world.room.bed
     shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + SHOULDERS_ON_BED
-    cover = context.perceive("chest_cover", context.world.look("head"), shoulders_in_map=shoulders)
-    assert isinstance(cover, Cover)
+    cover = context.senses.chest_cover(context.world.look("head"), shoulders_in_map=shoulders)
     return cover.share > COVERED

@@ -1,20 +1,27 @@
-"""Every estimator by name: the right type from a good picture, a stamp, and a failure instead of a guess."""
+"""Every sense: the right type from a good picture, a stamp, and a failure instead of a guess."""
 
 import numpy as np
 import pytest
 from caretree.perception import estimates
+from caretree.perception.classical import ClassicalSenses
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimators import classical_estimators
+from caretree.perception.senses import Senses
 from caretree.sim.world import RoomMap
 
 CALLS = {  # name -> scene, type, details from the scene
-    "garment_mask": ("on_rail", estimates.GarmentMask, lambda s: {}),
     "gown_side": ("on_rail", estimates.GownSide, lambda s: {}),
     "hang_point": ("on_rail", estimates.GraspPoint, lambda s: {}),
-    "collar_line": ("in_hand", estimates.CollarLine, lambda s: {}),
-    "collar_corner": ("in_hand", estimates.GraspPoint, lambda s: {"side": "left", "exclude": s.hand[:3, 3]}),
-    "pre_grasp": ("in_hand", estimates.PreGrasp, lambda s: {"poses_hand_in_map": [s.hand]}),
-    "layers": ("in_hand", estimates.LayerCount, lambda s: {"side": "left", "pose_hand_in_map": s.hand}),
+    "pre_grasp": ("in_hand", estimates.PreGrasp, lambda s: {"poses_hand_in_map": [s.hand], "distance": (0.12, np.inf)}),
+    "layers": (
+        "in_hand",
+        estimates.LayerCount,
+        lambda s: {
+            "side": "left",
+            "pose_hand_in_map": s.hand,
+            "poses_cloth_in_map": [s.hand],
+            "opening": 0.085,
+        },
+    ),
     "gripped_cloth": ("in_hand", estimates.Estimate, lambda s: {"pose_hand_in_map": s.hand}),
     "sleeve_opening": (
         "lying",
@@ -32,7 +39,7 @@ CALLS = {  # name -> scene, type, details from the scene
 
 
 def fresh(bed):
-    return classical_estimators(RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed), 0)
+    return ClassicalSenses(RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed), 0)
 
 
 ELSEWHERE = {
@@ -44,42 +51,53 @@ ELSEWHERE = {
     "sleeve_heading",
     "hand_cover",
     "cuff_round",
+    "relocalised_arm",
     "worn_sleeve",
     "sleeve_strap",
     "chest_cover",
 }  # these need a whole scene
 
 
-def test_all_are_covered(bed):
-    assert set(fresh(bed)) == set(CALLS) | ELSEWHERE
+def ask(senses, name, frame, details):
+    return getattr(senses, name)([frame] if name in ("pre_grasp", "layers") else frame, **details)
+
+
+def test_all_are_covered():
+    assert Senses.__abstractmethods__ == set(CALLS) | ELSEWHERE
 
 
 @pytest.mark.parametrize("name", CALLS)
 def test_type_stamp_confidence_and_failure(scenes, bed, black, name):
     kind, expected, details = CALLS[name]
     scene = getattr(scenes, kind)(0)
-    found = fresh(bed)[name](scene.frame(1, stamp=2.5), **details(scene))
+    found = ask(fresh(bed), name, scene.frame(1, stamp=2.5), details(scene))
     assert type(found) is expected
     assert found.stamp == 2.5
     assert 0 < found.confidence <= 1
     with pytest.raises(PerceptionFailure) as failure:
-        fresh(bed)[name](black, **details(scene))
+        ask(fresh(bed), name, black, details(scene))
     assert failure.value.problem in Problem
     empty = scenes.room(0, scene.camera).frame(1)
     if name != "gripped_cloth":  # nothing held is an answer there
         with pytest.raises(PerceptionFailure):
-            fresh(bed)[name](empty, **details(scene))
+            ask(fresh(bed), name, empty, details(scene))
 
 
 def test_random_choices_follow_the_seed(scenes, bed):
     frame = scenes.on_rail(0).frame()
-    a, b = (fresh(bed)["hang_point"](frame) for _ in range(2))
+    a, b = (fresh(bed).hang_point(frame) for _ in range(2))
     assert (a.position_in_map == b.position_in_map).all()
 
 
 def test_arm_takes_the_grip(scenes, bed):
     scene = scenes.person(0)
-    arm = fresh(bed)["arm"]
+    arm = fresh(bed).arm
     arm(scene.frame(0, stamp=0.0), side="right")
-    held = arm(scene.frame(1, stamp=0.1), side="right", grip_in_map=scene.arms["right"][1], fraction=1.0)
+    held = arm(scene.frame(1, stamp=0.1), side="right", grip_in_map=scene.arms["right"][1], arm_coordinate=1.0)
     assert np.linalg.norm(held.points_in_map[1] - scene.arms["right"][1]) < 0.03
+
+
+def test_an_arm_that_was_never_found_is_not_looked_for_again(scenes, bed):
+    with pytest.raises(PerceptionFailure) as failure:
+        fresh(bed).relocalised_arm(scenes.person(0).frame(0), side="right")
+    assert failure.value.problem is Problem.ARM_LOST

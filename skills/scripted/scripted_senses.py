@@ -1,0 +1,198 @@
+"""Senses without images: a gown before the robot, a person on the bed, always seen at the same places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from ...perception.estimates import (
+    COLLAR_OF,
+    CORNER_OF,
+    ArmPosture,
+    Cover,
+    Estimate,
+    GownSide,
+    GraspPoint,
+    GraspTarget,
+    Head,
+    LayerCount,
+    PreGrasp,
+    SleeveHeading,
+    SleeveOpening,
+    WornSleeve,
+)
+from ...perception.senses import Senses
+from ...sim.robot.kinematics import planar_pose
+from ...sim.world import Frame, Observation, Side
+from .scripted_person import LYING, laid_strap, lying_posture, mirrored
+
+PLACE = np.array((0.70, 0.0, 1.20))  # of the gown, in base [m]
+ASIDE, BELOW = 0.18, 0.37  # of a corner of its neckline from its middle, which the hook holds [m]
+
+
+class Proprioception(Protocol):
+    """What knows where the robot is: a world, or the guard around it."""
+
+    def observe(self) -> Observation:
+        """Latest proprioception."""
+        ...
+
+
+class ScriptedSenses(Senses):
+    """Everything shows, everything is well: for worlds without images, examples and tests.
+
+    The hung gown is always before the robot; the person, and the gown on the person, lie as on the simulated bed.
+    Subclass it to change single answers.
+
+    Args:
+        world: says where the robot is.
+    """
+
+    def __init__(self, world: Proprioception) -> None:
+        self._world = world
+
+    def hang_point(self, frame: Frame) -> GraspPoint:
+        """Straight ahead."""
+        return self._point(frame, "near_hang", 0.0)
+
+    def hook(self, frame: Frame) -> GraspPoint:
+        """Straight ahead."""
+        return self._point(frame, "near_hang", 0.0)
+
+    def shown_corner(self, frame: Frame, *, hook_in_map: np.ndarray, side: Side | None = None) -> GraspPoint:
+        """The one that is wanted, or the left one."""
+        return self._corner(frame, side or "left")
+
+    def hung_corner(
+        self,
+        frame: Frame,
+        *,
+        side: Side,
+        hook_in_map: np.ndarray,
+        other_length: float | None = None,
+        near_in_map: np.ndarray | None = None,
+    ) -> GraspPoint:
+        """Below the hook and aside."""
+        return self._corner(frame, side)
+
+    def gown_side(self, frame: Frame) -> GownSide:
+        """The outside."""
+        return GownSide(stamp=frame.stamp, confidence=0.9, outside=True)
+
+    def hung_side(self, frame: Frame) -> GownSide:
+        """The outside."""
+        return GownSide(stamp=frame.stamp, confidence=0.9, outside=True)
+
+    def gripped_cloth(self, frame: Frame, *, pose_hand_in_map: np.ndarray) -> Estimate:
+        """Every hand holds cloth."""
+        return Estimate(stamp=frame.stamp, confidence=0.9)
+
+    def pre_grasp(
+        self,
+        frames: Sequence[Frame],
+        *,
+        poses_hand_in_map: Sequence[np.ndarray],
+        distance: tuple[float, float],
+        exclude: Sequence[np.ndarray] = (),
+    ) -> PreGrasp:
+        """The same corner from everywhere, with nothing before it."""
+        corner = self._point(frames[-1], "near_hang", 0.1)
+        return PreGrasp(
+            stamp=corner.stamp,
+            confidence=0.9,
+            view=0,
+            primitive="direct",
+            corner_in_map=corner.position_in_map,
+            position_in_map=corner.position_in_map,
+            approach_in_map=corner.approach_in_map,
+            sweep_in_map=np.zeros(3),
+        )
+
+    def layers(
+        self,
+        frames: Sequence[Frame],
+        *,
+        side: Side,
+        pose_hand_in_map: np.ndarray,
+        poses_cloth_in_map: Sequence[np.ndarray],
+        opening: float,
+    ) -> LayerCount:
+        """One."""
+        return LayerCount(stamp=frames[-1].stamp, confidence=0.9, side=side, layers=1)
+
+    def sleeve_opening(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
+        """Where the gown lies on the bed."""
+        return laid_strap(side, frame.stamp)
+
+    def sleeve_strap(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
+        """Where the gown lies on the bed."""
+        return laid_strap(side, frame.stamp)
+
+    def held_armhole(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveOpening:
+        """Where the gown lies on the bed."""
+        return laid_strap(side, frame.stamp)
+
+    def sleeve_heading(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveHeading:
+        """Along the hand at rest."""
+        return SleeveHeading(
+            stamp=frame.stamp, confidence=0.9, side=side, cuff_from_armhole_in_map=mirrored(LYING[3] - LYING[2], side)
+        )
+
+    def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
+        """At the shoulder, and round the arm."""
+        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, round_arm=0.8)
+
+    def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+        """All of it."""
+        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+
+    def cuff_round(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+        """All the way round."""
+        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+
+    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
+        """All of it."""
+        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+
+    def collar_near_shoulder(self, frame: Frame, *, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
+        """Above the shoulder, taken from above."""
+        return GraspPoint(
+            stamp=frame.stamp,
+            confidence=0.9,
+            target=COLLAR_OF[side],
+            position_in_map=mirrored(np.array((0.14, -0.5, 0.80)), side),
+            approach_in_map=np.array((0.0, 0.0, -1.0)),
+            closing_in_map=np.array((0.0, 1.0, 0.0)),
+        )
+
+    def head(self, frame: Frame) -> Head:
+        """On the midline of the bed."""
+        return Head(stamp=frame.stamp, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.72)), middle=0.0)
+
+    def arm(
+        self, frame: Frame, *, side: Side, grip_in_map: np.ndarray | None = None, arm_coordinate: float = 1.0
+    ) -> ArmPosture:
+        """At rest."""
+        return lying_posture(side, frame.stamp)
+
+    def relocalised_arm(self, frame: Frame, *, side: Side) -> ArmPosture:
+        """At rest."""
+        return lying_posture(side, frame.stamp)
+
+    def _corner(self, frame: Frame, side: Side) -> GraspPoint:
+        """Seen from outside, the wearer's right is on the robot's left."""
+        return self._point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE, BELOW)
+
+    def _point(self, frame: Frame, target: GraspTarget, lateral: float, below: float = 0.0) -> GraspPoint:
+        base = planar_pose(self._world.observe().pose_base_in_map)
+        place = base @ np.append(PLACE + (0.0, lateral, -below), 1.0)
+        return GraspPoint(
+            stamp=frame.stamp,
+            confidence=0.9,
+            target=target,
+            position_in_map=place[:3],
+            approach_in_map=base[:3, 0],
+            closing_in_map=base[:3, 1],
+        )
