@@ -13,8 +13,8 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402 the backend comes first
-from matplotlib.patches import FancyArrowPatch, FancyBboxPatch  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = (("trees",), ("skills",), ("perception", "learning"), ("sim",))  # from the top
@@ -70,19 +70,46 @@ def main() -> None:
         for layer in layers:
             mine = [place for place, name in enumerate(names) if name.split("/")[0] == layer]
             left, right = step * mine[0] + 0.04, step * (mine[-1] + 1) - 0.04
-            box = FancyBboxPatch((left, y - 0.8), right - left, 1.6, boxstyle="round,pad=0,rounding_size=0.1",
-                                 facecolor=COLOURS[layer], edgecolor="none", zorder=0)
+            box = FancyBboxPatch(
+                (left, y - 0.8),
+                right - left,
+                1.6,
+                boxstyle="round,pad=0,rounding_size=0.1",
+                facecolor=COLOURS[layer],
+                edgecolor="none",
+                zorder=0,
+            )
             axes.add_patch(box)
             axes.text(left + 0.1, y + 0.6, layer, fontsize=13, weight="bold", va="center")
     for (here, there), count in arrows.items():
         down = here.split("/")[0] != there.split("/")[0]
-        axes.add_patch(FancyArrowPatch(places[here], places[there], arrowstyle="-|>", mutation_scale=7,
-                                       connectionstyle="arc3,rad=0.08", shrinkA=16, shrinkB=16, zorder=1,
-                                       linewidth=0.3 + 0.09 * count, color="#444444" if down else "#c27ba0", alpha=0.55))
+        axes.add_patch(
+            FancyArrowPatch(
+                places[here],
+                places[there],
+                arrowstyle="-|>",
+                mutation_scale=7,
+                connectionstyle="arc3,rad=0.08",
+                shrinkA=16,
+                shrinkB=16,
+                zorder=1,
+                linewidth=0.3 + 0.09 * count,
+                color="#444444" if down else "#c27ba0",
+                alpha=0.55,
+            )
+        )
     for name, (x, y) in places.items():
-        axes.add_patch(FancyBboxPatch((x - BOX / 2, y - HEIGHT / 2), BOX, HEIGHT,
-                                      boxstyle="round,pad=0,rounding_size=0.06", facecolor="white", edgecolor="#666666",
-                                      zorder=2))
+        axes.add_patch(
+            FancyBboxPatch(
+                (x - BOX / 2, y - HEIGHT / 2),
+                BOX,
+                HEIGHT,
+                boxstyle="round,pad=0,rounding_size=0.06",
+                facecolor="white",
+                edgecolor="#666666",
+                zorder=2,
+            )
+        )
         label = name.split("/")[-1] if "/" in name else f"({name})"
         axes.text(x, y, f"{label}\n{files[name]} files", ha="center", va="center", fontsize=7.5, zorder=3)
     axes.set_xlim(0, WIDTH)

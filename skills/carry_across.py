@@ -15,7 +15,6 @@ from .belief.sleeve_search import SeenWell
 from .control.base import drive_to
 from .control.hands import hand_now, look_towards, move_hands, open_gripper, until_taut
 from .control.pinch import back_off, pinch, reach_in
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -107,12 +106,6 @@ class CarryAcross(Skill):
         yield from open_gripper(self, hand)
         with suppress(MotionError):  # it is open, and the next motion begins with a way out
             yield from back_off(self, hand)
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(_StraySleeve(context.world))
-        return cls("carry across", context, side="left")
 
 
 class _StraySleeve(ScriptedSenses):

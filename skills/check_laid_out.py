@@ -10,11 +10,9 @@ from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
 from .belief.person_tracking import VISIBLE, visible_share, watch_arm
 from .belief.sleeve_search import find_sleeve
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 AT_HAND = 0.36  # how far from the fingertips, along the bed, a sleeve lies at most that is taken from there [m]
 
@@ -46,9 +44,3 @@ class CheckLaidOut(Skill):
         if away > AT_HAND:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")
         yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("check laid out", context, side="right")

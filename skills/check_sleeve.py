@@ -9,11 +9,9 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
 from .belief.person_tracking import watch_arm
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 # The cuff of a sleeve with the arm inside shows at least so far down the upper arm: 0.29 to 0.77 of it in recorded
 # runs, 0.01 and 0.05 where the sleeve had missed the arm and lay in a heap at the shoulder.
@@ -62,9 +60,3 @@ class CheckSleeve(Skill):
                 f"the cuff is {away * 100:.0f} cm down the arm, {self.upto * 100:.0f} cm at most are asked for",
             )
         yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("check sleeve", context, side="right")

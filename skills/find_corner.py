@@ -11,11 +11,9 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import CORNER_OF, GraspPoint
 from ..sim.world import Frame, Side
 from .control.base import drive_to
-from .core.context import Context
 from .core.ports import Output
 from .core.reasons import Reason
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
 ROUND = tuple(np.deg2rad((0.0, -30.0, 30.0)))  # about the hook, from squarely before the rail [rad]
@@ -118,9 +116,3 @@ class FindCorner(Skill):
             yield from drive_to(self, goal, straight=True)
         frame = self.world.look("head")
         return self.context.senses.hook(frame), frame
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("find corner", context)

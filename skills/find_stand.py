@@ -15,7 +15,6 @@ from .belief.person_tracking import watch_arm
 from .belief.sleeve_search import TO_STRAP, find_sleeve, strap_views
 from .control.arm_grip import over_arm
 from .control.hands import collision_checker
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -26,7 +25,6 @@ from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .motion.path import is_free
 from .motion.trajectory import free_postures
-from .scripted.scripted_senses import ScriptedSenses
 
 # Steps off the usual stance that are tried, farther from the bed and towards its head [m].
 _OUT, _HEADWARD = (0.0, 0.08, 0.16, 0.24, -0.08), (0.0, 0.1, -0.1, 0.2, -0.2, 0.3)
@@ -95,9 +93,3 @@ class FindStand(Skill):
             except Unreachable:
                 continue
         return None
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("find stand", context, side="right", lifting="left", pulling="right")

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..perception.estimates import GownSide
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill, SkillFailure
-from .scripted.scripted_senses import ScriptedSenses
 
 
 class FlipSideCheck(Skill):
@@ -38,9 +36,3 @@ class FlipSideCheck(Skill):
             self.seen = side
         if votes < 0:
             raise SkillFailure(Reason.WRONG_SIDE, "the inside faces the robot")
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("flip side check", context)

@@ -15,7 +15,6 @@ from .belief.strap_grasp import way_in
 from .control.compliant_hold import holding
 from .control.hands import hand_now, move_hands, open_gripper
 from .control.pinch import back_off, pinch
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -23,7 +22,6 @@ from .geometry.arm_path import ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, strap_grip
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 AIMED = 0.05  # a strap that far from the middle of the picture is looked at again [m]
 OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
@@ -121,9 +119,3 @@ class GraspSleeve(Skill):
                 problem = stop
         assert problem is not None
         raise problem
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("grasp sleeve", context, side="right", hand="right")

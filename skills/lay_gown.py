@@ -11,13 +11,11 @@ from ..perception.errors import PerceptionFailure
 from ..sim.world import SIDES, Side
 from .control.base import drive_to
 from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.stances import AHEAD, FACING, LANE
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
 # y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
@@ -111,9 +109,3 @@ class LayGown(Skill):
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
         yield from move_hands(self, goals, speed=LOWER, free="any", way="either")
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("lay gown", context, width=0.8)

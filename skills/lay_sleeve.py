@@ -10,7 +10,6 @@ from .belief.person_tracking import careful
 from .control.compliant_hold import holding
 from .control.hands import hand_now, move_hands, open_gripper, until_taut
 from .control.pinch import back_off
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -19,7 +18,6 @@ from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
 from .geometry.strap_grip import StrapGrip
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 LAID = np.array((0.36, 0.14, 0.06))  # of the strap: outwards of and feetward from the bed's middle, above it [m]
 ABOVE, ASIDE, BEFORE = 0.30, 0.16, 0.12  # where the way down begins: higher, farther out, farther towards the feet [m]
@@ -58,10 +56,3 @@ class LaySleeve(Skill):
             yield from back_off(self, hand)
         except MotionError:
             return  # it is open, and the next motion begins with a way out
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-        return cls("lay sleeve", context, grip=grip)

@@ -14,14 +14,12 @@ from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
 from .control.arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
 from .control.hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
-from .scripted.scripted_senses import ScriptedSenses
 
 ABOVE = 0.12  # the open hand waits this far above the arm [m]
 DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
@@ -134,12 +132,6 @@ class LiftArm(Skill):
         watch_arm(self, self.side, hold=self.hold, period=0.0)
         if lost_arm(self, self.hand):
             raise SkillFailure(Reason.ARM_SLIPPED, "at the top")
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("lift arm", context, side="right", hand="left")
 
 
 def lifted(posture: ArmPosture, side: Side, place: float, pitch: float, spread: float) -> np.ndarray:

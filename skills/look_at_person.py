@@ -9,11 +9,9 @@ from ..perception.estimates import ArmPosture
 from ..sim.world import Side
 from .belief.person_tracking import see_person, watch_arm
 from .control.hands import pan_head
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 _PANS = (0.0, 0.35, -0.35)  # tried one after the other [rad]
 _SETTLED = 0.035  # deviation of every joint at which an arm counts as found [m]
@@ -62,9 +60,3 @@ class LookAtPerson(Skill):
         if float(posture.deviation.max()) > _SETTLED:
             raise lost
         return posture
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("look at person", context, side="right")

@@ -9,12 +9,10 @@ from ..sim.world import Side
 from .belief.person_tracking import careful
 from .belief.sleeve_search import WELL, look_for_sleeve
 from .control.hands import hand_now, move_hands
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 
 class LookForSleeve(Skill):
@@ -44,9 +42,3 @@ class LookForSleeve(Skill):
             yield from move_hands(self, {self.hand: start}, way="any", speed=careful(self, 0.5))
         except MotionError:
             return  # the next motion begins from here
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("look for the sleeve", context, side="right", hand="right")

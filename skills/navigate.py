@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import JointTrajectory
 from .control.base import SPEED, drive_to
 from .control.follow import follow
 from .control.hands import collision_checker
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -63,8 +61,3 @@ class Navigate(Skill):
                 checker=collision_checker(self),
             )
             yield from follow(self, last)
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("navigate", context, goal="rail", arms=model.READY)

@@ -16,12 +16,10 @@ from ..sim.world import SIDES, Side
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
 from .control.hold_up import RANGE, present
 from .control.pinch import back_off, grasp_poses, pinch, reach_in
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError, Unreachable
-from .scripted.scripted_senses import ScriptedSenses
 from .view_around import Attempts, Views
 
 ATTEMPTS = 3  # corners tried from the same views
@@ -203,11 +201,3 @@ class PreGraspManipulate(Skill):
             poses_cloth_in_map=poses,
             opening=self.opening,
         ).layers
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        frame = context.world.look("head")
-        views = Views(side="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
-        return cls("pre-grasp manipulate", context, views=views, weight=-1.0)

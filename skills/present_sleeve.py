@@ -13,7 +13,6 @@ from .belief.person_tracking import careful, watch_arm
 from .belief.strap_grasp import BEYOND, presenting_place
 from .control.compliant_hold import holding
 from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_taut
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -22,7 +21,6 @@ from .geometry.hold import Hold
 from .geometry.stances import outwards
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
 _SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
@@ -157,10 +155,3 @@ class PresentSleeve(Skill):
                 problem = stop
         assert problem is not None
         raise problem
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-        return cls("present sleeve", context, grip=grip)

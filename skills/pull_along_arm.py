@@ -13,7 +13,6 @@ from .belief.person_tracking import watch_arm
 from .control.compliant_hold import ease_hold, holding
 from .control.hands import hand_now, look_towards
 from .control.pull_law import PullLaw
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -21,7 +20,6 @@ from .geometry.arm_path import ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
-from .scripted.scripted_senses import ScriptedSenses
 
 SPEED = 0.08  # along the arm; the guard lets the base come along with what is left of a hand's speed [m/s]
 BASE_SPEED = 0.10  # of the base at most [m/s]
@@ -160,10 +158,3 @@ class PullAlongArm(Skill):
             command = follower.command(seen.pose_base_in_map)
             velocity = command.velocity * (1.0, 1.0, 0.3)
             self.world.send(BaseVelocity(velocity=velocity, duration=command.duration))
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-        return cls("pull along arm", context, grip=grip, upto=1.45)

@@ -10,12 +10,10 @@ from ..perception.estimates import GraspPoint
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Side
 from .control.hands import cloth_load, hand_now, move_hands
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 BELOW, RISE = -0.10, 0.16  # where the hand is weighed on its way, and where it ends, above the hook [m]
 AWAY = float(np.deg2rad(30.0))  # from sideways to the far side of the rail: the other half turns to the robot [rad]
@@ -77,10 +75,3 @@ class RaiseCorner(Skill):
                 self.world.stop()
                 break
             yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        hook = context.senses.hook(context.world.look("head"))
-        return cls("raise corner", context, hand="right", hook=hook, weight=-1.0)

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from ..sim.world import Side
 from .control.hands import open_gripper
 from .control.pinch import back_off
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -34,8 +33,3 @@ class Release(Skill):
                 return
             except MotionError:  # too far for this arm: less will do
                 continue
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("release", context, side="left")

@@ -12,13 +12,11 @@ from .belief.person_tracking import careful
 from .control.arm_grip import lost_arm
 from .control.compliant_hold import FASTEST, giving_way
 from .control.hands import move_arms, open_gripper
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
 from .retreat import withdraw
-from .scripted.scripted_senses import ScriptedSenses
 
 _SPEED = 0.04  # of lowering [m/s]
 _RESTS = 4.0  # an arm that loads the hand with less than this lies on the bed [N]
@@ -67,9 +65,3 @@ class ReleaseArm(Skill):
             linear = -_SPEED * ease * UP + give
             self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))), retreat=True)
             yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("release arm", context, hand="left", lower=True)

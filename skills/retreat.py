@@ -12,12 +12,10 @@ from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
 from .control.hands import hand_now, move_arms, open_gripper
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
-from .scripted.scripted_senses import ScriptedSenses
 
 Hands = Literal["left", "right", "both"]
 _SPEED = 0.12  # of the hands on their way back [m/s]
@@ -53,12 +51,6 @@ class Retreat(Skill):
             yield from drive_to(self, goal, straight=True, speed=_BASE_SPEED, retreat=True)
         if self.ready:
             yield from move_arms(self, model.READY, sides=tuple(sides), speed=careful(self, 0.5), retreat=True)
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("retreat", context, back=0.3)
 
 
 def withdraw(skill: Skill, sides: list[Side], distance: float) -> Iterator[None]:

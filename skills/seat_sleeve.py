@@ -13,14 +13,12 @@ from ..sim.world import SIDES, HandTwist
 from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load
 from .control.pull_law import PullLaw
-from .core.context import Context
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.stances import HEADWARD
 from .geometry.strap_grip import StrapGrip
 from .pull_along_arm import EASING, SLOWEST
-from .scripted.scripted_senses import ScriptedSenses
 
 FARTHEST = 0.08  # the strap is drawn at most this far [m]
 SPEED = 0.11  # [m/s]
@@ -112,10 +110,3 @@ class SeatSleeve(Skill):
             twist = np.append(GIVING * unit(load), np.zeros(3))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
             yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-        return cls("seat sleeve", context, grip=grip)

@@ -9,11 +9,9 @@ from ..sim.world import Side
 from .control.base import stand_for
 from .control.hands import pan_head
 from .control.pinch import back_off, pinch, reach_in
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 
 class SegmentAndGrasp(Skill):
@@ -50,9 +48,3 @@ class SegmentAndGrasp(Skill):
                 yield from back_off(self, self.side)
             raise
         self.grasp = point
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("segment and grasp", context, side="right")

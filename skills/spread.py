@@ -15,7 +15,6 @@ from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
 from .control.pinch import pinch, reach_in
 from .control.pull_law import PullLaw
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -23,7 +22,6 @@ from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards
 from .motion.errors import MotionError
 from .retreat import withdraw
-from .scripted.scripted_senses import ScriptedSenses
 
 TUGS = 2  # cloth that is stuck under the arm follows a little each time
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]
@@ -110,12 +108,6 @@ class Spread(Skill):
             linear = SPEED * law.ease(load) * way
             self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        return cls("spread", context, side="left", hand="left")
 
 
 def _from_above(approach: np.ndarray, outward: np.ndarray) -> np.ndarray:

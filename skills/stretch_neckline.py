@@ -9,7 +9,6 @@ import numpy as np
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, HandTwist
 from .control.hands import cloth_load, hand_now, move_hands
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill, SkillFailure
@@ -60,8 +59,3 @@ class StretchNeckline(Skill):
         self.world.stop()
         yield from self.wait(0.5)
         self.width = width
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("stretch neckline", context, widest=0.7)

@@ -14,12 +14,10 @@ from ..sim.robot.kinematics import planar_pose
 from ..sim.world import GripperOpening, Side
 from .control.hands import close_gripper, cloth_load, hand_now, move_arms, move_hands, open_gripper
 from .control.pinch import back_off, grasp_poses, reach_in
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .motion.errors import MotionError
-from .scripted.scripted_senses import ScriptedSenses
 
 TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the hand's own side [degrees]
 DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
@@ -182,10 +180,3 @@ class TakeCorner(Skill):
             raise SkillFailure(Reason.GRASP_MISSED, f"the tug was answered by {felt:.2f} N")
         self.context.guard.declare_grip(self.hand, "cloth")
         self.note(f"holds the {self.sleeve} corner, {felt:.2f} N")
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        hook = context.senses.hook(context.world.look("head"))
-        return cls("take corner", context, hand="right", sleeve="left", hook=hook, feel=-1.0)

@@ -11,11 +11,9 @@ from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES
 from .control.base import drive_to
 from .control.hands import cloth_load, hand_now, move_hands
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .scripted.scripted_senses import ScriptedSenses
 
 ANGLES = (-35.0, -5.0, 10.0, 20.0, 30.0, 40.0)  # of the neckline from the hook to each hand, above level [degrees]
 SLACK = 0.95  # how much of that distance the hands use: the hook may not pull at them
@@ -69,10 +67,3 @@ class TakeDown(Skill):
 
     def _carried(self) -> float:
         return float(-sum(cloth_load(self, side)[2] for side in SIDES))
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        context.offer_senses(ScriptedSenses(context.world))
-        hook = context.senses.hook(context.world.look("head"))
-        return cls("take down", context, hook=hook, weight=-1.0, each=-1.0)

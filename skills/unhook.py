@@ -8,7 +8,6 @@ import numpy as np
 
 from ..sim.world import Side
 from .control.hands import cloth_load, hand_now, move_hands
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -44,8 +43,3 @@ class Unhook(Skill):
 
         self.note(f"carries {load:.1f} N")
         self.load = load
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("unhook", context, side="right", height=0.05)

@@ -10,7 +10,6 @@ import numpy as np
 from ..sim.world import SIDES, Frame, Side
 from .control.hands import hand_now, look_towards
 from .control.hold_up import plan_turn, present, turned_by
-from .core.context import Context
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -92,8 +91,3 @@ class ViewAround(Skill):
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stopped after {len(frames)} views")
             yield
         self.views = Views(side=self.side, frames=tuple(frames), poses_hand_in_map=tuple(poses))
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("view around", context, side="right")

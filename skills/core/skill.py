@@ -103,11 +103,6 @@ class Skill(py_trees.behaviour.Behaviour):
         self.world.stop()  # again on every tick: one stop may be lost
         return self.context.guard.still()
 
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """An instance for the law tests; override where inputs are needed."""
-        return cls(cls.__name__, context)
-
     # -- what authors use --------------------------------------------------------------------------------
 
     def note(self, message: str) -> None:

@@ -44,11 +44,6 @@ class MoveJoint(Skill):
         )
         self.before = here
 
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("move joint", context, side="left", joint="w1", angle=0.3)
-
 
 class ReturnJoint(Skill):
     """Brings one joint back to `angle` [rad]."""
@@ -69,11 +64,6 @@ class ReturnJoint(Skill):
                 positions=np.array(((here,), (self.angle,))),
             ),
         )
-
-    @classmethod
-    def example(cls, context: Context) -> Skill:
-        """For the law tests."""
-        return cls("return joint", context, side="left", joint="w1", angle=0.3)
 
 
 class Hold(Skill):

@@ -1,0 +1,84 @@
+"""One instance of every skill, with the inputs it needs, for the tests over all of them."""
+
+import numpy as np
+from caretree.sim.robot import model
+from caretree.skills.carry_across import CarryAcross
+from caretree.skills.check_laid_out import CheckLaidOut
+from caretree.skills.check_sleeve import CheckSleeve
+from caretree.skills.find_corner import FindCorner
+from caretree.skills.find_stand import FindStand
+from caretree.skills.flip_side_check import FlipSideCheck
+from caretree.skills.geometry.strap_grip import StrapGrip
+from caretree.skills.grasp_sleeve import GraspSleeve
+from caretree.skills.lay_gown import LayGown
+from caretree.skills.lay_sleeve import LaySleeve
+from caretree.skills.lift_arm import LiftArm
+from caretree.skills.look_at_person import LookAtPerson
+from caretree.skills.look_for_sleeve import LookForSleeve
+from caretree.skills.navigate import Navigate
+from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
+from caretree.skills.present_sleeve import PresentSleeve
+from caretree.skills.pull_along_arm import PullAlongArm
+from caretree.skills.raise_corner import RaiseCorner
+from caretree.skills.release import Release
+from caretree.skills.release_arm import ReleaseArm
+from caretree.skills.retreat import Retreat
+from caretree.skills.seat_sleeve import SeatSleeve
+from caretree.skills.segment_and_grasp import SegmentAndGrasp
+from caretree.skills.spread import Spread
+from caretree.skills.stretch_neckline import StretchNeckline
+from caretree.skills.take_corner import TakeCorner
+from caretree.skills.take_down import TakeDown
+from caretree.skills.unhook import Unhook
+from caretree.skills.view_around import ViewAround, Views
+from caretree.trees.tasks.wave import Hold, LetGo, MoveJoint, ReturnJoint
+
+GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+
+
+def hook(context):
+    return context.senses.hook(context.world.look("head"))
+
+
+def pre_grasp_manipulate(context):
+    frame = context.world.look("head")
+    views = Views(side="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
+    return PreGraspManipulate("pre-grasp manipulate", context, views=views, weight=-1.0)
+
+
+EXAMPLES = {
+    CarryAcross: lambda context: CarryAcross("carry across", context, side="left"),
+    CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
+    CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
+    FindCorner: lambda context: FindCorner("find corner", context),
+    FindStand: lambda context: FindStand("find stand", context, side="right", lifting="left", pulling="right"),
+    FlipSideCheck: lambda context: FlipSideCheck("flip side check", context),
+    GraspSleeve: lambda context: GraspSleeve("grasp sleeve", context, side="right", hand="right"),
+    LayGown: lambda context: LayGown("lay gown", context, width=0.8),
+    LaySleeve: lambda context: LaySleeve("lay sleeve", context, grip=GRIP),
+    LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),
+    LookAtPerson: lambda context: LookAtPerson("look at person", context, side="right"),
+    LookForSleeve: lambda context: LookForSleeve("look for the sleeve", context, side="right", hand="right"),
+    Navigate: lambda context: Navigate("navigate", context, goal="rail", arms=model.READY),
+    PreGraspManipulate: pre_grasp_manipulate,
+    PresentSleeve: lambda context: PresentSleeve("present sleeve", context, grip=GRIP),
+    PullAlongArm: lambda context: PullAlongArm("pull along arm", context, grip=GRIP, upto=1.45),
+    RaiseCorner: lambda context: RaiseCorner("raise corner", context, hand="right", hook=hook(context), weight=-1.0),
+    Release: lambda context: Release("release", context, side="left"),
+    ReleaseArm: lambda context: ReleaseArm("release arm", context, hand="left", lower=True),
+    Retreat: lambda context: Retreat("retreat", context, back=0.3),
+    SeatSleeve: lambda context: SeatSleeve("seat sleeve", context, grip=GRIP),
+    SegmentAndGrasp: lambda context: SegmentAndGrasp("segment and grasp", context, side="right"),
+    Spread: lambda context: Spread("spread", context, side="left", hand="left"),
+    StretchNeckline: lambda context: StretchNeckline("stretch neckline", context, widest=0.7),
+    TakeCorner: lambda context: TakeCorner(
+        "take corner", context, hand="right", sleeve="left", hook=hook(context), feel=-1.0
+    ),
+    TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), weight=-1.0, each=-1.0),
+    Unhook: lambda context: Unhook("unhook", context, side="right", height=0.05),
+    ViewAround: lambda context: ViewAround("view around", context, side="right"),
+    MoveJoint: lambda context: MoveJoint("move joint", context, side="left", joint="w1", angle=0.3),
+    ReturnJoint: lambda context: ReturnJoint("return joint", context, side="left", joint="w1", angle=0.3),
+    Hold: lambda context: Hold("hold", context),
+    LetGo: lambda context: LetGo("let go", context),
+}
