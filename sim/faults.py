@@ -6,12 +6,13 @@ PHASE is `start`, `step` (a later tick of it) or `cancel`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
 
+from .abilities import HasKinematics, SupportsFaults
 from .errors import CaretreeError
 from .world import SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World
 
@@ -20,6 +21,7 @@ Fault = Literal[
 ]
 FAULTS: tuple[str, ...] = get_args(Fault)
 PHASES: tuple[str, ...] = ("start", "step", "cancel")
+IN_PHYSICS: tuple[str, ...] = ("grip_slip", "person_moves")  # the world itself has to play these
 FOREVER = float("inf")
 # How long each fault lasts [s]; 0 happens at once and is over.
 DURATION: dict[str, float] = {
@@ -69,8 +71,7 @@ def parse_fault(text: str) -> FaultSpec:
 class FaultyWorld(World):
     """A world with faults; everything else passes through.
 
-    `grip_slip` and `person_moves` need physics: they call `fault_grip_slip(side)` and `fault_move_person()` of
-    the inner world.
+    `grip_slip` and `person_moves` happen in physics: the inner world has to support them (`SupportsFaults`).
 
     Args:
         inner: the world.
@@ -80,18 +81,20 @@ class FaultyWorld(World):
         begun: faults that have begun, with the time [s].
 
     Raises:
-        CaretreeError: a fault needs physics that the inner world does not offer.
+        CaretreeError: a fault happens in physics, and the inner world does not play such faults.
     """
 
     def __init__(self, inner: World, faults: Sequence[FaultSpec]) -> None:
-        hooks = {"grip_slip": "fault_grip_slip", "person_moves": "fault_move_person"}
         for spec in faults:
-            if spec.fault in hooks and not callable(getattr(inner, hooks[spec.fault], None)):
-                raise CaretreeError(f"{type(inner).__name__} cannot play {spec.fault}: it has no {hooks[spec.fault]}()")
+            if spec.fault in IN_PHYSICS and not isinstance(inner, SupportsFaults):
+                raise CaretreeError(
+                    f"{type(inner).__name__} cannot play {spec.fault}, which happens in physics; "
+                    f"any world can play {', '.join(fault for fault in FAULTS if fault not in IN_PHYSICS)}"
+                )
         self.inner = inner
         self.clock = inner.clock
         self.room = inner.room
-        self.kinematics = getattr(inner, "kinematics", None)
+        self.kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
         self.faults = tuple(faults)
         self.begun: list[tuple[FaultSpec, float]] = []
         self._until: dict[str, float] = {}
@@ -143,14 +146,13 @@ class FaultyWorld(World):
         self.inner.close()
 
     def _begin(self, fault: str) -> None:
-        if fault == "grip_slip":
-            self._hook("fault_grip_slip")(self._closed)
-        elif fault == "person_moves":
-            self._hook("fault_move_person")()
+        if fault in IN_PHYSICS:
+            assert isinstance(self.inner, SupportsFaults)
+            if fault == "grip_slip":
+                self.inner.fault_grip_slip(self._closed)
+            else:
+                self.inner.fault_move_person()
         self._until[fault] = self.clock.now() + DURATION[fault]
-
-    def _hook(self, name: str) -> Callable[..., None]:
-        return getattr(self.inner, name)
 
     def _active(self, fault: str) -> bool:
         return self.clock.now() < self._until.get(fault, -FOREVER)

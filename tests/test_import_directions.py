@@ -8,7 +8,17 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LAYERS = {"sim": 0, "perception": 1, "learning": 1, "skills": 2, "trees": 3}
 # What of sim/ the acting parts may use: the contract, what is data, and the robot's own model.
-ALLOWED_SIM = {"world", "errors", "robot", "scripted", "faults", "record"}
+ALLOWED_SIM = {
+    "world",
+    "abilities",
+    "errors",
+    "command_line",
+    "quantity",
+    "robot",
+    "scripted",
+    "faults",
+    "record",
+}
 # These read records after a run, or start a world; the tree never calls them.
 OUTSIDE_THE_TREE = {
     "trees/report/page.py",
@@ -66,6 +76,68 @@ def test_who_acts_imports_no_truth(path):
     for node in ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
         if isinstance(node, ast.Attribute):
             assert node.attr not in ("truth", "truth_frame", "truth_static"), f"{path}:{node.lineno} reads {node.attr}"
+
+
+def modules():
+    """Module name -> file, of the whole project; a folder's name stands for its __init__."""
+    return {".".join(path.with_suffix("").parts).removesuffix(".__init__"): path for path in FILES}
+
+
+def circles(graph):
+    """Groups of nodes that reach one another: strongly connected components of more than one node, after Tarjan."""
+    found, order, low, stack = [], {}, {}, []
+
+    def visit(node):
+        order[node] = low[node] = len(order)
+        stack.append(node)
+        for other in graph[node]:
+            if other not in order:
+                visit(other)
+            if other in stack:
+                low[node] = min(low[node], low[other])
+        if low[node] == order[node]:
+            start = stack.index(node)
+            group = stack[start:]
+            del stack[start:]
+            found.extend([sorted(group)] if len(group) > 1 else [])
+
+    for node in graph:
+        if node not in order:
+            visit(node)
+    return found
+
+
+def import_graph():
+    """Module -> modules it imports, lazily or for types alone too; that it imports its own folders is left out."""
+    known = modules()
+    graph = {name: set() for name in known}
+    for name, path in known.items():
+        for parts in imports(path):
+            target = ".".join(parts if ".".join(parts) in known else parts[:-1])
+            if target in known and target != name:
+                graph[name].add(target)
+    return graph
+
+
+def test_no_modules_import_each_other():
+    assert circles(import_graph()) == []
+
+
+def test_a_circle_would_be_found():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == [["b", "c"]]
+    graph = import_graph()
+    assert "sim.world" in graph["trees.guard.guard"]
+    assert "trees.tasks" in graph["trees.run.task"], "a folder is a module"
+    assert "sim.bullet.world" in graph["trees.run.worlds"], "lazy imports count too"
+    graph["sim.world"].add("trees.guard.guard")
+    assert any({"sim.world", "trees.guard.guard"} <= set(group) for group in circles(graph))
+
+
+@pytest.mark.parametrize("path", FILES, ids=str)
+def test_nobody_imports_what_another_module_keeps_to_itself(path):
+    for module in imports(path):
+        private = [part for part in module if part.startswith("_") and not part.startswith("__")]
+        assert not private, f"{path} imports {'.'.join(module)}"
 
 
 def test_the_scan_sees_what_it_should(tmp_path, monkeypatch):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .nodes.decorators import Retry as Retry
     from .nodes.decorators import Stage as Stage
     from .nodes.decorators import Timeout as Timeout
+    from .run.stages import TaskStage as TaskStage
 
 _HOME = {
     "Condition": ".nodes.decorators",
@@ -26,6 +27,7 @@ _HOME = {
     "RecoverBy": ".nodes.decorators",
     "Retry": ".nodes.decorators",
     "Stage": ".nodes.decorators",
+    "TaskStage": ".run.stages",
     "Timeout": ".nodes.decorators",
     "fallback": ".nodes.composers",
     "parallel": ".nodes.composers",

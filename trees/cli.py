@@ -9,15 +9,13 @@ import argparse
 import importlib
 import importlib.util
 import io
-import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
 
+from ..sim.command_line import CommandParser, answered, seed
 from ..sim.errors import CaretreeError
+from .run.worlds import WORLDS
 
-BAD_INPUT = 2
-INTERRUPTED = 130
 SELF_PARSED = {
     "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
     "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed"),
@@ -28,38 +26,24 @@ FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_m
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence, without the usage text."""
-
-    def error(self, message: str) -> NoReturn:
-        """Turn argparse's error into ours."""
-        raise CaretreeError(f"{message} (see {self.prog} --help)")
-
-
-def _seed(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or int(text) >= 2**32:
-        raise argparse.ArgumentTypeError(f"{text!r} is no seed: a whole number from 0 to {2**32 - 1} is asked for")
-    return int(text)
-
-
 def _world_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", default="bullet", choices=("bullet", "scripted", "ros1"), help="default: bullet")
+    parser.add_argument("--world", default="bullet", choices=WORLDS, help="default: bullet")
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
     parser.add_argument(
-        "--stage", metavar="NAME", help="this stage alone, or a span such as C-D, from a world prepared for it"
+        "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"
     )
 
 
 def build_parser(command: str = "") -> argparse.ArgumentParser:
     """The parser of all commands; `command` is the one that will be called."""
-    parser = _Parser(prog="caretree", description="Behaviour trees for assistive manipulation.")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
+    parser = CommandParser(prog="caretree", description="Behaviour trees for assistive manipulation.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     run = commands.add_parser("run", help="run a task", description="Run a task and write its record.")
     run.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
-    run.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all that varies (default 0)")
+    run.add_argument("--seed", type=seed, default=0, metavar="N", help="of all that varies (default 0)")
     _world_options(run)
     run.add_argument(
         "--inject",
@@ -85,8 +69,8 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
 
     inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
     inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
-    inject.add_argument("--seed", type=_seed, default=0, metavar="N", help="of every run (default 0)")
-    inject.add_argument("--world", default="scripted", choices=("bullet", "scripted", "ros1"), help="default: scripted")
+    inject.add_argument("--seed", type=seed, default=0, metavar="N", help="of every run (default 0)")
+    inject.add_argument("--world", default="scripted", choices=WORLDS, help="default: scripted")
     inject.add_argument(
         "--fault",
         action="append",
@@ -137,20 +121,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without an accent must not end a run
-    try:
-        return _dispatch(list(sys.argv[1:] if argv is None else argv))
-    except CaretreeError as error:
-        print(f"caretree: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except BrokenPipeError:  # the reader of our output has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except OSError as error:
-        print(f"caretree: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        print("caretree: interrupted", file=sys.stderr)
-        return INTERRUPTED
+    return answered("caretree", lambda: _dispatch(list(sys.argv[1:] if argv is None else argv)))
 
 
 if __name__ == "__main__":

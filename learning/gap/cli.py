@@ -7,12 +7,13 @@ import sys
 import time
 from pathlib import Path
 
+from ...sim.command_line import CommandParser, answered, seed
 from .errors import GapError
 
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = argparse.ArgumentParser(
+    top = CommandParser(
         prog="caretree gap",
         description="Find where simulation and measurement disagree, name the "
         "missing effect, add it to the model and show that the gap shrinks.",
@@ -40,7 +41,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--gown", default="light", help="name of a gown, or path of a gown file (default light)")
     p.add_argument("--model", help="model.yaml whose effects act while recording")
     p.add_argument("--out", required=True, help="folder for the measurement set")
-    p.add_argument("--seed", type=int, default=0, help="of the markers' noise (default 0)")
+    p.add_argument("--seed", type=seed, default=0, help="of the markers' noise (default 0)")
     p.add_argument("--duration", type=float, default=1.2, help="of each recording in seconds (default 1.2)")
     p.add_argument("--noise", type=float, default=0.001, help="of the markers in metres (default 0.001)")
     p = sub.add_parser("bench", help="the blind benchmark, scored")
@@ -72,22 +73,11 @@ def parser() -> argparse.ArgumentParser:
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command.  Returns 0, or 2 where the user's input cannot be used (one sentence on stderr)."""
-    args = parser().parse_args(argv)
-    try:
-        return _dispatch(args)
-    except KeyboardInterrupt:
-        print("caretree gap: interrupted; what is finished is kept", file=sys.stderr)
-        return 130
-    except OSError as error:
-        print(f"caretree gap: {error.filename or 'a file'}: {error.strerror or error}", file=sys.stderr)
-        return 2
-    except ValueError as error:
-        from ...sim.effects.effect import EffectError
-
-        if not isinstance(error, GapError | EffectError):
-            raise
-        print(f"caretree gap: {error}", file=sys.stderr)
-        return 2
+    return answered(
+        "caretree gap",
+        lambda: _dispatch(parser().parse_args(argv)),
+        interrupted="interrupted; what is finished is kept",
+    )
 
 
 def _say(text: str) -> None:

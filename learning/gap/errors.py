@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ...sim.errors import CaretreeError
 
-class GapError(ValueError):
+
+class GapError(CaretreeError):
     """A measurement set, a model file or a command cannot be used as given."""

@@ -198,14 +198,15 @@ class Verdict:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON; numbers that are not finite become null."""
-        return _plain({**dataclasses.asdict(self), "gap": {**dataclasses.asdict(self.gap), "closed": self.gap.closed}})
+        return plain({**dataclasses.asdict(self), "gap": {**dataclasses.asdict(self.gap), "closed": self.gap.closed}})
 
 
-def _plain(x: Any) -> Any:
+def plain(x: Any) -> Any:
+    """`x` as plain values for JSON or YAML; numbers that are not finite become None."""
     if isinstance(x, dict):
-        return {str(k): _plain(v) for k, v in x.items()}
+        return {str(k): plain(v) for k, v in x.items()}
     if isinstance(x, list | tuple):
-        return [_plain(v) for v in x]
+        return [plain(v) for v in x]
     if isinstance(x, bool | np.bool_):
         return bool(x)
     if isinstance(x, int | np.integer):

@@ -10,7 +10,7 @@ from typing import Any
 
 from ...sim.effects.model_file import load_model, save_model
 from .errors import GapError
-from .findings import Verdict, _plain
+from .findings import Verdict, plain
 from .measurement import load_set
 from .open_study import open_study
 from .report import write_report
@@ -61,7 +61,7 @@ def add(out: Path, say: Say, study: Study | None = None) -> Study:
     """Write model.yaml and read it back, so that a file no world can load is never left behind."""
     study = study or _again(out, "name.json")
     say("add: model.yaml")
-    save_model(out / "model.yaml", _plain(study.patch()))
+    save_model(out / "model.yaml", plain(study.patch()))
     load_model(out / "model.yaml")
     return study
 
@@ -99,5 +99,5 @@ def _again(out: Path, needed: str) -> Study:
 def _write(file: Path, content: dict[str, Any]) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_suffix(".part")  # an interrupt must not leave half a file behind
-    part.write_text(json.dumps(_plain(content), indent=1), encoding="utf-8")
+    part.write_text(json.dumps(plain(content), indent=1), encoding="utf-8")
     part.replace(file)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
+from ...sim.command_line import CommandParser, seed
 from ...sim.errors import CaretreeError
 
 if TYPE_CHECKING:
@@ -22,15 +23,10 @@ SIZES = {
 }
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise CaretreeError(f"{message} (see {self.prog} --help)")
-
-
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = _Parser(prog="caretree learn physics")
-    sub = top.add_subparsers(dest="command", required=True, parser_class=_Parser)
+    top = CommandParser(prog="caretree learn physics")
+    sub = top.add_subparsers(dest="command", required=True)
     data = sub.add_parser("data", help="make a dataset of clips, or what is missing of it")
     data.add_argument("folder", metavar="DIR", help="where it lies; made when it is not there")
     data.add_argument("--kind", choices=tuple(SIZES), default="paper")
@@ -41,7 +37,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="N",
         help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 4000, others 300)",
     )
-    data.add_argument("--seed", type=int, default=0, metavar="N")
+    data.add_argument("--seed", type=seed, default=0, metavar="N")
     data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")
     data.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
 
@@ -50,7 +46,7 @@ def parser() -> argparse.ArgumentParser:
     clip.add_argument("--gown", default="medium", metavar="NAME", help="name of a gown, or a gown file")
     clip.add_argument("--engine", choices=("fast", "bullet"), default="bullet")
     clip.add_argument("--disturbed", action="store_true", help="with noise, holes and a misplaced camera")
-    clip.add_argument("--seed", type=int, default=0, metavar="N")
+    clip.add_argument("--seed", type=seed, default=0, metavar="N")
     clip.add_argument("--strip", metavar="FILE", help="also a picture of it")
 
     show = sub.add_parser("show", help="draw strips of clips")
@@ -60,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
 
     sensitivity = sub.add_parser("sensitivity", help="what a clip shows of each parameter")
     sensitivity.add_argument("--points", type=int, default=20, metavar="N", help="gowns looked at (default 20)")
-    sensitivity.add_argument("--seed", type=int, default=0, metavar="N")
+    sensitivity.add_argument("--seed", type=seed, default=0, metavar="N")
     sensitivity.add_argument("--engines", action="store_true", help="instead, how the two engines differ, and the cost")
     sensitivity.add_argument("--candidates", action="store_true", help="instead, what else could be a parameter")
     sensitivity.add_argument("--out", metavar="FILE", help="also as a file, JSON")

@@ -7,17 +7,12 @@ import json
 import sys
 import time
 from pathlib import Path
-from typing import NoReturn
 
+from ...sim.command_line import CommandParser, whole_number
 from ...sim.errors import CaretreeError
 
 STEPS = 1500
 METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random", "class_centre")
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise CaretreeError(f"{message} (see {self.prog} --help)")
 
 
 def _seeds(text: str) -> tuple[int, ...]:
@@ -27,16 +22,10 @@ def _seeds(text: str) -> tuple[int, ...]:
         raise argparse.ArgumentTypeError(f"{text!r} is no list of seeds; for example 0,1,2") from None
 
 
-def _whole(text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
-    return int(text)
-
-
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = _Parser(prog="caretree learn physics")
-    sub = top.add_subparsers(dest="command", required=True, parser_class=_Parser)
+    top = CommandParser(prog="caretree learn physics")
+    sub = top.add_subparsers(dest="command", required=True)
     for name, text in (("train", "train and predict every test"), ("evaluate", "train what is missing; table")):
         p = sub.add_parser(name, help=text)
         p.add_argument("data", metavar="DATA", help="data set with parts train, val and test")
@@ -45,18 +34,20 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("--cuts", metavar="DATA", help="clips of other cuts, learned from and tested too")
         p.add_argument("--method", action="append", default=[], choices=METHODS, help="only this one; may be repeated")
         p.add_argument("--seeds", type=_seeds, default=(0, 1, 2), metavar="0,1,2")
-        p.add_argument("--steps", type=_whole, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})")
+        p.add_argument(
+            "--steps", type=whole_number, default=STEPS, metavar="N", help=f"of each phase (default {STEPS})"
+        )
         p.add_argument("--backbone", default="scores", choices=("scores", "small", "densenet121"))
         p.add_argument(
             "--simulate",
-            type=_whole,
+            type=whole_number,
             default=100,
             metavar="N",
             help="clips of each test that ours corrects by simulation (default 100, half a second each)",
         )
         p.add_argument(
             "--calibrate",
-            type=_whole,
+            type=whole_number,
             default=100,
             metavar="N",
             help="clips of each sort that set the intervals' widths (default 100)",

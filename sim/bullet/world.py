@@ -19,26 +19,26 @@ import numpy as np
 
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
-from ..errors import CaretreeError
 from ..record.recorder import FRAME_PERIOD, Recorder
 from ..record.truth import TruthFrame, TruthStatic
 from ..render.camera import CAMERA_VIEWS, camera_intrinsics
 from ..render.live_view import SIZE, LiveView
 from ..robot.body import RobotBody
 from ..robot.kinematics import default_kinematics
+from ..scene.initial_state import InitialState
 from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
-from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, World
+from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
 from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
 from .cloth import load_gown
+from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
 from .person import PERSON_PARTS, Person
 from .person_force import ForceBalance
 from .soft_world import GRAVITY, SoftWorld
-from .stage_start import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 
 TIME_STEP = 0.0025  # of the room [s]
 ROBOT_STEPS = 2  # room steps per robot step
@@ -64,11 +64,14 @@ class BulletWorld(World):
         scene: what was drawn; truth, not for skills.
         kinematics: the robot's own model, which the planner and the guard may use.
         timing: wall time by activity [s].
+        initial_states: names of the states in which a run may begin.
 
     Raises:
         CaretreeError: an unknown gown or person, a negative seed, an unusable model or gown file, a gown too stiff
             for the time step.
     """
+
+    initial_states = tuple(InitialState)
 
     def __init__(
         self,
@@ -157,31 +160,26 @@ class BulletWorld(World):
             self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.time.time, **posture
         )
 
-    def prepare_stage(self, stage: str) -> None:
-        """Start at a later stage, the earlier ones done by hand.
-
-        B: the robot's hands hold the gown; C: it lies on the bed; D: both sleeves are on.  Of a span of stages
-        ("C-D"), the first counts; before A there is nothing to do.
+    def set_initial_state(self, name: str) -> None:
+        """Begin the run with the gown somewhere else than on its hook.
 
         Raises:
-            CaretreeError: another stage, or the run has begun.
+            WorldError: there is no such state, or the run has begun.
         """
-        first = stage.partition("-")[0]
-        if first not in ("A", "B", "C", "D"):
-            raise CaretreeError(f"stage {stage!r} cannot be started on its own; A, B, C and D can")
+        state = InitialState.named(name)
         if self._steps:
-            raise CaretreeError("a stage can only be prepared before the run begins")
-        if first == "A":
+            raise WorldError("an initial state can only be set before the run begins")
+        if state == InitialState.GOWN_ON_HOOK:
             return
         self._hook.release()
         if self._patch is not None:  # proxy bodies cannot jump with the cloth
             self._patch.detach()
-        if first == "B":
+        if state == InitialState.GOWN_IN_HANDS:
             self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
             hold_in_hands(self._cloth, self._grips, self._hands, self._client.stepSimulation, TIME_STEP)
         else:
-            if first == "C":
+            if state == InitialState.GOWN_ON_PERSON:
                 lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
             else:
                 put_on_by_hand(
@@ -192,7 +190,8 @@ class BulletWorld(World):
                     TIME_STEP,
                     np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist(),
                 )
-            self._robot = self._stand(self.room.waypoints["bed_right" if first == "C" else "bed_left"])
+            beside = "bed_right" if state == InitialState.GOWN_ON_PERSON else "bed_left"
+            self._robot = self._stand(self.room.waypoints[beside])
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._vertices = self._cloth.vertices()
         if self._patch is not None:
@@ -430,9 +429,9 @@ class BulletWorld(World):
 
     # -- faults that need physics --------------------------------------------------------------------------
 
-    def fault_grip_slip(self, side: str) -> None:
+    def fault_grip_slip(self, side: Side) -> None:
         """What a hand holds slides out of it."""
-        self._grips[SIDES.index(side)].release()  # pyright: ignore[reportArgumentType] a Side by contract
+        self._grips[SIDES.index(side)].release()
 
     def fault_move_person(self) -> None:
         """The person stirs: both arms swing outwards by about 15 degrees within 0.6 s."""

@@ -16,8 +16,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..errors import CaretreeError
 
-class EffectError(ValueError):
+
+class EffectError(CaretreeError):
     """An effect, or a file of effects, does not fit; the message is one sentence for the user."""
 
 

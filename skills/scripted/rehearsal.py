@@ -12,6 +12,7 @@ import numpy as np
 
 from ...sim.robot import model
 from ...sim.robot.kinematics import default_kinematics
+from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import room_map
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import SIDES, Command, GripperOpening, Observation, Side
@@ -30,15 +31,24 @@ class RehearsalWorld(ScriptedWorld):
 
     Args:
         seed: of the sensor noise.
+
+    Attributes:
+        initial_states: names of the states in which a run may begin.
     """
+
+    initial_states = tuple(InitialState)
 
     def __init__(self, seed: int = 0) -> None:
         super().__init__(seed=seed, room=room_map(), kinematics=default_kinematics(), arm_positions=model.READY)
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
 
-    def prepare_stage(self, stage: str) -> None:
-        """Stage B begins with the gown in both hands; the others begin with empty ones."""
-        if stage.startswith("B"):
+    def set_initial_state(self, name: str) -> None:
+        """Begin with the gown in both hands, or with empty ones wherever else it is said to be.
+
+        Raises:
+            WorldError: there is no such state.
+        """
+        if InitialState.named(name) == InitialState.GOWN_IN_HANDS:
             self._opening[:] = CLOTH
             for side in SIDES:
                 self.send(GripperOpening(side=side, opening=0.0))

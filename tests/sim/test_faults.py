@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from caretree.sim.errors import CaretreeError
 from caretree.sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld, parse_fault
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
@@ -127,5 +128,6 @@ def test_physical_faults_need_a_world_that_can_play_them():
     class Plain(ScriptedWorld):
         fault_grip_slip = None
 
-    with pytest.raises(Exception, match=r"Plain cannot play grip_slip: it has no fault_grip_slip\(\)"):
+    with pytest.raises(CaretreeError, match=r"Plain cannot play grip_slip, which happens in physics; .* occlusion"):
         FaultyWorld(Plain(), [FaultSpec("grip_slip", "n", "step")])
+    assert FaultyWorld(Plain(), [FaultSpec("occlusion", "n", "step")]).faults

@@ -66,10 +66,10 @@ def replay(directory: Path) -> Replay:
             seed=seed,
             rate_hz=float(parameters.get("rate_hz", 15.0)),
             senses=senses,
-            params={"stage": stage} if stage else None,
+            params=loaded.parameters(stage),
             settings=Settings(parameters.get("tuning")),
         )
-        prepare_stage(inner, stage)
+        prepare_stage(inner, loaded, stage)
         run.run()
         if run.interrupted:
             raise KeyboardInterrupt

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ...sim.command_line import BAD_INPUT
 from ...sim.errors import CaretreeError, RecordError
 from ...sim.evaluate.verdict import evaluate
 from ...sim.record.folder_claim import FolderClaim, FolderTakenError
@@ -21,7 +22,6 @@ from ..run.task import JUDGED
 
 TRIAL_FILE = "trial.json"
 CARETREE = (sys.executable, "-m", "caretree.trees.cli")
-BAD_INPUT = 2  # exit status of `caretree` for a mistake of its user
 
 
 class InterruptedTrialError(Exception):

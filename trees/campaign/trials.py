@@ -3,7 +3,7 @@
 The folder of a campaign holds one folder for each trial, so an interrupted campaign goes on where it was:
 
     DIR/overall/seed-0000 ...     the whole task
-    DIR/stage-C/seed-0000 ...     one stage alone, from a world prepared for it
+    DIR/stage-dress/seed-0000 ... one stage alone, from a world prepared for it
     DIR/trials.json               everything counted so far
     DIR/table.txt                 the same to read
 """
@@ -60,7 +60,7 @@ class Plan:
 
     @property
     def kind(self) -> str:
-        """Folder of its trials: `overall` or `stage-C`."""
+        """Folder of its trials: `overall` or `stage-dress`."""
         return OVERALL if self.stage is None else f"{STAGE}{self.stage}"
 
     def folder(self, seed: int) -> Path:

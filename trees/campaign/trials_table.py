@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from .success_rate import SuccessRate
@@ -12,7 +13,7 @@ STAGE = "stage-"
 
 
 def collect(directory: Path) -> dict[str, list[Trial]]:
-    """Every finished trial of a campaign, by kind (`overall`, `stage-A` ...), in order of the seeds."""
+    """Every finished trial of a campaign, by kind (`overall`, `stage-dress` ...), in order of the seeds."""
     kinds = [directory / OVERALL, *sorted(directory.glob(f"{STAGE}*"))]
     found = {
         kind.name: [trial for folder in sorted(kind.glob("seed-*")) if (trial := read_trial(folder)) is not None]
@@ -21,21 +22,20 @@ def collect(directory: Path) -> dict[str, list[Trial]]:
     return {kind: trials for kind, trials in found.items() if trials}
 
 
-def letter(stage: str) -> str:
-    """`C` of `C`, `C dress` or `C: dress`: how the command line names a stage."""
-    return stage.split()[0].rstrip(":") if stage.split() else stage
-
-
 def rates(trials: dict[str, list[Trial]]) -> dict[str, dict[str, SuccessRate]]:
     """The rows of the table: `independent` and `overall`, each by stage; `overall` also by the whole task.
 
-    As in the paper, a stage's overall rate is over the trials that came to it.
+    As in the paper, a stage's overall rate is over the trials that came to it.  Trials of a span of stages
+    (`stage-dress-spread`) count for no stage; of a stage that no trial has recorded, the command line's name stands for
+    the record's.
     """
-    names = list(dict.fromkeys(name for many in trials.values() for trial in many for name in trial.stages))
     alone: dict[str, SuccessRate] = {}
     together: dict[str, SuccessRate] = {}
-    for name in names:
-        own = trials.get(f"{STAGE}{letter(name)}", [])
+    single = {kind: many for kind, many in trials.items() if kind.startswith(STAGE) and "-" not in kind[len(STAGE) :]}
+    recorded = {kind: _stages(many) or [kind[len(STAGE) :]] for kind, many in single.items()}
+    everywhere = _stages(trial for many in trials.values() for trial in many)
+    for name in dict.fromkeys([*everywhere, *(name for names in recorded.values() for name in names)]):
+        own = [trial for kind, many in single.items() if name in recorded[kind] for trial in many]
         alone[name] = SuccessRate(successes=sum(trial.stages.get(name) == "success" for trial in own), trials=len(own))
         within = [trial.stages.get(name, "not_run") for trial in trials.get(OVERALL, [])]
         ran = [status for status in within if status != "not_run"]
@@ -43,6 +43,11 @@ def rates(trials: dict[str, list[Trial]]) -> dict[str, dict[str, SuccessRate]]:
     whole = trials.get(OVERALL, [])
     together[OVERALL] = SuccessRate(successes=sum(trial.succeeded for trial in whole), trials=len(whole))
     return {"independent": alone, "overall": together}
+
+
+def _stages(trials: Iterable[Trial]) -> list[str]:
+    """Names of the stages that these trials have recorded, in order."""
+    return list(dict.fromkeys(name for trial in trials for name in trial.stages))
 
 
 def table(trials: dict[str, list[Trial]]) -> str:

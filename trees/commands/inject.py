@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...sim.command_line import INTERRUPTED
 from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
@@ -71,7 +72,7 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         raise disk_error(error, f"writing {path}") from error
     except KeyboardInterrupt:
         print(f"interrupted; {len(rows)} of {len(wanted)} rows are kept in {path}, run it again to go on")
-        return 130
+        return INTERRUPTED
     print(table(sorted(rows, key=lambda row: wanted.index(row.key))))
     return 0 if all(row.survived for row in rows) else 1
 

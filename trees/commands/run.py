@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...perception.senses import Senses
+from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.record.folder_claim import FolderClaim, claim_free
@@ -98,18 +99,19 @@ def _run(
         recorder=events,
         on_progress=show,
         senses=senses,
-        params={"stage": options.stage} if options.stage else None,
+        params=task.parameters(options.stage),
         settings=settings,
     )
-    prepare_stage(inner, options.stage)
+    prepare_stage(inner, task, options.stage)
     directory = claim.directory
     recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
     events.recorder = recorder
     try:
-        if (attach := getattr(inner, "attach_recorder", None)) is not None:
-            attach(recorder)
+        if isinstance(inner, SupportsRecording):
+            inner.attach_recorder(recorder)
         result = run.run()
-        recorder.finish(replace(result, timing=_timing(result.timing, getattr(inner, "timing", {}))))
+        of_world = inner.timing if isinstance(inner, HasTiming) else {}
+        recorder.finish(replace(result, timing=_timing(result.timing, of_world)))
     finally:
         recorder.close()
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]

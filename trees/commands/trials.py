@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ...sim.command_line import INTERRUPTED
 from ...sim.errors import CaretreeError
 from ..campaign.trials import TABLE, Plan, run_trials
 
 PASSED_ON = ("world", "gown", "person", "model", "tuning")  # to every `caretree run`
-INTERRUPTED = 130  # as shells count a Ctrl-C
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("-n", type=int, metavar="N", help="number of trials, seeds 0 to N-1 (10)")
     parser.add_argument("--seeds", metavar="A-B", help="seeds A to B instead, or a list like 3,7,9")
     parser.add_argument(
-        "--stage", metavar="STAGE", help="run one stage alone, or a span such as C-D, from a world prepared for it"
+        "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"
     )
     parser.add_argument("--jobs", type=int, default=1, metavar="J", help="runs at the same time (1)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the campaign (runs/trials-TASK)")

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
+from ...sim.abilities import HasKinematics
 from ...sim.world import (
     SIDES,
     BaseVelocity,
@@ -45,10 +45,9 @@ class GuardedWorld:
     """A world behind the limits.  It passes on the contract and nothing else, so truth stays out of reach.
 
     Args:
-        inner: the world.
+        inner: the world.  Where it has no kinematics, trajectories near the person are bounded by the arm's reach,
+            which is safe and slow.
         limits: what to enforce.
-        kinematics: of the robot; taken from `inner.kinematics` when not given.  Without one, trajectories
-            near the person are bounded by the arm's reach, which is safe and slow.
         on_command: told of every command really sent.
     """
 
@@ -57,7 +56,6 @@ class GuardedWorld:
         inner: World,
         limits: Limits = DEFAULT,
         *,
-        kinematics: Any = None,
         on_command: Callable[[Command], None] | None = None,
     ) -> None:
         self.limits = limits
@@ -67,7 +65,7 @@ class GuardedWorld:
         self._inner = inner
         self._zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
-        self._hand_positions = hand_positions_from(kinematics or getattr(inner, "kinematics", None))
+        self._hand_positions = hand_positions_from(inner.kinematics if isinstance(inner, HasKinematics) else None)
         self._grip: dict[Side, Grip] = {"left": "nothing", "right": "nothing"}
         self._over = {side: False for side in SIDES}
         self._fault: Failure | None = None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from ...sim.abilities import HandKinematics
 from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation, Side
 from .person_zone import PersonZone
 
@@ -17,10 +17,10 @@ SAMPLES_MAX = 2000
 REACH = 1.4  # [m] shoulder to fingertips: bounds a hand's speed when no kinematics are known
 
 
-def hand_positions_from(kinematics: Any) -> HandPositions | None:
-    """The callable for what a world offers as `kinematics`: a callable, a model with `pose_hand_in_map`, or None."""
-    if kinematics is None or not hasattr(kinematics, "pose_hand_in_map"):
-        return kinematics
+def hand_positions_from(kinematics: HandKinematics | None) -> HandPositions | None:
+    """Where a robot's model puts its hands; None where no model is known."""
+    if kinematics is None:
+        return None
 
     def positions(side: Side, joint_positions: np.ndarray, base_pose: np.ndarray) -> np.ndarray:
         return np.array([kinematics.pose_hand_in_map(side, q, base_pose)[:3, 3] for q in joint_positions])

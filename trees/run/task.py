@@ -1,8 +1,13 @@
 """Tasks by name, one file each: a module with `build(context, **params)` that returns the tree's root.
 
-A module may also have `scripted(seed) -> (ScriptedWorld, Senses or None)`: the world on which `caretree
-check`, `caretree inject` and `--world scripted` try the task.  A user's own file works the same: `caretree run
-path/to/task.py`.
+A module may also have
+
+- `scripted(seed) -> (ScriptedWorld, Senses or None)`: the world on which `caretree check`, `caretree inject` and
+  `--world scripted` try the task;
+- `STAGES`, a dictionary of `TaskStage` by name and in order: `--stage` then runs some of them alone, and `build` is
+  given their names as `stages`.
+
+A user's own file works the same: `caretree run path/to/task.py`.
 """
 
 from __future__ import annotations
@@ -13,8 +18,8 @@ import inspect
 import pkgutil
 import sys
 import traceback
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
@@ -27,6 +32,7 @@ from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import World
 from ...skills.core.context import Context
 from .. import tasks
+from .stages import TaskStage, span_of
 
 JUDGED = ("dressing",)  # tasks after which somebody should be dressed
 
@@ -44,12 +50,38 @@ class Task:
         function: `build(context, **params)` of its module.
         file: where it is written.
         script: `scripted(seed)` of its module, if it has one: the scripted world and senses to try it on.
+        stages: by name and in order, if its module names any.
     """
 
     name: str
     function: Callable[..., Behaviour]
     file: Path
     script: Callable[[int], tuple[World, Senses | None]] | None = None
+    stages: Mapping[str, TaskStage] = field(default_factory=dict)
+
+    def parameters(self, stage: str | None) -> dict[str, Any]:
+        """What `build` is given to run a stage or a span of them alone; nothing for the whole task (None).
+
+        Raises:
+            TaskError: the task has no such stage.
+        """
+        return {} if stage is None else {"stages": self._span(stage)}
+
+    def initial_state(self, stage: str | None) -> str:
+        """Name of the world's state in which a stage or a span of them begins; empty where any will do.
+
+        Raises:
+            TaskError: the task has no such stage.
+        """
+        return "" if stage is None else self.stages[self._span(stage)[0]].begins
+
+    def _span(self, text: str) -> tuple[str, ...]:
+        if not self.stages:
+            raise TaskError(f"task {self.name!r} has no stages that can be run alone: its file names no STAGES")
+        try:
+            return span_of(self.stages, text)
+        except CaretreeError as error:
+            raise TaskError(f"task {self.name!r} has {error}") from error
 
     def scripted(self, seed: int) -> tuple[World, Senses | None]:
         """A scripted world for this task, and its scripted senses.
@@ -144,7 +176,12 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
     build = getattr(module, "build", None)
     if not callable(build):
         raise TaskError(f"{file}:1: a task needs a function build(context) that returns the tree")
-    return Task(name, cast(Callable[..., Behaviour], build), file, getattr(module, "scripted", None))
+    stages = getattr(module, "STAGES", {})
+    if not isinstance(stages, Mapping) or not all(
+        isinstance(key, str) and key.isidentifier() and isinstance(stage, TaskStage) for key, stage in stages.items()
+    ):
+        raise TaskError(f"{file}:1: STAGES is a dictionary of TaskStage by names of letters, digits and underscores")
+    return Task(name, cast(Callable[..., Behaviour], build), file, getattr(module, "scripted", None), stages)
 
 
 def _located(file: Path, error: Exception | SystemExit) -> str:

@@ -1,15 +1,18 @@
-"""Worlds by the name given on the command line; the heavy ones are imported only when asked for."""
+"""Worlds by the name given on the command line; what they need is imported only when they are asked for."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ...perception.senses import Senses
+from ...sim.abilities import SupportsInitialStates
 from ...sim.errors import CaretreeError
-from ...sim.world import World
-from .task import Task
 
-WORLDS = ("bullet", "scripted", "ros1")
+if TYPE_CHECKING:
+    from ...perception.senses import Senses
+    from ...sim.world import World
+    from .task import Task
+
+WORLDS = ("bullet", "scripted")
 
 
 def make_world(
@@ -33,8 +36,6 @@ def make_world(
         if given:
             raise CaretreeError(f"{given[0]} needs the bullet world: the scripted world has no cloth and no person")
         return task.scripted(seed)
-    if name == "ros1":
-        raise CaretreeError("the ros1 adapter is not in this version; there are bullet and scripted")
     if name != "bullet":
         raise CaretreeError(f"unknown world {name!r}; there are {', '.join(WORLDS)}")
     try:
@@ -46,12 +47,15 @@ def make_world(
     return BulletWorld(seed=seed, view=view, **options), None
 
 
-def prepare_stage(world: World, stage: str | None) -> None:
-    """Bring `world` to where `stage` begins, where it can; None stands for the whole task.
+def prepare_stage(world: World, task: Task, stage: str | None) -> None:
+    """Bring a world to where a stage of a task begins, or the first one of a span; None stands for the whole task.
 
     Raises:
-        CaretreeError: this world cannot begin there.
+        CaretreeError: the task has no such stage, or this world cannot begin there.
     """
-    prepare = getattr(world, "prepare_stage", None)
-    if prepare is not None and stage:
-        prepare(stage)
+    state = task.initial_state(stage)
+    if not state:
+        return
+    if not isinstance(world, SupportsInitialStates):
+        raise CaretreeError(f"stage {stage!r} begins with {state!r}, but {type(world).__name__} has one beginning only")
+    world.set_initial_state(state)

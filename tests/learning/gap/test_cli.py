@@ -41,6 +41,9 @@ def test_the_four_steps_one_after_the_other_say_the_same(axis_set, tmp_path, cap
         ["bench", "--seeds", "a"],
         ["bench", "--system", "boat"],
         ["bench", "--system", "axis", "--follow-up"],
+        ["find", "nowhere"],
+        ["record", "--out", "x", "--seed", "-1"],
+        ["cook"],
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2(argv, capsys):

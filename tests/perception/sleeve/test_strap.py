@@ -17,7 +17,7 @@ from caretree.sim.world import Frame
 @pytest.fixture(scope="module")
 def world():
     world = BulletWorld(seed=0)
-    world.prepare_stage("C")
+    world.set_initial_state("gown_on_person")
     yield world
     world.close()
 

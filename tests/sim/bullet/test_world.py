@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from caretree.sim.abilities import (
+    HasKinematics,
+    HasTiming,
+    SupportsFaults,
+    SupportsInitialStates,
+    SupportsRecording,
+)
 from caretree.sim.bullet.person import PERSON_PARTS
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.evaluate.crossings import sleeve
-from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost
+from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost, WorldError
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +34,13 @@ def test_the_gown_hangs_on_its_hook_with_its_weight(world):
     assert frame.vertices[world.scene.hang_vertex] == pytest.approx((*world.scene.rail_xy, 1.55), abs=0.03)
     assert frame.vertices[:, 2].min() > 0.03
     assert not frame.gripper_closed.any()
+
+
+@pytest.mark.parametrize(
+    "ability", [HasKinematics, HasTiming, SupportsFaults, SupportsInitialStates, SupportsRecording]
+)
+def test_the_simulated_room_has_every_ability(world, ability):
+    assert isinstance(world, ability)
 
 
 def test_what_the_robot_senses_has_the_contract_shapes(world):
@@ -97,9 +111,9 @@ def test_the_same_seed_is_the_same_world():
     np.testing.assert_array_equal(frames[0][1], frames[1][1])
 
 
-def test_stage_b_begins_with_the_gown_in_both_hands():
+def test_a_run_can_begin_with_the_gown_in_both_hands():
     world = BulletWorld(seed=2)
-    world.prepare_stage("B")
+    world.set_initial_state("gown_in_hands")
     weight = world.scene.gown.mass * GRAVITY
     seen = world.observe()
     assert -seen.wrench_hand_in_map[:, 2].sum() == pytest.approx(weight, rel=0.25)  # it still swings a little
@@ -108,15 +122,15 @@ def test_stage_b_begins_with_the_gown_in_both_hands():
     for n, corner in enumerate((right, left)):  # the outside faces the robot: its left hand holds the right corner
         assert np.linalg.norm(vertices[corner] - seen.pose_hand_in_map[n, :3, 3]) < 0.03
     world.close()
-    with pytest.raises(CaretreeError, match="A, B, C and D"):
-        BulletWorld(seed=2).prepare_stage("E")
+    with pytest.raises(WorldError, match="no run begins with 'gown_on_floor'; there are gown_on_hook, gown_in_hands"):
+        BulletWorld(seed=2).set_initial_state("gown_on_floor")
 
 
-def test_stage_d_begins_with_both_sleeves_on_and_not_both_up():
+def test_a_run_can_begin_with_both_sleeves_on_and_not_both_up():
     reached = []
     for seed in (0, 1):
         world = BulletWorld(seed=seed)
-        world.prepare_stage("D")
+        world.set_initial_state("gown_worn")
         frame, loops = world.truth_frame(), world.scene.mesh.loops
         for n, side in enumerate(SIDES):
             armhole, cuff = (frame.vertices[None, loops[f"{part}_{side}"]] for part in ("armhole", "cuff"))

@@ -31,27 +31,37 @@ def record(tmp_path, monkeypatch):
 
 STAGED = """
 from caretree.sim.scripted.world import ScriptedWorld
+from caretree.trees import TaskStage
 from caretree.trees.tasks.wave import FailSafe, LetGo, MoveJoint
 
 
 class Prepared(ScriptedWorld):
-    def prepare_stage(self, stage):
-        self._q[:] = {"B": 0.5}[stage]
+    initial_states = ("low", "high")
+
+    def set_initial_state(self, name):
+        self._q[:] = {"high": 0.5}[name]
 
 
 def scripted(seed):
     return Prepared(seed=seed), None
 
 
-def build(context, stage=""):
-    return FailSafe("safely", MoveJoint("up", context, side="left", joint="w1", angle=0.2), LetGo("let go", context))
+def up(context):
+    return MoveJoint("up", context, side="left", joint="w1", angle=0.2)
+
+
+STAGES = {"start": TaskStage(up, begins="low"), "go_on": TaskStage(up, begins="high")}
+
+
+def build(context, stages=("start",)):
+    return FailSafe("safely", STAGES[stages[0]].build(context), LetGo("let go", context))
 """
 
 
 def test_a_stage_begins_where_it_began(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "staged.py").write_text(STAGED)
-    assert main(["run", "staged.py", "--world", "scripted", "--stage", "B", "--out", "run"]) == 0
+    assert main(["run", "staged.py", "--world", "scripted", "--stage", "go_on", "--out", "run"]) == 0
     assert '"goal":[0.7]' in (tmp_path / "run" / "trace.jsonl").read_text()
     assert replay(tmp_path / "run").same
 

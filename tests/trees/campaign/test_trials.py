@@ -13,7 +13,7 @@ from caretree.trees.campaign.trials import Plan, run_trials
 from caretree.trees.campaign.trials_table import rates, table
 from caretree.trees.commands.trials import add_parser, main, parse_seeds
 
-# stands in for `caretree run`: seed 1 fails in C, 2 crashes, 9 is refused
+# stands in for `caretree run`: seed 1 fails while dressing, 2 crashes, 9 is refused
 CHILD = """
 import json, pathlib, sys
 args = sys.argv[1:]
@@ -26,11 +26,13 @@ if seed == 2:
 if seed == 9:
     print("caretree: gown 'x' is unknown, but small is asked for")
     sys.exit(2)
-names = ["A grasp", "B unfold", "C dress", "D spread"]
+names = ["take down", "lay it", "dress both arms", "spread it"]
 if "--stage" in args:
-    names = [name for name in names if name[0] == args[args.index("--stage") + 1]]
-fails = seed == 1 and "C dress" in names
-state = ["failure" if fails and name[0] == "C" else "not_run" if fails and name[0] > "C" else "success"
+    first, _, last = args[args.index("--stage") + 1].partition("-")
+    stages = ["take_down", "lay", "dress", "spread"]
+    names = names[stages.index(first):stages.index(last or first) + 1]
+fails = seed == 1 and "dress both arms" in names
+state = ["failure" if fails and name == "dress both arms" else "not_run" if fails and name == "spread it" else "success"
          for name in names]
 out.joinpath("run.json").write_text(json.dumps(dict(
     task="dressing", seed=seed, world="scripted", outcome="failure" if fails else "success",
@@ -56,15 +58,30 @@ def test_table_counts_as_the_paper_does(fake_caretree):
     trials = run_trials(plan(fake_caretree, jobs=2), told.append)
     assert [trial.outcome for trial in trials] == ["success", "failure", "crash"]
     assert "it broke" in trials[2].reason
-    run_trials(plan(fake_caretree, seeds=(0, 1), stage="C"), told.append)
+    run_trials(plan(fake_caretree, seeds=(0, 1), stage="dress"), told.append)
+    run_trials(plan(fake_caretree, seeds=(2,), stage="lay"), told.append)
+    run_trials(plan(fake_caretree, seeds=(0,), stage="dress-spread"), told.append)
     stored = json.loads((fake_caretree / "trials.json").read_text())
     counts = {
         row: {name: (rate["successes"], rate["trials"]) for name, rate in of_row.items()}
         for row, of_row in stored["table"].items()
     }
     assert counts == {
-        "independent": {"A grasp": (0, 0), "B unfold": (0, 0), "C dress": (1, 2), "D spread": (0, 0)},
-        "overall": {"A grasp": (2, 2), "B unfold": (2, 2), "C dress": (1, 2), "D spread": (1, 1), "overall": (1, 3)},
+        "independent": {
+            "take down": (0, 0),
+            "lay it": (0, 0),
+            "dress both arms": (1, 2),
+            "spread it": (0, 0),
+            "lay": (0, 1),  # it crashed before it recorded how the tree calls this stage
+        },
+        "overall": {
+            "take down": (2, 2),
+            "lay it": (2, 2),
+            "dress both arms": (1, 2),
+            "spread it": (1, 1),
+            "lay": (0, 0),
+            "overall": (1, 3),
+        },
     }
     text = (fake_caretree / "table.txt").read_text()
     assert "independent trials" in text

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from caretree.sim.faults import FaultyWorld
 from caretree.sim.scripted.linear_arm import HOME_IN_BASE, LinearArms
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import BaseVelocity, Frame, GripperOpening, HandTwist, JointTrajectory
@@ -116,8 +117,9 @@ def test_a_trajectory_that_passes_the_person_between_its_ends_is_seen():
 
 def test_without_kinematics_the_arms_reach_bounds_the_hand():
     world = World()
-    guard = GuardedWorld(world, kinematics=None)
-    guard._hand_positions = None
+    bare = FaultyWorld(world, [])
+    bare.kinematics = None
+    guard = GuardedWorld(bare)
     hand = world.observe().pose_hand_in_map[0, :3, 3]
     move = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 1.0)), positions=np.array(((0.0,), (0.1,))))
     guard.update_person(hand + np.array((0.2, 0, 0)))

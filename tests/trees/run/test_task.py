@@ -2,6 +2,9 @@ import json
 from pathlib import Path
 
 import pytest
+from caretree.sim.abilities import SupportsInitialStates
+from caretree.sim.bullet.world import BulletWorld
+from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
 from caretree.trees import tasks
@@ -10,6 +13,7 @@ from caretree.trees.guard.guard import GuardedWorld
 from caretree.trees.nodes.decorators import FailSafe, Stage
 from caretree.trees.run.runner import run
 from caretree.trees.run.task import Task, TaskError, load_task, task_names
+from caretree.trees.run.worlds import prepare_stage
 from caretree.trees.tasks.wave import LetGo, MoveJoint
 
 GOOD = """
@@ -52,10 +56,43 @@ def test_named_tasks_build():
         load_task(name).build(Context(world=guard, guard=guard, senses=senses))
 
 
-@pytest.mark.parametrize(("stage", "first_letters"), [("", "ABCD"), ("C", "C"), ("C-D", "CD")])
-def test_a_span_of_the_dressing_task_holds_its_stages(stage, first_letters):
-    root = build(load_task("dressing"), stage=stage)
-    assert "".join(node.name[0] for node in root.iterate() if isinstance(node, Stage)) == first_letters
+@pytest.mark.parametrize(
+    ("stage", "count", "begins"),
+    [
+        (None, 4, ""),
+        ("take_down", 1, "gown_on_hook"),
+        ("dress", 1, "gown_on_person"),
+        ("lay-spread", 3, "gown_in_hands"),
+        ("dress-spread", 2, "gown_on_person"),
+    ],
+)
+def test_a_span_of_the_dressing_task_holds_its_stages_and_begins_where_they_do(stage, count, begins):
+    task = load_task("dressing")
+    root = build(task, **task.parameters(stage))
+    assert len([node for node in root.iterate() if isinstance(node, Stage)]) == count
+    assert task.initial_state(stage) == begins
+
+
+def test_every_stage_begins_where_both_rooms_can_begin():
+    task = load_task("dressing")
+    world, _ = task.scripted(0)
+    assert isinstance(world, SupportsInitialStates)
+    begins = [stage.begins for stage in task.stages.values()]
+    assert begins == list(world.initial_states) == list(BulletWorld.initial_states)
+
+
+@pytest.mark.parametrize("stages", ["{'go-on': TaskStage(build)}", "{'go_on': build}", "['go_on']"])
+def test_stages_that_no_command_line_can_name_are_refused(tmp_path, stages):
+    path = tmp_path / "mine.py"
+    path.write_text(f"{GOOD}\n\nfrom caretree.trees import TaskStage\n\nSTAGES = {stages}\n")
+    with pytest.raises(TaskError, match="STAGES is a dictionary of TaskStage by names of letters, digits"):
+        load_task(str(path))
+
+
+def test_a_stage_whose_beginning_the_world_lacks_is_refused():
+    task = load_task("dressing")
+    with pytest.raises(CaretreeError, match="stage 'lay' begins with 'gown_in_hands', but ScriptedWorld has one begin"):
+        prepare_stage(ScriptedWorld(), task, "lay")
 
 
 def test_a_users_own_file_runs(tmp_path):

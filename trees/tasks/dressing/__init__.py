@@ -2,37 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from py_trees.behaviour import Behaviour
 
 from ....perception.classical import ClassicalSenses
-from ....sim.errors import CaretreeError
 from ....sim.world import World
 from ....skills.core.context import Context
 from ....skills.scripted.rehearsal import rehearsal
 from ....skills.scripted.scripted_senses import ScriptedSenses
 from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe
+from ...run.stages import TaskStage
 from .dress import dress, make_safe, spread
 from .lay import unfold
 from .take_down import take_down
 
-STAGES = {"A": take_down, "B": unfold, "C": dress, "D": spread}
+STAGES = {
+    "take_down": TaskStage(take_down, begins="gown_on_hook"),
+    "lay": TaskStage(unfold, begins="gown_in_hands"),
+    "dress": TaskStage(dress, begins="gown_on_person"),
+    "spread": TaskStage(spread, begins="gown_worn"),
+}
 
 
-def build(context: Context, stage: str = "") -> Behaviour:
-    """All stages, or `stage` alone ("C"), or from one to another ("C-D").
-
-    Raises:
-        CaretreeError: no such stage.
-    """
-    first, _, last = (stage or "A-D").partition("-")
-    letters = list(STAGES)
-    if first not in letters or (last or first) not in letters[letters.index(first) :]:
-        raise CaretreeError(f"the dressing task has no stage {stage!r}; it has {', '.join(STAGES)}, and spans like C-D")
-    chosen = letters[letters.index(first) : letters.index(last or first) + 1]
+def build(context: Context, stages: Sequence[str] = tuple(STAGES)) -> Behaviour:
+    """All stages, or only those of the given names."""
     context.offer_senses(ClassicalSenses(context.world.room, context.seed))
-    stages = [STAGES[letter](context) for letter in chosen]
-    return FailSafe("dress safely", sequence("dressing", *stages), make_safe(context))
+    body = sequence("dressing", *(STAGES[stage].build(context) for stage in stages))
+    return FailSafe("dress safely", body, make_safe(context))
 
 
 def scripted(seed: int) -> tuple[World, ScriptedSenses]:

@@ -1,7 +1,7 @@
-"""Stages C and D of the dressing tree, and what is owed whenever a stage fails.
+"""The stages `dress` and `spread` of the dressing tree, and what is owed whenever a stage fails.
 
-C  dress the right arm, see that the left sleeve is on its side, drive round the foot of the bed, dress the left arm
-D  draw the collar to the neck where the chest shows, and sleeves that have slipped up their arms once more
+dress   the right arm, see that the left sleeve is on its side, drive round the foot of the bed, dress the left arm
+spread  draw the collar to the neck where the chest shows, and sleeves that have slipped up their arms once more
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far 
 
 
 def dress(context: Context) -> Behaviour:
-    """Stage C."""
+    """The stage `dress`."""
     bring_across = fallback(
         "bring the left sleeve to its side",
         CarryAcross("carry the left sleeve across", context, side="left"),
@@ -57,7 +57,7 @@ def dress(context: Context) -> Behaviour:
 
 
 def spread(context: Context) -> Behaviour:
-    """Stage D: what counts is a covered chest; where it is not, the collar is drawn on the left, then on the right."""
+    """The stage `spread`: where the chest is not covered, the collar is drawn on the left, then on the right."""
     order: tuple[tuple[Side, str], ...] = (("left", "bed_left"), ("right", "bed_right"))
     sides: list[Behaviour] = []
     for side, waypoint in order:

@@ -1,4 +1,4 @@
-"""Half of stage C: one arm into its sleeve.
+"""Half of the stage `dress`: one arm into its sleeve.
 
 over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the
                  wrist, let the arm go

@@ -1,4 +1,4 @@
-"""Stage B of the dressing tree: unfold the gown and lay it on the person, outside up, arms bare."""
+"""The stage `lay` of the dressing tree: unfold the gown and lay it on the person, outside up, arms bare."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...nodes.decorators import Stage, Timeout
 
 
 def unfold(context: Context) -> Behaviour:
-    """Stage B."""
+    """The stage `lay`."""
     width = Key("neckline_width")
     return Stage(
         "B unfold",

@@ -1,4 +1,4 @@
-"""Part of stage D: see to a sleeve that the other one, drawn up after it, has pulled down."""
+"""Part of the stage `spread`: see to a sleeve that the other one, drawn up after it, has pulled down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stage A of the dressing tree: from the side that shows the outside, take both ends of the neckline, lift it off."""
+"""The stage `take_down` of the dressing tree: take both ends of the neckline, outside to the front, and lift it off."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SEEN = 0.45  # confidence of a corner that is seen, not inferred
 
 
 def take_down(context: Context) -> Behaviour:
-    """Stage A."""
+    """The stage `take_down`."""
     find_outside = fallback(
         "find the outside",
         FlipSideCheck("outside to the front", context, hung=True, sure=0.0),

@@ -1,7 +1,7 @@
 """A gown that is put on by hand."""
 
 import numpy as np
-from caretree.sim.bullet.stage_start import RAISED, put_on_by_hand
+from caretree.sim.bullet.gown_placement import RAISED, put_on_by_hand
 from caretree.sim.bullet.world import TIME_STEP, BulletWorld
 from caretree.sim.evaluate.crossings import sleeve
 from caretree.sim.world import SIDES

@@ -1,4 +1,4 @@
-"""Starting a run at a later stage, as the paper's independent trials do: somebody lays the gown by hand first."""
+"""Beginning a run with the gown somewhere else than on its hook, as the paper's independent trials do."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ _DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is 
 def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
     """Hang the gown by its collar corners over the foot of the bed and lay it on the person's legs.
 
-    The outside faces up, the neckline lies across the body just beyond the fingertips of arms at rest, as
-    after stage B.  The gown is carried by two handles, under the same physics as in a run.
+    The outside faces up, the neckline lies across the body just beyond the fingertips of arms at rest.
+    The gown is carried by two handles, under the same physics as in a run.
 
     Args:
         cloth: the gown, held by nothing.
@@ -85,7 +85,7 @@ def put_on_by_hand(
 ) -> None:
     """Raise the person's arms, hang the sleeves over the hands and draw both up by their straps, some less than others.
 
-    The arms stay up and spread, as after stage C; how far up them the sleeves come to rest once the straps are let go
+    The arms stay up and spread, as after dressing; how far up them the sleeves come to rest once the straps are let go
     of is up to the physics.
 
     Args:
@@ -160,7 +160,7 @@ def _over_hands(mesh: GownMesh, arms: np.ndarray, over_legs: float) -> np.ndarra
 def hold_in_hands(
     cloth: Cloth, grips: list[Grip], hands: np.ndarray, step: Callable[[], None], time_step: float
 ) -> None:
-    """Hang the gown by its collar corners between the robot's closed fingers, outside to the robot, as after stage A.
+    """Hang the gown by its collar corners between the robot's closed fingers, outside to the robot.
 
     Args:
         cloth: the gown, held by nothing.

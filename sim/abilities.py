@@ -1,0 +1,84 @@
+"""What a World may offer beyond the contract: each ability is a protocol, asked for with `isinstance`.
+
+A hardware adapter needs none of them.  Whoever uses an ability says in one sentence what is missing where a world
+does not have it, or does without.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from .record.recorder import Recorder
+    from .world import Side
+
+
+class HandKinematics(Protocol):
+    """Forward kinematics of both arms, as far as a guard needs them."""
+
+    def pose_hand_in_map(self, side: Side, q: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
+        """(4, 4) pose of a hand for joint angles `q` (7,) [rad] and a base at (3,) x, y, yaw [m, m, rad]."""
+        ...
+
+
+@runtime_checkable
+class HasKinematics(Protocol):
+    """A world that knows the robot's own model; without it the guard bounds the hands by the arms' reach."""
+
+    @property
+    def kinematics(self) -> HandKinematics | None:
+        """The model; None where a world that passes on another one's has got none."""
+        ...
+
+
+@runtime_checkable
+class HasTiming(Protocol):
+    """A world that keeps account of its wall time."""
+
+    @property
+    def timing(self) -> Mapping[str, float]:
+        """Wall time by activity [s], among them `cameras`, `physics` and `record`."""
+        ...
+
+
+@runtime_checkable
+class SupportsRecording(Protocol):
+    """A world with a ground truth and a spectator's camera, both for the record only."""
+
+    def attach_recorder(self, recorder: Recorder) -> None:
+        """Give every frame from now on to `recorder`."""
+        ...
+
+
+@runtime_checkable
+class SupportsFaults(Protocol):
+    """A world that plays the faults that happen in physics rather than in sensors or commands."""
+
+    def fault_grip_slip(self, side: Side) -> None:
+        """What that hand holds slides out of it."""
+        ...
+
+    def fault_move_person(self) -> None:
+        """The person stirs."""
+        ...
+
+
+@runtime_checkable
+class SupportsInitialStates(Protocol):
+    """A world that can begin a run elsewhere than at its beginning, for stages that are tried alone."""
+
+    @property
+    def initial_states(self) -> Sequence[str]:
+        """Names of the states in which a run may begin, the usual one first."""
+        ...
+
+    def set_initial_state(self, name: str) -> None:
+        """Bring the world into one of `initial_states`.
+
+        Raises:
+            WorldError: there is no such state, or the run has begun.
+        """
+        ...

@@ -1,0 +1,80 @@
+"""What every command line of the project shares: one sentence for a user's mistake, and the exit status.
+
+Nothing heavy is imported here: `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from .errors import CaretreeError
+
+BAD_INPUT = 2
+INTERRUPTED = 130  # as shells count a Ctrl-C
+SEEDS = 2**32
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence, without the usage text; its subcommands do too."""
+
+    def error(self, message: str) -> NoReturn:
+        """Turn argparse's error into the project's.
+
+        Raises:
+            CaretreeError: always.
+        """
+        raise CaretreeError(f"{message} (see {self.prog} --help)")
+
+
+def whole_number(text: str) -> int:
+    """Type of an argument that is 0 or more.
+
+    Raises:
+        ArgumentTypeError: it is not.
+    """
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number")
+    return int(text)
+
+
+def seed(text: str) -> int:
+    """Type of an argument that seeds a random generator.
+
+    Raises:
+        ArgumentTypeError: it is none.
+    """
+    if not text.isascii() or not text.isdigit() or int(text) >= SEEDS:
+        raise argparse.ArgumentTypeError(f"{text!r} is no seed: a whole number from 0 to {SEEDS - 1} is asked for")
+    return int(text)
+
+
+def answered(program: str, command: Callable[[], int], *, interrupted: str = "interrupted") -> int:
+    """Run a command and tell a user's mistake, a lost file or a Ctrl-C in one sentence.
+
+    Args:
+        program: name in front of the sentence.
+        command: returns the exit status.
+        interrupted: what is said after a Ctrl-C.
+
+    Returns:
+        The exit status: the command's own, `BAD_INPUT`, `INTERRUPTED`, or 1 where the reader of the output has gone.
+    """
+    try:
+        return command()
+    except CaretreeError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:  # the reader of our output has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        where = f": {error.filename}" if error.filename else ""
+        print(f"{program}: {error.strerror or error}{where}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"{program}: {interrupted}", file=sys.stderr)
+        return INTERRUPTED

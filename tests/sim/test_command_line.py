@@ -1,0 +1,63 @@
+"""A user's mistake is one sentence, whichever command line he met."""
+
+import argparse
+
+import pytest
+from caretree.sim.command_line import CommandParser, answered, seed, whole_number
+from caretree.sim.errors import CaretreeError
+
+
+def parser():
+    top = CommandParser(prog="tool")
+    sub = top.add_subparsers(dest="command", required=True)
+    run = sub.add_parser("run")
+    run.add_argument("--seed", type=seed, default=0)
+    run.add_argument("--steps", type=whole_number, default=1)
+    return top
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], r"required: command \(see tool --help\)"),
+        (["run", "--seed", "-1"], r"'-1' is no seed: a whole number from 0 to 4294967295 .* \(see tool run --help\)"),
+        (["run", "--seed", "4294967296"], "is no seed"),
+        (["run", "--seed", "\u0661"], "is no seed"),
+        (["run", "--steps", "1.5"], "'1.5' is no whole number"),
+        (["run", "--stepz", "1"], "unrecognized arguments: --stepz 1"),
+    ],
+)
+def test_a_wrong_argument_is_one_sentence(arguments, said):
+    with pytest.raises(CaretreeError, match=said) as caught:
+        parser().parse_args(arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_right_arguments_are_numbers():
+    assert parser().parse_args(["run", "--seed", "4294967295", "--steps", "3"]) == argparse.Namespace(
+        command="run", seed=4294967295, steps=3
+    )
+
+
+@pytest.mark.parametrize(
+    ("problem", "status", "said"),
+    [
+        (CaretreeError("it is broken"), 2, "tool: it is broken\n"),
+        (FileNotFoundError(2, "No such file or directory", "a.txt"), 2, "tool: No such file or directory: a.txt\n"),
+        (OSError("odd"), 2, "tool: odd\n"),
+        (KeyboardInterrupt(), 130, "tool: interrupted; all is kept\n"),
+    ],
+)
+def test_what_goes_wrong_is_told_and_gives_its_exit_status(problem, status, said, capsys):
+    def command():
+        raise problem
+
+    assert answered("tool", command, interrupted="interrupted; all is kept") == status
+    assert capsys.readouterr().err == said
+
+
+def test_a_command_keeps_its_own_exit_status_and_a_programming_error_its_traceback(capsys):
+    assert answered("tool", lambda: 7) == 7
+    with pytest.raises(ZeroDivisionError):
+        answered("tool", lambda: 1 // 0)
+    assert capsys.readouterr().err == ""
