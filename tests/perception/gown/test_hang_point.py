@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
 from caretree.perception.gown.hang_point import grasp_near_hang
-from caretree.perception.image.cloud import project
+from caretree.perception.image.projection import project
 
 
 @pytest.mark.parametrize("seed", range(4))
