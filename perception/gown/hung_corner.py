@@ -134,7 +134,7 @@ class Strip:
         outward_in_map: (3,) unit vector from the fabric to the free edge.
         width: that is seen of its end [m].
         length: from the hook to the corner [m].
-        armhole: share of what should be seen of the armhole's binding beside it, 0 to 1.
+        armhole: share of what should be seen of the armhole's tape beside it, 0 to 1.
         tells: from -1, the wearer's left strip, to 1, the right one.
         blunt: width of the last of it, as a share of `width`: a fold that closes cuts a strip to a point.
         cut: share of what is seen just beyond its end that lies nearer to the camera: the strip goes on behind that.

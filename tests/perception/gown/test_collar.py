@@ -3,13 +3,8 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-<<<<<<< HEAD
 from caretree.perception.gown.collar import collar_near_shoulder, corner_candidates
-from caretree.perception.image.cloud import project
-=======
-from caretree.perception.gown.collar import collar_corner, collar_line, collar_near_shoulder, corner_candidates
 from caretree.perception.image.projection import project
->>>>>>> b2f351c (Numbers of the gown's and the sleeve's perception become data; one projection between points and pixels)
 
 
 def corner_places(scene):
