@@ -1,4 +1,4 @@
-"""The neck binding: its two ends, and its part near a shoulder."""
+"""The tape along the neckline: its two ends, and its part near a shoulder."""
 
 from __future__ import annotations
 
@@ -6,36 +6,72 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import COLLAR_OF, GraspPoint
-from ..image.cloud import (
-    across,
-    clusters,
-    geodesic,
-    main_direction,
-    pixel_scale,
-    points_in_map,
-    project,
-    surface_normal,
-    unit,
-)
+from ..image.cloud import across, clusters, geodesic, main_direction, surface_normal, unit
 from ..image.garment import gown_labels
+from ..image.projection import pixel_scale, points_in_map, project
 from ..image.surfaces import Surface
 
-_MOST = 1200  # points of the binding that are worked on
-_END = 0.06  # the end of the binding is grasped in the middle of that much of it [m]
-_AROUND, _RIM = 0.3, 40  # the armhole of a shoulder is that near [m]; points of it to look at
-_GAP = 0.03  # larger steps between neighbours are depth steps [m]
+
+@dataclass(frozen=True, kw_only=True)
+class CollarTuning(Quantities):
+    """Numbers of the neckline's ends and of its part near a shoulder."""
+
+    max_points: int = quantity(1200, "1", "of the tape that are worked on", "choice: bounds the computing time")
+    min_points: int = quantity(15, "1", "of the tape that are needed", "choice: fewer are noise")
+    max_step: float = quantity(
+        0.03, "m", "between neighbours on one piece of cloth", "choice: larger steps are steps in depth"
+    )
+    image_border: int = quantity(
+        4, "px", "within which a thing is cut off", "choice: what lies there may go on outside"
+    )
+    min_piece_points: int = quantity(12, "1", "of a piece that has ends", "choice: smaller pieces are specks")
+    end_length: float = quantity(0.03, "m", "of a piece that is its end", "choice: half the tape's width")
+    direction_range: tuple[float, float] = quantity(
+        (0.05, 0.11), "m", "from the tip, of the part that gives the end's direction", "choice: beyond the end itself"
+    )
+    min_direction_points: int = quantity(4, "1", "of that part", "choice: fewer give no direction")
+    cut_off_score: float = quantity(0.05, "1", "of an end at the picture's border", "choice: it may go on outside")
+    armhole_distance: float = quantity(
+        0.08, "m", "from a corner, within which tape of the armhole counts", "choice: the armhole begins at the corner"
+    )
+    full_armhole_points: int = quantity(10, "1", "of that tape, from which it is certain", "choice: clear of noise")
+    full_end_points: int = quantity(20, "1", "of an end, from which its size is certain", "choice: clear of noise")
+    armhole_weight: float = quantity(0.75, "1", "of the armhole's tape in the score", "choice: it tells a corner best")
+    size_weight: float = quantity(0.6, "1", "of the end's size in the score", "choice: of less weight than the armhole")
+    facing_weight: float = quantity(0.6, "1", "of how squarely the end is seen", "choice: the same as its size")
+    shoulder_pixels: float = quantity(
+        150.0, "px", "of the paper's pictures, from the shoulder to the grasp at most", "paper: a place within 150 px"
+    )
+    min_shoulder_points: int = quantity(8, "1", "of tape near the shoulder", "choice: fewer are noise")
+    full_shoulder_points: int = quantity(60, "1", "from which the grasp is certain", "choice: a piece seen whole")
+    shoulder_armhole_distance: float = quantity(
+        0.3, "m", "from a shoulder to its armhole at most", "choice: the other armhole is farther away"
+    )
+    min_armhole_points: int = quantity(
+        40, "1", "of an armhole that shows, and as many are looked at", "choice: bounds the computing time"
+    )
+    shoulder_weight: float = quantity(
+        0.3, "1", "of the way to the shoulder against that to the armhole", "choice: the armhole's end pulls the sleeve"
+    )
+    grasp_length: float = quantity(
+        0.06, "m", "radius around the tape's end, in the middle of which it is grasped", "choice: a tape's width"
+    )
+
+
+DEFAULT = CollarTuning()
 
 
 @dataclass(frozen=True)
 class CornerCandidate:
-    """One end of a visible piece of binding.
+    """One end of a visible piece of the neckline's tape.
 
     Attributes:
         position_in_map: (3,) [m].
-        outward_in_map: (3,) unit vector along the binding, off its end.
+        outward_in_map: (3,) unit vector along the tape, off its end.
         score: 0 to 1, how much it looks like a corner rather than a fold or something in front.
     """
 
@@ -44,46 +80,47 @@ class CornerCandidate:
     score: float
 
 
-def _binding(frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-    """Pixels (n, 2) as (u, v) and points (n, 3) of the neck binding, thinned evenly."""
+def _neckline_tape(frame: Frame, tuning: CollarTuning) -> tuple[np.ndarray, np.ndarray]:
+    """Pixels (n, 2) as (u, v) and points (n, 3) [m] in the map of the neckline's tape, thinned evenly."""
     labels = gown_labels(frame)
     rows, columns = np.nonzero((labels == Surface.COLLAR) & (frame.depth > 0))
-    if len(rows) < 15:
+    if len(rows) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding of the gown")
     points = points_in_map(frame)[rows, columns]
-    step = max(1, len(rows) // _MOST + (len(rows) % _MOST > 0))
+    step = max(1, len(rows) // tuning.max_points + (len(rows) % tuning.max_points > 0))
     return np.column_stack([columns, rows])[::step], points[::step]
 
 
-def corner_candidates(frame: Frame) -> list[CornerCandidate]:
-    """Ends of every visible piece of the neck binding, best first.
+def corner_candidates(frame: Frame, tuning: CollarTuning = DEFAULT) -> list[CornerCandidate]:
+    """Ends of every visible piece of the neckline's tape, best first.
 
-    A piece of binding ends at a corner, where it turns out of sight, behind other cloth or at the image's
-    border.  At a corner the armhole begins: its binding is close.
+    A piece of tape ends at a corner, where it turns out of sight, behind other cloth, or at the picture's border.  At a
+    corner the armhole begins: its tape is close.
 
     Raises:
-        PerceptionFailure: no gown or no binding.
+        PerceptionFailure: no gown, or no tape of its neckline.
     """
-    pixels, points = _binding(frame)
+    pixels, points = _neckline_tape(frame, tuning)
     armhole = _armhole_points(frame)
-    labels = clusters(points, _GAP)
+    labels = clusters(points, tuning.max_step)
+    low, high = tuning.direction_range
     found = []
     for piece in range(labels.max() + 1):
         mine = np.flatnonzero(labels == piece)
-        if len(mine) < 12:
+        if len(mine) < tuning.min_piece_points:
             break  # pieces are sorted by size
         cloud, uv = points[mine], pixels[mine]
-        tips = [int(np.argmax(geodesic(cloud, 0, _GAP)))]
-        along = geodesic(cloud, tips[0], _GAP)
+        tips = [int(np.argmax(geodesic(cloud, 0, tuning.max_step)))]
+        along = geodesic(cloud, tips[0], tuning.max_step)
         tips.append(int(np.argmax(along)))
         for tip in tips:
-            from_tip = along if tip == tips[0] else geodesic(cloud, tip, _GAP)
-            end, behind = from_tip < 0.03, (from_tip > 0.05) & (from_tip < 0.11)
-            if behind.sum() < 4:
+            from_tip = along if tip == tips[0] else geodesic(cloud, tip, tuning.max_step)
+            end, behind = from_tip < tuning.end_length, (from_tip > low) & (from_tip < high)
+            if behind.sum() < tuning.min_direction_points:
                 continue
             position = np.median(cloud[end], axis=0)
             outward = unit(position - np.median(cloud[behind], axis=0))
-            score = _corner_score(frame, cloud[end], uv[tip], armhole)
+            score = _corner_score(frame, cloud[end], uv[tip], armhole, tuning)
             found.append(CornerCandidate(position, outward, score))
     if not found:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "end of the neck binding")
@@ -91,56 +128,73 @@ def corner_candidates(frame: Frame) -> list[CornerCandidate]:
 
 
 def _armhole_points(frame: Frame) -> np.ndarray:
+    """(n, 3) points of the armholes' tape in the map [m]."""
     labels = gown_labels(frame)
     rows, columns = np.nonzero((labels == Surface.ARMHOLE) & (frame.depth > 0))
     return points_in_map(frame)[rows, columns]
 
 
-def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.ndarray) -> float:
-    """How much the end of a strip (n, 3), with its last pixel `tip`, looks like a corner (0 to 1)."""
+def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.ndarray, tuning: CollarTuning) -> float:
+    """How much the end (n, 3) of a piece of tape, with its last pixel `tip` (2,), looks like a corner (0 to 1)."""
     height, width = frame.depth.shape
-    if not (4 < tip[0] < width - 5 and 4 < tip[1] < height - 5):
-        return 0.05  # it leaves the image
+    border = tuning.image_border
+    if not (border < tip[0] < width - 1 - border and border < tip[1] < height - 1 - border):
+        return tuning.cut_off_score
     position = np.median(end, axis=0)
-    close = int((np.linalg.norm(armhole - position, axis=1) < 0.08).sum()) if len(armhole) else 0
-    size = min(1.0, len(end) / 20)
+    close = int((np.linalg.norm(armhole - position, axis=1) < tuning.armhole_distance).sum()) if len(armhole) else 0
+    size = min(1.0, len(end) / tuning.full_end_points)
     towards = frame.pose_camera_in_map[:3, 3]
     facing = abs(surface_normal(end, towards) @ unit(towards - position))
-    return float((0.25 + 0.75 * min(1.0, close / 10)) * (0.4 + 0.6 * size) * (0.4 + 0.6 * facing))
+    share = min(1.0, close / tuning.full_armhole_points)
+    score = 1.0
+    for weight, value in (
+        (tuning.armhole_weight, share),
+        (tuning.size_weight, size),
+        (tuning.facing_weight, facing),
+    ):
+        score *= (1 - weight) + weight * value
+    return float(score)
 
 
-def collar_near_shoulder(frame: Frame, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-    """Stage D: the end of the neck binding at the armhole that sits near the person's shoulder.
+def collar_near_shoulder(
+    frame: Frame, side: Side, shoulder_in_map: np.ndarray, tuning: CollarTuning = DEFAULT
+) -> GraspPoint:
+    """The end of the neckline's tape at the armhole that sits near the person's shoulder.
 
-    The paper takes a random place within 150 px of its images; the end next to the armhole pulls the most at the
+    The paper takes a random place within 150 px of its pictures; the end next to the armhole pulls the most at the
     sleeve.  Where no armhole shows, it is the place nearest to the shoulder.
 
     Args:
         frame: a view from above the person.
         side: of the person.
         shoulder_in_map: (3,) from the tracked posture [m].
+        tuning: numbers of the search.
+
+    Returns:
+        The grasp in the map, with an approach into the cloth.
 
     Raises:
-        PerceptionFailure: no binding is seen within those 150 px.
+        PerceptionFailure: no tape is seen within those 150 px.
     """
-    pixels, points = _binding(frame)
+    pixels, points = _neckline_tape(frame, tuning)
     u, v, _ = project(frame, shoulder_in_map)[0]
-    near = np.hypot(pixels[:, 0] - u, pixels[:, 1] - v) <= 150 * pixel_scale(frame)
-    if near.sum() < 8:
+    near = np.hypot(pixels[:, 0] - u, pixels[:, 1] - v) <= tuning.shoulder_pixels * pixel_scale(frame)
+    if near.sum() < tuning.min_shoulder_points:
         raise PerceptionFailure(Problem.OUT_OF_REACH, f"neck binding near the {side} shoulder")
     points = points[near]
     away = np.linalg.norm(points - shoulder_in_map, axis=1)
     armhole = _armhole_points(frame)
-    armhole = armhole[np.linalg.norm(armhole - shoulder_in_map, axis=1) < _AROUND]
-    if len(armhole) >= _RIM:
-        away = 0.3 * away + np.linalg.norm(points[:, None] - armhole[:: len(armhole) // _RIM], axis=2).min(axis=1)
-    end = np.median(points[away <= np.sort(away)[7]], axis=0)
-    strip = points[np.linalg.norm(points - end, axis=1) < _END]
+    armhole = armhole[np.linalg.norm(armhole - shoulder_in_map, axis=1) < tuning.shoulder_armhole_distance]
+    if len(armhole) >= tuning.min_armhole_points:
+        some = armhole[:: len(armhole) // tuning.min_armhole_points]
+        away = tuning.shoulder_weight * away + np.linalg.norm(points[:, None] - some, axis=2).min(axis=1)
+    end = np.median(points[away <= np.sort(away)[tuning.min_shoulder_points - 1]], axis=0)
+    strip = points[np.linalg.norm(points - end, axis=1) < tuning.grasp_length]
     position = np.median(strip, axis=0)
     normal = surface_normal(strip, frame.pose_camera_in_map[:3, 3])
     return GraspPoint(
         stamp=frame.stamp,
-        confidence=min(1.0, near.sum() / 60),
+        confidence=min(1.0, near.sum() / tuning.full_shoulder_points),
         target=COLLAR_OF[side],
         position_in_map=position,
         approach_in_map=-normal,

@@ -48,19 +48,19 @@ class GownFacts(Quantities):
         "choice: how it was found is not recorded; a flat armhole is 0.22 m deep, and stretches as it hangs",
     )
     outside_colour: tuple[float, float, float, float, float] = quantity(
-        (188, 230, 0.32, 0.60, 0.08), _BAND_UNIT, _BAND + "printed fabric", _BAND_SOURCE
+        (188.0, 230.0, 0.32, 0.60, 0.08), _BAND_UNIT, _BAND + "printed fabric", _BAND_SOURCE
     )
     inside_colour: tuple[float, float, float, float, float] = quantity(
-        (188, 230, 0.125, 0.32, 0.26), _BAND_UNIT, _BAND + "plain fabric", _BAND_SOURCE
+        (188.0, 230.0, 0.125, 0.32, 0.26), _BAND_UNIT, _BAND + "plain fabric", _BAND_SOURCE
     )
     neckline_colour: tuple[float, float, float, float, float] = quantity(
-        (212, 250, 0.60, 1.00, 0.04), _BAND_UNIT, _BAND + "navy tape", _BAND_SOURCE
+        (212.0, 250.0, 0.60, 1.00, 0.04), _BAND_UNIT, _BAND + "navy tape", _BAND_SOURCE
     )
     armhole_colour: tuple[float, float, float, float, float] = quantity(
-        (300, 346, 0.50, 1.00, 0.10), _BAND_UNIT, _BAND + "magenta tape", _BAND_SOURCE
+        (300.0, 346.0, 0.50, 1.00, 0.10), _BAND_UNIT, _BAND + "magenta tape", _BAND_SOURCE
     )
     cuff_colour: tuple[float, float, float, float, float] = quantity(
-        (115, 165, 0.48, 1.00, 0.10), _BAND_UNIT, _BAND + "green tape", _BAND_SOURCE
+        (115.0, 165.0, 0.48, 1.00, 0.10), _BAND_UNIT, _BAND + "green tape", _BAND_SOURCE
     )
 
 

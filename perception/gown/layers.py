@@ -7,42 +7,79 @@ layers are counted before: in the volume that the open fingers sweep when they c
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
+from ...sim.robot.gripper import GRIPPER
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Estimate, LayerCount
-from ..image.cloud import clusters, points_in_map, project
+from ..image.cloud import clusters
+from ..image.projection import points_in_map, project
 from ..image.surfaces import GOWN_SURFACES, surfaces
 
-_NEAR = 0.045  # cloth held by the fingers is this close to the point between them [m]
-_PAD_HALF_WIDTH = 0.014  # of the swept volume, across the pads [m]
-_PAD_DEPTH = (-0.038, 0.006)  # of the swept volume, along the approach from the fingertips: the pads are 38 mm long [m]
-_APART = 0.012  # points farther from each other are on different sheets [m]
-_FEWEST = 4  # points of a sheet
+
+@dataclass(frozen=True, kw_only=True)
+class LayersTuning(Quantities):
+    """Numbers of what counts as cloth between the fingers."""
+
+    held_distance: float = quantity(
+        0.045, "m", "from the point between the fingertips, of cloth that they hold", "choice: somewhat beyond the pads"
+    )
+    min_tip_depth: float = quantity(0.02, "m", "of the fingertips before the camera", "choice: nearer is out of view")
+    full_held_share: float = quantity(
+        0.06,
+        "1",
+        "of the disc around the fingertips, covered with cloth, that makes it certain",
+        "choice: a pinched corner covers a tenth of the disc, and the fingers most of the rest",
+    )
+    volume_half_width: float = quantity(
+        0.014, "m", "of the volume that closing fingers sweep, across the pads", "choice: a pad and 3 mm on either side"
+    )
+    volume_beyond: float = quantity(0.006, "m", "of that volume, past the fingertips", "choice: above depth noise")
+    sheet_distance: float = quantity(
+        0.012, "m", "between points of one sheet", "choice: points farther from each other are on different sheets"
+    )
+    min_sheet_points: int = quantity(4, "1", "of a sheet", "choice: fewer are noise")
+    min_sheet_share: float = quantity(0.04, "1", "of all points in the volume, of a sheet", "choice: less is noise")
+    max_points: int = quantity(600, "1", "in the volume that are worked on", "choice: bounds the computing time")
+    none_confidence: float = quantity(0.8, "1", "in no layer", "choice: cloth may hide from every view")
+    one_confidence: tuple[float, float, float] = quantity(
+        (0.84, 0.01, 0.89),
+        "1",
+        "in one layer: without a view, more for each view, and at most",
+        "measured: 144 volumes of rendered gowns; of those counted as one, 0.85 (one view) to 0.89 (six) were",
+    )
+    two_confidence: float = quantity(
+        0.95, "1", "in two layers", "measured: 144 volumes of rendered gowns; of those counted as two, 0.95 were"
+    )
 
 
-def gripped_cloth(frame: Frame, pose_hand_in_map: np.ndarray) -> Estimate:
+DEFAULT = LayersTuning()
+
+
+def gripped_cloth(frame: Frame, pose_hand_in_map: np.ndarray, tuning: LayersTuning = DEFAULT) -> Estimate:
     """How sure it is that the fingers hold cloth: confidence 0 (nothing there) to 1.
 
     Args:
         frame: any view of the fingertips.
         pose_hand_in_map: (4, 4) of the hand, from the joint angles.
+        tuning: numbers of what counts as held.
 
     Raises:
         PerceptionFailure: the fingertips are outside the image or there is no depth at all.
     """
     height, width = frame.depth.shape
     tip = project(frame, pose_hand_in_map[:3, 3])[0]
-    if not (tip[2] > 0.02 and 0 <= tip[0] < width and 0 <= tip[1] < height):
+    if not (tip[2] > tuning.min_tip_depth and 0 <= tip[0] < width and 0 <= tip[1] < height):
         raise PerceptionFailure(Problem.OUT_OF_REACH, "fingertips")
     if not (frame.depth > 0).any():
         raise PerceptionFailure(Problem.NO_DEPTH, "fingertips")
-    near = np.linalg.norm(_gown_points(frame) - pose_hand_in_map[:3, 3], axis=1) < _NEAR
-    disc = np.pi * (_NEAR * frame.intrinsics[0] / tip[2]) ** 2
-    # a pinched corner covers about a tenth of the disc around the fingertips, the fingers cover most of the rest
-    return Estimate(stamp=frame.stamp, confidence=float(min(1.0, near.sum() / (0.06 * disc))))
+    near = np.linalg.norm(_gown_points(frame) - pose_hand_in_map[:3, 3], axis=1) < tuning.held_distance
+    disc = np.pi * (tuning.held_distance * frame.intrinsics[0] / tip[2]) ** 2
+    return Estimate(stamp=frame.stamp, confidence=float(min(1.0, near.sum() / (tuning.full_held_share * disc))))
 
 
 def layers(
@@ -50,7 +87,8 @@ def layers(
     side: Side,
     pose_hand_in_map: np.ndarray,
     poses_cloth_in_map: Sequence[np.ndarray] | None = None,
-    opening: float = 0.085,
+    opening: float = GRIPPER.stroke,
+    tuning: LayersTuning = DEFAULT,
 ) -> LayerCount:
     """Count the sheets of cloth in the volume between open fingers: 0, 1 or 2 (two or more).
 
@@ -63,6 +101,7 @@ def layers(
         pose_hand_in_map: (4, 4) of the open hand around the cloth, from the joint angles.
         poses_cloth_in_map: (4, 4) at each frame of what carries the cloth (the other hand), if that moved in between.
         opening: of the fingers [m].
+        tuning: numbers of what counts as a sheet.
 
     Raises:
         PerceptionFailure: no gown in any of the frames.
@@ -77,29 +116,28 @@ def layers(
     everything = np.vstack(clouds)
     if not len(everything):
         raise PerceptionFailure(Problem.NOTHING_SEEN, "gown")
-    inside = _between(everything, pose_hand_in_map, opening)
-    views = sum(len(_between(cloud, pose_hand_in_map, opening)) > 0 for cloud in clouds)
+    inside = _between(everything, pose_hand_in_map, opening, tuning)
+    views = sum(len(_between(cloud, pose_hand_in_map, opening, tuning)) > 0 for cloud in clouds)
     stamp = frames[-1].stamp
-    if len(inside) < _FEWEST:
-        return LayerCount(stamp=stamp, confidence=0.8, side=side, layers=0)
-    if len(inside) > 600:
-        inside = inside[:: len(inside) // 600 + 1]
-    sizes = np.bincount(clusters(inside, _APART))
-    sheets = int((sizes >= max(_FEWEST, 0.04 * len(inside))).sum())
-    # rendered gowns, 144 volumes: of those counted as one 85 % (one view) to 89 % (six) were, of those as two 95 %
-    confidence = min(0.89, 0.84 + 0.01 * views) if sheets == 1 else 0.95
+    if len(inside) < tuning.min_sheet_points:
+        return LayerCount(stamp=stamp, confidence=tuning.none_confidence, side=side, layers=0)
+    if len(inside) > tuning.max_points:
+        inside = inside[:: len(inside) // tuning.max_points + 1]
+    sizes = np.bincount(clusters(inside, tuning.sheet_distance))
+    sheets = int((sizes >= max(tuning.min_sheet_points, tuning.min_sheet_share * len(inside))).sum())
+    least, each, most = tuning.one_confidence
+    confidence = min(most, least + each * views) if sheets == 1 else tuning.two_confidence
     return LayerCount(stamp=stamp, confidence=confidence, side=side, layers=min(sheets, 2))
 
 
-def _between(points: np.ndarray, pose_hand_in_map: np.ndarray, opening: float) -> np.ndarray:
-    """Those of `points` (n, 3) that fingers `opening` apart take when they close, in the hand frame (k, 3) [m]."""
+def _between(points: np.ndarray, pose_hand_in_map: np.ndarray, opening: float, tuning: LayersTuning) -> np.ndarray:
+    """Those of `points` (n, 3) in the map that fingers `opening` apart take when they close: (k, 3) in the hand [m]."""
     local = (points - pose_hand_in_map[:3, 3]) @ pose_hand_in_map[:3, :3]
-    low, high = _PAD_DEPTH
     return local[
-        (np.abs(local[:, 0]) < _PAD_HALF_WIDTH)
+        (np.abs(local[:, 0]) < tuning.volume_half_width)
         & (np.abs(local[:, 1]) < opening / 2)
-        & (local[:, 2] > low)
-        & (local[:, 2] < high)
+        & (local[:, 2] > -GRIPPER.pad_length)
+        & (local[:, 2] < tuning.volume_beyond)
     ]
 
 

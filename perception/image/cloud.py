@@ -1,38 +1,8 @@
-"""Between pixels and points of the map frame."""
+"""Clouds of points in one frame [m]: their planes, lines, patches and distances along the cloth."""
 
 from __future__ import annotations
 
 import numpy as np
-
-from ...sim.world import Frame
-
-_PAPER_FOCAL = 466.0  # of a 640-wide image with a field of view of 69 degrees [px]
-
-
-def pixel_scale(frame: Frame) -> float:
-    """Pixels of this image per pixel of the images in which the paper states its distances."""
-    return frame.intrinsics[0] / _PAPER_FOCAL
-
-
-def points_in_map(frame: Frame) -> np.ndarray:
-    """(H, W, 3) position of every pixel [m]; NaN where there is no depth."""
-    fx, fy, cx, cy = frame.intrinsics
-    height, width = frame.depth.shape
-    z = np.where(frame.depth > 0, frame.depth, np.nan).astype(np.float64)
-    x = (np.arange(width) - cx)[None, :] / fx * z
-    y = (np.arange(height) - cy)[:, None] / fy * z
-    pose = frame.pose_camera_in_map
-    return np.stack([x, y, z], axis=-1) @ pose[:3, :3].T + pose[:3, 3]
-
-
-def project(frame: Frame, points: np.ndarray) -> np.ndarray:
-    """Pixel coordinates and depth (n, 3) = (u, v, z) of map points (n, 3); z <= 0 lies behind the camera."""
-    fx, fy, cx, cy = frame.intrinsics
-    pose = frame.pose_camera_in_map
-    local = (np.atleast_2d(points) - pose[:3, 3]) @ pose[:3, :3]
-    z = local[:, 2]
-    safe = np.where(np.abs(z) < 1e-6, 1e-6, z)
-    return np.column_stack([fx * local[:, 0] / safe + cx, fy * local[:, 1] / safe + cy, z])
 
 
 def surface_normal(points: np.ndarray, towards: np.ndarray) -> np.ndarray:
@@ -49,12 +19,17 @@ def main_direction(points: np.ndarray) -> np.ndarray:
 
 
 def unit(vector: np.ndarray) -> np.ndarray:
-    """`vector` with length one."""
+    """`vector` (3,) with length one; zeros stay zeros."""
     return vector / max(float(np.linalg.norm(vector)), 1e-12)
 
 
 def across(edge: np.ndarray, approach: np.ndarray) -> np.ndarray:
-    """Closing direction (3,): perpendicular to the approach and to an edge of the cloth."""
+    """Closing direction of the fingers: a unit vector (3,) perpendicular to their approach and to an edge of the cloth.
+
+    Args:
+        edge: (3,) along the edge of the cloth, in any frame.
+        approach: (3,) of the fingers, in the same frame.
+    """
     closing = np.cross(edge, approach)
     if np.linalg.norm(closing) < 1e-3:  # edge along the approach: any direction across it is as good
         closing = np.cross(approach, np.eye(3)[int(np.argmin(np.abs(approach)))])
@@ -62,7 +37,7 @@ def across(edge: np.ndarray, approach: np.ndarray) -> np.ndarray:
 
 
 def clusters(points: np.ndarray, gap: float) -> np.ndarray:
-    """Label (n,) of each point; two points closer than `gap` [m] share a label.  0 is the largest cluster."""
+    """Label (n,) of each point (n, 3); two points closer than `gap` [m] share a label.  0 is the largest cluster."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
@@ -78,7 +53,10 @@ def clusters(points: np.ndarray, gap: float) -> np.ndarray:
 
 
 def geodesic(points: np.ndarray, start: int, gap: float) -> np.ndarray:
-    """Distance (n,) along the surface from point `start` [m]; steps are at most `gap`, infinite where none lead."""
+    """Distance (n,) of points (n, 3) along the cloth from number `start` [m], in steps of at most `gap` [m].
+
+    It is infinite where no such steps lead.
+    """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import dijkstra
     from scipy.spatial import KDTree
@@ -89,6 +67,6 @@ def geodesic(points: np.ndarray, start: int, gap: float) -> np.ndarray:
     return dijkstra(graph.tocsr(), directed=False, indices=start)
 
 
-def thinned(points: np.ndarray, most: int = 1500) -> np.ndarray:
-    """Every k-th of the points (n, ...), so that no more than `most` are left."""
-    return points[:: max(1, len(points) // most + (len(points) % most > 0))]
+def thinned(points: np.ndarray, max_points: int = 1500) -> np.ndarray:
+    """Every k-th of the points (n, ...), so that no more than `max_points` are left."""
+    return points[:: max(1, len(points) // max_points + (len(points) % max_points > 0))]

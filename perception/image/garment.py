@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import GownSide
 from .surfaces import GOWN_SURFACES, Surface, surfaces
 
-_SMALLEST = 0.0012  # share of the image below which a patch is noise
+
+@dataclass(frozen=True, kw_only=True)
+class GarmentTuning(Quantities):
+    """Numbers of the gown's pixels and of its side."""
+
+    min_patch_share: float = quantity(0.0012, "1", "of the picture that a patch of gown fills", "choice: less is noise")
+    min_patch_pixels: int = quantity(20, "1", "of a patch of gown, in small pictures", "choice: less is noise")
+    closing_size: int = quantity(3, "px", "of gaps between pixels of one patch", "choice: single pixels of noise")
+    min_fabric_pixels: int = quantity(50, "1", "of fabric from which the side is told", "choice: less is an edge")
 
 
-def gown_labels(frame: Frame) -> np.ndarray:
+DEFAULT = GarmentTuning()
+
+
+def gown_labels(frame: Frame, tuning: GarmentTuning = DEFAULT) -> np.ndarray:
     """(H, W) uint8 `Surface` of every gown pixel, `OTHER` elsewhere; small patches are dropped.
 
     Raises:
@@ -22,9 +36,9 @@ def gown_labels(frame: Frame) -> np.ndarray:
 
     labels = surfaces(frame.rgb)
     cloth = np.isin(labels, GOWN_SURFACES).astype(np.uint8)
-    closed = cv2.morphologyEx(cloth, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    closed = cv2.morphologyEx(cloth, cv2.MORPH_CLOSE, np.ones((tuning.closing_size, tuning.closing_size), np.uint8))
     count, patches, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8)
-    smallest = max(20, _SMALLEST * labels.size)
+    smallest = max(tuning.min_patch_pixels, tuning.min_patch_share * labels.size)
     large = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] >= smallest]
     if not large:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "gown")
@@ -34,14 +48,14 @@ def gown_labels(frame: Frame) -> np.ndarray:
     return np.where(keep, labels, Surface.OTHER).astype(np.uint8)
 
 
-def gown_side(frame: Frame) -> GownSide:
+def gown_side(frame: Frame, tuning: GarmentTuning = DEFAULT) -> GownSide:
     """Which side of the gown faces the camera, by the area of printed and plain fabric.
 
     Raises:
         PerceptionFailure: no fabric is seen.
     """
-    labels = gown_labels(frame)
+    labels = gown_labels(frame, tuning)
     outside, inside = int((labels == Surface.OUTSIDE).sum()), int((labels == Surface.INSIDE).sum())
-    if outside + inside < 50:
+    if outside + inside < tuning.min_fabric_pixels:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "fabric of the gown")
     return GownSide(stamp=frame.stamp, confidence=abs(outside - inside) / (outside + inside), outside=outside > inside)

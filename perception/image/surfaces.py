@@ -1,15 +1,19 @@
 """Every pixel to a surface, by hue and saturation.
 
-Assumption (the same as in `sim.appearance`): navy neck binding, magenta armhole bindings, green cuffs, a light blue
-gown printed outside and plain inside, bare skin.  The bands below leave room for about 10 degrees of hue, for
-light between dim and bright and for the camera's noise; a learned segmentation replaces this file and nothing else.
+Assumption (the same as in `sim.render.appearance`): a light blue gown, printed outside and plain inside, with navy tape
+along its neckline, magenta around its armholes and green at its cuffs; bare skin.  A learned segmentation replaces this
+file and nothing else.
 """
 
 from __future__ import annotations
 
 import enum
+from dataclasses import dataclass
 
 import numpy as np
+
+from ...sim.quantity import Quantities, quantity
+from ..gown.gown_facts import GOWN
 
 
 class Surface(enum.IntEnum):
@@ -26,32 +30,46 @@ class Surface(enum.IntEnum):
 
 GOWN_SURFACES = (Surface.OUTSIDE, Surface.INSIDE, Surface.COLLAR, Surface.ARMHOLE, Surface.CUFF)
 
-# surface -> hue from, to [degrees], saturation from, to, lowest value; later rows win
-_BANDS: tuple[tuple[Surface, float, float, float, float, float], ...] = (
-    (Surface.INSIDE, 188, 230, 0.125, 0.32, 0.26),
-    (Surface.OUTSIDE, 188, 230, 0.32, 0.60, 0.08),
-    (Surface.COLLAR, 212, 250, 0.60, 1.00, 0.04),
-    (Surface.ARMHOLE, 300, 346, 0.50, 1.00, 0.10),
-    (Surface.CUFF, 115, 165, 0.48, 1.00, 0.10),
-    (Surface.SKIN, 5, 38, 0.30, 0.60, 0.12),
-)
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceTuning(Quantities):
+    """Numbers of the segmentation, beside the colours of the gown."""
+
+    skin_colour: tuple[float, float, float, float, float] = quantity(
+        (5.0, 38.0, 0.30, 0.60, 0.12),
+        "degree, degree, 1, 1, 1",
+        "hue from, hue to, saturation from, saturation to, lowest value: bare skin",
+        "choice: room for 10 degrees of hue, for light from dim to bright and for the camera's noise",
+    )
+    blur_size: int = quantity(3, "px", "of the median filter", "choice: takes out the noise of single pixels")
 
 
-def surfaces(rgb: np.ndarray) -> np.ndarray:
+DEFAULT = SurfaceTuning()
+
+
+def surfaces(rgb: np.ndarray, tuning: SurfaceTuning = DEFAULT) -> np.ndarray:
     """Label every pixel.
 
     Args:
         rgb: (H, W, 3) uint8.
+        tuning: numbers of the segmentation.
 
     Returns:
         (H, W) uint8 of `Surface` values.
     """
     import cv2
 
-    smooth = cv2.medianBlur(np.ascontiguousarray(rgb), 3)
+    smooth = cv2.medianBlur(np.ascontiguousarray(rgb), tuning.blur_size)
     hsv = cv2.cvtColor(smooth, cv2.COLOR_RGB2HSV)  # hue in half degrees, the others 0-255
     labels = np.zeros(rgb.shape[:2], dtype=np.uint8)
-    for surface, h0, h1, s0, s1, v0 in _BANDS:
+    for surface, (h0, h1, s0, s1, v0) in (  # later ones win
+        (Surface.INSIDE, GOWN.inside_colour),
+        (Surface.OUTSIDE, GOWN.outside_colour),
+        (Surface.COLLAR, GOWN.neckline_colour),
+        (Surface.ARMHOLE, GOWN.armhole_colour),
+        (Surface.CUFF, GOWN.cuff_colour),
+        (Surface.SKIN, tuning.skin_colour),
+    ):
         band = cv2.inRange(hsv, (h0 / 2, 255 * s0, 255 * v0), (h1 / 2, 255 * s1, 255))
         labels[band > 0] = surface
     return labels

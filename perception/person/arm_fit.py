@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..image.cloud import unit
+from ..image.projection import project
 
 LENGTHS = np.array((0.28, 0.25, 0.175))  # upper arm, forearm, hand of an adult of 174 cm [m]
 RADII = np.array((0.041, 0.036, 0.030))  # of the same [m]
@@ -223,12 +224,9 @@ def _add_empty(matrix: np.ndarray, vector: np.ndarray, view: SkinView, q: np.nda
     """Add samples of the axis that are seen to be empty: no skin there and nothing in front."""
     segment, share = _SEGMENT, _SHARE
     samples = q[segment] + share[:, None] * (q[segment + 1] - q[segment])
-    fx, fy, cx, cy = view.intrinsics
-    rotation = view.pose_camera_in_map[:3, :3]
-    local = (samples - view.pose_camera_in_map[:3, 3]) @ rotation
-    z = local[:, 2]
-    u = np.round(fx * local[:, 0] / np.maximum(z, 0.05) + cx).astype(int)
-    v = np.round(fy * local[:, 1] / np.maximum(z, 0.05) + cy).astype(int)
+    fx, rotation = view.intrinsics[0], view.pose_camera_in_map[:3, :3]
+    u, v, z = project(view, samples).T
+    u, v = np.round(u).astype(int), np.round(v).astype(int)
     height, width = view.depth.shape
     inside = (z > 0.05) & (u >= 0) & (u < width) & (v >= 0) & (v < height)
     if not inside.any():

@@ -16,7 +16,7 @@ import numpy as np
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import ArmPosture
-from ..image.cloud import project
+from ..image.projection import pixels_of
 from ..image.surfaces import Surface, surfaces
 from .arm_fit import (
     LENGTHS,
@@ -235,10 +235,8 @@ class ArmTracker:
 
     def _bare(self, frame: Frame) -> float:
         """Share of the arm's places below the upper arm's middle at which a picture shows skin."""
-        u, v, depth = project(frame, np.array([point_along(self._joints(), float(p)) for p in _PLACES])).T
-        height, width = frame.depth.shape
-        inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
-        rows, columns = (np.where(inside, np.round(x), 0).astype(int) for x in (v, u))
+        places = np.array([point_along(self._joints(), float(p)) for p in _PLACES])
+        rows, columns, depth, inside = pixels_of(frame, places)
         skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN
         return float((inside & skin & (np.abs(frame.depth[rows, columns] - depth) < _THICK)).mean())
 

@@ -7,8 +7,8 @@ import numpy as np
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Cover
-from ..image.cloud import project
 from ..image.garment import gown_labels
+from ..image.projection import pixels_of
 from ..image.surfaces import Surface
 
 _WIDTH = np.linspace(-0.14, 0.14, 9)  # across the body from its midline [m]
@@ -37,10 +37,8 @@ def chest_cover(frame: Frame, bed: np.ndarray, shoulders_in_map: np.ndarray) -> 
             np.full(across.size, bed[1, 2] + _HEIGHT),
         )
     )
-    u, v, depth = project(frame, places).T
-    height, width = labels.shape
-    inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
-    rows, columns = np.round(v[inside]).astype(int), np.round(u[inside]).astype(int)
+    rows, columns, depth, inside = pixels_of(frame, places)
+    rows, columns = rows[inside], columns[inside]
     seen = frame.depth[rows, columns]
     open_view = seen > depth[inside] - 0.15  # a robot's arm or a raised one may be in front
     if open_view.sum() < _FEWEST * len(places):

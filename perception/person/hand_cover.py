@@ -7,7 +7,7 @@ import numpy as np
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Cover
-from ..image.cloud import project
+from ..image.projection import pixels_of
 from ..image.surfaces import Surface, surfaces
 
 _FEWEST = 4  # points in view
@@ -25,10 +25,8 @@ def hand_cover(frame: Frame, points_in_map: np.ndarray) -> Cover:
     Raises:
         PerceptionFailure: fewer than four of the points are in view.
     """
-    u, v, depth = project(frame, points_in_map).T
-    height, width = frame.depth.shape
-    inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
+    rows, columns, _, inside = pixels_of(frame, points_in_map)
     if inside.sum() < _FEWEST:
         raise PerceptionFailure(Problem.OUT_OF_REACH, "hand of the person")
-    seen = surfaces(frame.rgb)[np.round(v[inside]).astype(int), np.round(u[inside]).astype(int)]
+    seen = surfaces(frame.rgb)[rows[inside], columns[inside]]
     return Cover(stamp=frame.stamp, confidence=float(inside.mean()), share=float((seen != Surface.SKIN).mean()))

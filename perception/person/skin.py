@@ -7,7 +7,7 @@ import numpy as np
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Head
-from ..image.cloud import points_in_map
+from ..image.projection import points_in_map
 from ..image.surfaces import Surface, surfaces
 
 # Adult of 174 cm, lying on the back (Winter, Biomechanics of Human Movement, fig. 4.1: shares of body height) [m].

@@ -1,38 +1,54 @@
-"""Where the bindings of a sleeve show along an arm that is, or is not, inside it."""
+"""Where the tapes of a sleeve show along an arm that is, or is not, inside it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import WornSleeve
 from ..image.surfaces import Surface
-from .cuff_round_arm import binding_near, share_round
-
-_POINTS = 15
+from .cuff_round_arm import share_round, tape_near
 
 
-def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
-    """Where along the upper arm both bindings of its sleeve show, and how far round it the cuff does.
+@dataclass(frozen=True, kw_only=True)
+class WornSleeveTuning(Quantities):
+    """Numbers of where a sleeve shows along an upper arm."""
+
+    line: tuple[float, float] = quantity(
+        (-1.0, 2.0), "1", "ends of the line beside which tape counts: 0 shoulder, 1 elbow", "choice: all of a sleeve"
+    )
+    min_points: int = quantity(15, "1", "of either tape", "choice: fewer are noise")
+    full_points: int = quantity(100, "1", "of the smaller one that make it certain", "choice: seen from close by")
+
+
+DEFAULT = WornSleeveTuning()
+
+
+def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: WornSleeveTuning = DEFAULT) -> WornSleeve:
+    """Where along the upper arm both tapes of its sleeve show, and how far round it the cuff does.
 
     Args:
         frame: of any camera.
         side: of the person.
         arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+        tuning: numbers of the search.
 
     Raises:
         PerceptionFailure: too little of either is seen.
     """
     shoulder, along = arm_in_map[0], arm_in_map[1] - arm_in_map[0]
-    line = shoulder + np.outer((-1.0, 2.0), along)
-    found = [binding_near(frame, binding, line) for binding in (Surface.ARMHOLE, Surface.CUFF)]
-    if min(map(len, found)) < _POINTS:
+    line = shoulder + np.outer(tuning.line, along)
+    found = [tape_near(frame, tape, line) for tape in (Surface.ARMHOLE, Surface.CUFF)]
+    if min(map(len, found)) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the worn {side} sleeve")
     armhole, cuff = (float(np.median((points - shoulder) @ along)) / float(along @ along) for points in found)
     return WornSleeve(
         stamp=frame.stamp,
-        confidence=min(1.0, min(map(len, found)) / 100),
+        confidence=min(1.0, min(map(len, found)) / tuning.full_points),
         side=side,
         armhole_at=armhole,
         cuff_at=cuff,

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...perception.errors import PerceptionFailure, Problem
 from ...perception.estimates import ArmPosture, Head
-from ...perception.image.cloud import project
+from ...perception.image.projection import pixels_of
 from ...perception.image.surfaces import Surface, surfaces
 from ...perception.person.arm_fit import turned_about_shoulder
 from ...sim.world import SIDES, Frame, Side
@@ -101,10 +101,7 @@ def visible_share(frame: Frame, posture: ArmPosture) -> float:
     """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm."""
     path = ArmPath.of(posture)
     axis = np.array([path.point(float(place)) for place in np.linspace(0.3, 3.0, 28)])
-    u, v, depth = project(frame, axis).T
-    height, width = frame.depth.shape
-    inside = (depth > 0.05) & (u >= 0) & (u < width - 1) & (v >= 0) & (v < height - 1)
-    rows, columns = (np.where(inside, np.round(x), 0).astype(int) for x in (v, u))
+    rows, columns, depth, inside = pixels_of(frame, axis)
     seen = frame.depth[rows, columns]
     skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN  # an arm in front of where it was is not hidden
     return float((inside & (skin | (seen > depth - _BEHIND))).mean())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
 from caretree.perception.gown.collar import collar_near_shoulder, corner_candidates
-from caretree.perception.image.cloud import project
+from caretree.perception.image.projection import project
 
 
 def corner_places(scene):

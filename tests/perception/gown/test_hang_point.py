@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.gown.hang_point import grasp_near_hang
-from caretree.perception.image.cloud import project
+from caretree.perception.gown.hang_point import HangPointTuning, grasp_near_hang
+from caretree.perception.image.projection import project
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -34,3 +34,11 @@ def test_seeded_and_varied(scenes):
 def test_nothing(black):
     with pytest.raises(PerceptionFailure):
         grasp_near_hang(black, np.random.default_rng(0))
+
+
+def test_the_distance_is_a_number_of_the_tuning(scenes):
+    scene = scenes.on_rail(0)
+    frame = scene.frame(0)
+    hook = project(frame, scene.hand[:3, 3])[0, :2]
+    near = grasp_near_hang(frame, np.random.default_rng(0), HangPointTuning(distance=(30.0, 40.0)))
+    assert 20 < np.linalg.norm(project(frame, near.position_in_map)[0, :2] - hook) * 466 / frame.intrinsics[0] < 50
