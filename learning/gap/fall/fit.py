@@ -131,9 +131,7 @@ class _DropProblem:
     ) -> None:
         self._drops, self._names, self._mode = drops, names, mode
         parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
-        self._theta = (
-            np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
-        )
+        self._theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
         self._moving = len(parameters) if start is None else 0
         self._instants = instants_of(mode, len(drops)) if late is None or mode != "late" else 0
         self._late = late or 0.0
@@ -168,7 +166,7 @@ class _DropProblem:
         return self._whitened(self._heights(x)[0] - self._measured)
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
-        """d residual / d x."""
+        """Derivative of the residual with respect to x."""
         return self._whitened(self._change(x))
 
     def fitted(self, x: np.ndarray) -> DropFit:
@@ -216,7 +214,7 @@ class _DropProblem:
         return np.concatenate([w @ y for w, y in zip(self._white, np.split(x, self._ends), strict=True)])
 
     def _change(self, x: np.ndarray) -> np.ndarray:
-        """d heights / d x: finite differences over the effects, exact over the releases."""
+        """Derivative of the heights: by finite differences over the effects, exact over the releases."""
         base, speeds, scale = self._heights(x)
         high = self.bounds[1]
         J = np.zeros((len(base), len(x)))
