@@ -27,6 +27,30 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     quick = _quick(path)
     if quick is not None:
         return quick
+    header, rows = _lines(path)
+    try:
+        data = np.array(rows, dtype=float)
+    except ValueError:
+        data = np.array(
+            [[_number(path, header[j], i, cell) for j, cell in enumerate(row)] for i, row in enumerate(rows, start=2)]
+        )
+    bad = np.argwhere(~np.isfinite(data))
+    if len(bad):
+        i, j = bad[0]
+        raise GapError(
+            f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, a finite number is needed"
+        )
+    back = np.flatnonzero(np.diff(data[:, 0]) <= 0)
+    if len(back):
+        raise GapError(
+            f"{path}: column 't', row {back[0] + 3}: time does not increase "
+            f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})"
+        )
+    return {name: data[:, j] for j, name in enumerate(header)}
+
+
+def _lines(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Names of the columns and the cells of every row, as many as there are names."""
     try:
         with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
             lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
@@ -49,25 +73,7 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
             )
     if len(rows) < FEWEST:
         raise GapError(f"{path}: {len(rows)} rows of data, at least {FEWEST} are needed")
-    try:
-        data = np.array(rows, dtype=float)
-    except ValueError:
-        data = np.array(
-            [[_number(path, header[j], i, cell) for j, cell in enumerate(row)] for i, row in enumerate(rows, start=2)]
-        )
-    bad = np.argwhere(~np.isfinite(data))
-    if len(bad):
-        i, j = bad[0]
-        raise GapError(
-            f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, a finite number is needed"
-        )
-    back = np.flatnonzero(np.diff(data[:, 0]) <= 0)
-    if len(back):
-        raise GapError(
-            f"{path}: column 't', row {back[0] + 3}: time does not increase "
-            f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})"
-        )
-    return {name: data[:, j] for j, name in enumerate(header)}
+    return header, rows
 
 
 def _quick(path: Path) -> dict[str, np.ndarray] | None:

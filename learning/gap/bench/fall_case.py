@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -95,71 +95,98 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
     rate, top = float(rng.choice([15.0, 30.0, 60.0, 120.0])), rng.uniform(8.0, 50.0)
     episodes = int(rng.integers(4, 8))
     noise = rng.uniform(0.01, 0.05)
-    names = (
-        []
-        if kind == "none"
-        else [
-            str(n)
-            for n in rng.choice(OUTSIDE if kind == "outside" else INSIDE, size=2 if kind == "two" else 1, replace=False)
-        ]
-    )
-    if set(names) in ALIKE:
-        names = [names[0], "delay"]
+    names = _draw_names(rng, kind)
     low, high = sizes_of(kind)
     size = {n: float(np.exp(rng.uniform(np.log(low), np.log(high)))) for n in names}
-    air = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(*UPDRAFT))} if "wind" in names else {}
-    values, plain = dict(air), _fly({}, top, rate)
-    for n in names:  # size: root mean square change of the drop over the noise
-        low, high = 0.0, LARGEST[n]
-        change = 0.0
-        for _ in range(24):
-            middle = 0.5 * (low + high)
-            other = _fly({**air, n: middle}, top, rate)
-            both = min(len(other), len(plain))
-            change = float(np.sqrt(np.mean((other[:both] - plain[:both]) ** 2)))
-            low, high = (middle, high) if change < size[n] * noise else (low, middle)
-        values[n] = high
-        size[n] = min(size[n], 1.05 * change / noise)  # a body can only be braked so much
-    header: dict = {"system": "fall"}
-    if "buoyancy" in values or rng.random() < 0.5:  # a ball whose lift is what its size and mass make it
-        diameter = rng.uniform(0.05, 0.4)
-        lift = values.get("buoyancy", 1.2 / rng.uniform(8000.0, 20000.0))
-        header |= {
-            "diameter": round(float(diameter), 4),
-            "mass": round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6),
-        }
-        if "buoyancy" not in values:
-            values["buoyancy"] = lift  # too small to see, and not missing from a model that knows both
-            header["mass"] = round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)
+    values = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(*UPDRAFT))} if "wind" in names else {}
+    values |= _set_values(names, size, values, lambda v: _fly(v, top, rate), noise)
+    truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
+    known, lift = _draw_ball(rng, values.get("buoyancy"))
+    if known:
+        values["buoyancy"] = lift  # of air: too small to see, and not missing from a model that knows size and mass
     step = noise * float(np.random.default_rng([seed, 2, 1]).choice(STEPS))
     entries, seen, cleans = [], [], []
     for e in range(episodes):
-        h0 = top * rng.uniform(0.85, 1.0)
-        h = _fly(values, h0, rate)
-        t = np.arange(len(h)) / rate
-        clean = h
-        wiggle, memory, slow = coloured_as(rng, len(h), 1.0 / rate, noise)
-        h = rounded(h + wiggle, step)
-        if e < episodes - max(1, episodes // 3):
+        clean = _fly(values, top * rng.uniform(0.85, 1.0), rate)
+        t = np.arange(len(clean)) / rate
+        wiggle, memory, slow = coloured_as(rng, len(clean), 1.0 / rate, noise)
+        h = rounded(clean + wiggle, step)
+        heldout = e >= episodes - max(1, episodes // 3)
+        if not heldout:
             seen.append((t, h, precision(len(t), 1.0 / rate, noise, memory, slow)))
             cleans.append(clean)
-        role = "heldout" if e >= episodes - max(1, episodes // 3) else "fit"
-        entries.append({**_write(folder, e + 1, rate, h), "role": role})
-    (folder / "measurement.yaml").write_text(yaml.safe_dump({**header, "episodes": entries}, sort_keys=False))
-    truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
+        entries.append({**_write(folder, e + 1, rate, h), "role": "heldout" if heldout else "fit"})
+    content = {"system": "fall", **known, "episodes": entries}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
     return truth, Drawn(
         names=tuple(names),
         drops=tuple(seen),
         clean=tuple(cleans),
-        lift=values.get("buoyancy") if "mass" in header and names else None,
+        lift=lift if known and names else None,
         until=max(float(d[0][-1]) for d in seen) + 0.5,
         values=values,
         noise=noise,
         step=step,
         rate=rate,
         top=top,
-        mass=header.get("mass", 0.5),
+        mass=known.get("mass", 0.5),
     )
+
+
+def _draw_names(rng: np.random.Generator, kind: str) -> list[str]:
+    """The effects a kind of case hides."""
+    if kind == "none":
+        return []
+    pool = OUTSIDE if kind == "outside" else INSIDE
+    names = [str(n) for n in rng.choice(pool, size=2 if kind == "two" else 1, replace=False)]
+    return [names[0], "delay"] if set(names) in ALIKE else names
+
+
+def _set_values(
+    names: list[str],
+    size: dict[str, float],
+    air: dict[str, float],
+    fly: Callable[[dict[str, float]], np.ndarray],
+    noise: float,
+) -> dict[str, float]:
+    """Value of each effect at which the root mean square change of the drop, over the noise, is its size.
+
+    Args:
+        names: of the effects.
+        size: of each; lowered where the largest value does not reach it.
+        air: what acts beside them.
+        fly: heights [m] under some values.
+        noise: root mean square [m].
+    """
+    values, plain = {}, fly({})
+    for n in names:
+        low, high = 0.0, LARGEST[n]
+        change = 0.0
+        for _ in range(24):
+            middle = 0.5 * (low + high)
+            other = fly({**air, n: middle})
+            both = min(len(other), len(plain))
+            change = float(np.sqrt(np.mean((other[:both] - plain[:both]) ** 2)))
+            low, high = (middle, high) if change < size[n] * noise else (low, middle)
+        values[n] = high
+        size[n] = min(size[n], 1.05 * change / noise)  # a body can only be braked so much
+    return values
+
+
+def _draw_ball(rng: np.random.Generator, lift: float | None) -> tuple[dict[str, float], float]:
+    """Diameter [m] and mass [kg] of a ball that has this buoyancy, and the buoyancy; {} for a body of unknown size.
+
+    Args:
+        rng: draws.
+        lift: buoyancy the case hides; None where it hides none, then half of the bodies are balls.
+    """
+    if lift is None and rng.random() >= 0.5:
+        return {}, 0.0
+    diameter = rng.uniform(0.05, 0.4)
+    of_air = 1.2 / rng.uniform(8000.0, 20000.0)  # drawn in any case, so that the draws that follow stay the same
+    lift = of_air if lift is None else lift
+    mass = round(float(1.204 * np.pi / 6 * diameter**3 / lift), 6)
+    return {"diameter": round(float(diameter), 4), "mass": mass}, lift
 
 
 def drop_again(seed: int, asked: Sequence[dict[str, Any]], folder: Path) -> None:

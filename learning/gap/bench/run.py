@@ -16,6 +16,8 @@ from typing import Any
 from ..errors import GapError
 from .score import Row, judge_case, side_by_side
 
+SYSTEMS = ("arm", "axis", "fall", "cloth")
+
 
 @cache
 def _apart() -> ProcessPoolExecutor:
@@ -96,17 +98,8 @@ def run(
     Raises:
         GapError: seeds or systems make no sense.
     """
-    try:
-        first, last = (int(x) for x in seeds.split(":"))
-    except ValueError:
-        raise GapError(f"--seeds is '{seeds}', it must look like 0:200") from None
-    for system in systems:
-        if system not in ("arm", "axis", "fall", "cloth"):
-            raise GapError(f"--system has '{system}', it must be among arm, axis, fall, cloth")
-    wanted = [s for s in range(first, last) if half == "both" or s % 2 == (0 if half == "tune" else 1)]
-    cases = [(system, seed) for system in systems for seed in wanted]
-    if not cases:
-        raise GapError(f"--seeds {seeds} --half {half} holds no seed")
+    wanted = _wanted(seeds, half)
+    cases = [(system, seed) for system in _known(systems) for seed in wanted]
     if again and systems != ["fall"]:
         raise GapError("--follow-up is for --system fall alone, no other system's verdict asks for a recording")
     out.mkdir(parents=True, exist_ok=True)
@@ -131,7 +124,26 @@ def run(
     return 0
 
 
-def _line(r: dict) -> str:
+def _known(systems: list[str]) -> list[str]:
+    for system in systems:
+        if system not in SYSTEMS:
+            raise GapError(f"--system has '{system}', it must be among {', '.join(SYSTEMS)}")
+    return systems
+
+
+def _wanted(seeds: str, half: str) -> list[int]:
+    """Seeds of `first:last` in one half, or in both."""
+    try:
+        first, last = (int(x) for x in seeds.split(":"))
+    except ValueError:
+        raise GapError(f"--seeds is '{seeds}', it must look like 0:200") from None
+    wanted = [s for s in range(first, last) if half == "both" or s % 2 == (0 if half == "tune" else 1)]
+    if not wanted:
+        raise GapError(f"--seeds {seeds} --half {half} holds no seed")
+    return wanted
+
+
+def _line(r: Row) -> str:
     hidden = ", ".join(f"{n} on {t}" for n, t in r["hidden"]) or "nothing"
     said = ", ".join(f"{n} on {t}" for n, t in r["said"]) or "-"
     return f"{r['system']} {r['seed']} {r['kind']}: {hidden} (size {r['size']:.1f}) => {r['verdict']}: {said}"

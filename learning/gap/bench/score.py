@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -92,82 +92,89 @@ def _apart(row: Row) -> float:
     return -1.0 if row.get("apart") is None else float(row["apart"])
 
 
-def table(rows: list[Row]) -> list[tuple[str, str, int, int, float, float, float]]:
+Answer = tuple[str, str, int, int, float, float, float]  # question, system, right, asked, rate, low, high
+
+
+def table(rows: list[Row]) -> list[Answer]:
     """(question, system, right, asked, rate, low, high) for every system."""
-    out = []
+    out: list[Answer] = []
     for system in sorted({r["system"] for r in rows}):
         mine = [r for r in rows if r["system"] == system]
-        big = [r for r in mine if r["kind"] == "single" and r["size"] >= 2.0]
-        small = [r for r in mine if r["kind"] == "single" and r["size"] < 2.0]
-        two = [r for r in mine if r["kind"] == "two"]
-        none = [r for r in mine if r["kind"] in ("none", "recalibration")]
-        outside = [r for r in mine if r["kind"] == "outside"]
-        far = [r for r in outside if _apart(r) >= APART]
-        local = [r for r in mine if r["overlap"] is not None and r["size"] >= 2.0]
-        for question, asked, key in (
-            ("single effect, size >= 2, exact set", big, "exact"),
-            ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
-            ("single effect, size < 2, exact set", small, "exact"),
-            ("two effects, exact set", two, "exact"),
-            ("two effects, up to stated equivalents", two, "up_to_equivalents"),
-            ("two effects, exact or listed among the sets that fit as well", two, "together"),
-            ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
-            (f"two effects, apart >= {APART:g} sd, exact set", [r for r in two if _apart(r) >= APART], "exact"),
-            (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),
-            ("false alarm where nothing is missing", none, "false_alarm"),
-            (f"single, size >= 2, apart >= {APART:g} sd, exact set", [r for r in big if _apart(r) >= APART], "exact"),
-            ("right joint, single effect, size >= 2", big, "joint"),
-        ):
+        for question, asked, right in (*_effect_questions(mine), *_verdict_questions(mine), *_interval_questions(mine)):
             if asked:
-                hits = sum(bool(r[key]) for r in asked)
+                hits = sum(right(r) for r in asked)
                 out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
-        recalibrated = [r for r in mine if r["kind"] == "recalibration"]
-        for question, asked, good in (
-            ("recalibration named as such", recalibrated, "recalibration"),
-            ("unknown on effects outside the bank", outside, "unknown"),
-            (f"unknown, outside the bank, apart >= {APART:g} sd", far, "unknown"),
-        ):
-            if asked:
-                hits = sum(r["verdict"] == good for r in asked)
-                out.append((question, system, hits, len(asked), hits / len(asked), *interval(hits, len(asked))))
-        if local:
-            hits = sum(r["overlap"] >= 0.7 for r in local)
-            out.append(
-                (
-                    "interval overlap at least 0.7, size >= 2",
-                    system,
-                    hits,
-                    len(local),
-                    hits / len(local),
-                    *interval(hits, len(local)),
-                )
-            )
-        closed = np.array([r["closed"] for r in big if r["closed"] is not None])
-        if len(closed):
-            draws = np.median(np.random.default_rng(0).choice(closed, (500, len(closed))), axis=1)
-            out.append(
-                (
-                    "median part of the gap closed, size >= 2",
-                    system,
-                    len(closed),
-                    len(closed),
-                    float(np.median(closed)),
-                    *(float(x) for x in np.quantile(draws, [0.025, 0.975])),
-                )
-            )
+        out += _closed_gap(system, mine)
         seconds = np.array([r["seconds"] for r in mine])
+        n, middle = len(mine), float(np.median(seconds))
         out.append(
-            (
-                "seconds per set, median and range",
-                system,
-                len(mine),
-                len(mine),
-                float(np.median(seconds)),
-                float(seconds.min()),
-                float(seconds.max()),
-            )
+            ("seconds per set, median and range", system, n, n, middle, float(seconds.min()), float(seconds.max()))
         )
     return out
+
+
+Question = tuple[str, list[Row], Callable[[Row], bool]]  # its text, the rows it is asked of, whether one is right
+
+
+def _large_single(rows: list[Row]) -> list[Row]:
+    return [r for r in rows if r["kind"] == "single" and r["size"] >= 2.0]
+
+
+def _distinct(rows: list[Row]) -> list[Row]:
+    """Rows whose truth is far from its nearest rival."""
+    return [r for r in rows if _apart(r) >= APART]
+
+
+def _effect_questions(rows: list[Row]) -> list[Question]:
+    """Whether the named set of effects is right."""
+    big = _large_single(rows)
+    small = [r for r in rows if r["kind"] == "single" and r["size"] < 2.0]
+    two = [r for r in rows if r["kind"] == "two"]
+    none = [r for r in rows if r["kind"] in ("none", "recalibration")]
+    asked = (
+        ("single effect, size >= 2, exact set", big, "exact"),
+        ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
+        ("single effect, size < 2, exact set", small, "exact"),
+        ("two effects, exact set", two, "exact"),
+        ("two effects, up to stated equivalents", two, "up_to_equivalents"),
+        ("two effects, exact or listed among the sets that fit as well", two, "together"),
+        ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
+        (f"two effects, apart >= {APART:g} sd, exact set", _distinct(two), "exact"),
+        (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),
+        ("false alarm where nothing is missing", none, "false_alarm"),
+        (f"single, size >= 2, apart >= {APART:g} sd, exact set", _distinct(big), "exact"),
+        ("right joint, single effect, size >= 2", big, "joint"),
+    )
+    return [(text, where, lambda r, key=key: bool(r[key])) for text, where, key in asked]
+
+
+def _verdict_questions(rows: list[Row]) -> list[Question]:
+    """Whether the verdict's one word is right."""
+    recalibrated = [r for r in rows if r["kind"] == "recalibration"]
+    outside = [r for r in rows if r["kind"] == "outside"]
+    asked = (
+        ("recalibration named as such", recalibrated, "recalibration"),
+        ("unknown on effects outside the registry", outside, "unknown"),
+        (f"unknown, outside the registry, apart >= {APART:g} sd", _distinct(outside), "unknown"),
+    )
+    return [(text, where, lambda r, good=good: r["verdict"] == good) for text, where, good in asked]
+
+
+def _interval_questions(rows: list[Row]) -> list[Question]:
+    """Whether a local effect is found where it acts."""
+    local = [r for r in rows if r["overlap"] is not None and r["size"] >= 2.0]
+    return [("interval overlap at least 0.7, size >= 2", local, lambda r: r["overlap"] >= 0.7)]
+
+
+def _closed_gap(system: str, rows: list[Row]) -> list[Answer]:
+    """Median part of the held-out gap that is closed, with its bootstrap interval."""
+    closed = np.array([r["closed"] for r in _large_single(rows) if r["closed"] is not None])
+    n = len(closed)
+    if not n:
+        return []
+    draws = np.median(np.random.default_rng(0).choice(closed, (500, n)), axis=1)
+    low, high = (float(x) for x in np.quantile(draws, [0.025, 0.975]))
+    return [("median part of the gap closed, size >= 2", system, n, n, float(np.median(closed)), low, high)]
 
 
 def side_by_side(rounds: Sequence[list[Row]]) -> list[str]:

@@ -58,9 +58,30 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
     Args:
         scene: the cloth.
         episodes: recordings.
-        residuals: of the model so far with carriers on the cloth, as every local effect brings them.
+        residuals: of the model so far with proxy bodies on the cloth, as every local effect brings them.
     """
-    out = [
+    marker, t0 = _onset(scene, episodes, residuals)
+    end = float(max(e.t[-1] for e in episodes))
+    places = [_place(p) for p in scene.vertices[spread_vertices(scene.vertices, PATCHES, set())]]
+    worst = _place(_worst_place(scene, residuals))
+    out = [*_everywhere(), *_recalibrations(scene)]
+    if len(scene.capsules) and _touches(scene, episodes):
+        out.append(_effect("contact_friction", "cloth", {"change": 0.0}, {"change": 0.3}, ("change",)))
+        out.append(_effect("adhesion", "cloth", {"pressure": 0.0}, {"pressure": 8.0}, ("pressure",)))
+    out += _added_masses(scene, [*places, worst])
+    out += _snags([_place(scene.vertices[scene.markers[marker]]), worst], places, t0, end)
+    if any(e.pins for e in episodes):
+        out += _grip_slips(t0, end)
+    return out
+
+
+def _place(p: np.ndarray) -> dict[str, float]:
+    return {a: float(x) for a, x in zip("xyz", p, strict=True)}
+
+
+def _everywhere() -> list[Candidate]:
+    """Effects that act on the whole cloth or on the reading."""
+    return [
         _effect("air_drag", "cloth", {"coefficient": 0.0}, {"coefficient": 1.0}, ("coefficient",)),
         _effect(
             "strain_stiffening",
@@ -81,9 +102,13 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
         # from almost still air, which brakes too, so that screening sees what the draught itself does
         replace(_effect("wind", "cloth", {"x": 1e-3, "y": 0.0}, {"x": 1.0, "y": 1.0}, ("x", "y")), power=2.0),
     ]
-    ph = scene.physics
+
+
+def _recalibrations(scene: ClothScene) -> list[Candidate]:
+    """The model's own numbers, a quarter larger."""
+    out = []
     for key in ("elastic_stiffness", "damping_stiffness", "bending_stiffness", "mass"):
-        value = getattr(ph, key)
+        value = getattr(scene.physics, key)
         if value > 0:
             free = (("physics", key),)
             out.append(
@@ -96,35 +121,40 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
                     push=ClothModel(physics={key: 1.25 * value}, free=free),
                 )
             )
-    if len(scene.capsules) and _touches(scene, episodes):
-        out.append(_effect("contact_friction", "cloth", {"change": 0.0}, {"change": 0.3}, ("change",)))
-        out.append(_effect("adhesion", "cloth", {"pressure": 0.0}, {"pressure": 8.0}, ("pressure",)))
-    places = scene.vertices[spread_vertices(scene.vertices, PATCHES, set())]
-    size = float(np.ptp(scene.vertices, axis=0).max())
-    for p in (*places, _worst_place(scene, residuals)):
-        where = {a: float(x) for a, x in zip("xyz", p, strict=True)}
-        out.append(
-            _effect(
-                "added_mass",
-                "region",
-                {"mass": 0.0, **where, "radius": 0.2 * size},
-                {"mass": 0.1 * ph.mass, **where, "radius": 0.2 * size},
-                ("mass",),
-            )
+    return out
+
+
+def _added_masses(scene: ClothScene, places: list[dict[str, float]]) -> list[Candidate]:
+    """A tenth of the cloth's mass at each place, over a fifth of its size."""
+    radius = 0.2 * float(np.ptp(scene.vertices, axis=0).max())
+    return [
+        _effect(
+            "added_mass",
+            "region",
+            {"mass": 0.0, **place, "radius": radius},
+            {"mass": 0.1 * scene.physics.mass, **place, "radius": radius},
+            ("mass",),
         )
-    marker, t0 = _onset(scene, episodes, residuals)
-    end = float(max(e.t[-1] for e in episodes))
-    caught = {a: float(x) for a, x in zip("xyz", scene.vertices[scene.markers[marker]], strict=True)}
-    worst = {a: float(x) for a, x in zip("xyz", _worst_place(scene, residuals), strict=True)}
+        for place in places
+    ]
+
+
+def _snags(likely: list[dict[str, float]], others: list[dict[str, float]], t0: float, end: float) -> list[Candidate]:
+    """A catch at each place from `t0` on: for a short and a long while where it is likely, else for a long one."""
     short, long = t0 + 0.25 * (end - t0), t0 + 0.6 * (end - t0)
-    spots = [{a: float(x) for a, x in zip("xyz", p, strict=True)} for p in places]
-    for place, t1 in [(p, t1) for p in (caught, worst) for t1 in (short, long)] + [(p, long) for p in spots]:
+    out = []
+    for place, t1 in [(p, t1) for p in likely for t1 in (short, long)] + [(p, long) for p in others]:
         span = {**place, "t0": t0, "t1": t1}
         out.append(_effect("snag", "region", {"stiffness": 0.0, **span}, {"stiffness": PULL, **span}, ("stiffness",)))
-    if any(e.pins for e in episodes):
-        for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
-            slip = _effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",))
-            out.append(replace(slip, steps={("grip_slip", "time"): MOMENT}))
+    return out
+
+
+def _grip_slips(t0: float, end: float) -> list[Candidate]:
+    """The first pin lets go when the residual begins, or at one of four instants over the recording."""
+    out = []
+    for t in sorted({round(t0, 3), *(round(x, 3) for x in np.linspace(0.1, 0.8, 4) * end)}):
+        slip = _effect("grip_slip", "pin 1", {"time": end + 1.0}, {"time": float(t)}, ("time",))
+        out.append(replace(slip, steps={("grip_slip", "time"): MOMENT}))
     return out
 
 

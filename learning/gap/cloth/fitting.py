@@ -136,7 +136,7 @@ class ClothFitter:
         for _ in range(rounds):
             if not model.free:
                 break
-            J = self._columns(model, residuals, steps)
+            J = self.columns(model, residuals, steps)
             r = np.concatenate([(x * self.weights).ravel() for x in residuals])
             A = J.T @ J
             size = np.sqrt(np.diag(A)) + 1e-12
@@ -180,7 +180,14 @@ class ClothFitter:
         """Weighted residuals of all episodes in a row."""
         return np.concatenate([(r * self.weights).ravel() for r in residuals])
 
-    def _columns(self, model: ClothModel, residuals: list[np.ndarray], steps: dict[Free, float]) -> np.ndarray:
+    def columns(self, model: ClothModel, residuals: list[np.ndarray], steps: dict[Free, float]) -> np.ndarray:
+        """Weighted change of the prediction with each free parameter, by finite differences, (rows, P).
+
+        Args:
+            model: where it is taken.
+            residuals: of that model.
+            steps: finite difference of each free parameter.
+        """
         columns = []
         for f in model.free:
             step = steps[f] * 0.3

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import GapError
 
-MOST = 8192  # vertices a PyBullet soft body takes on every platform
+MAX_VERTICES = 8192  # vertices a PyBullet soft body takes on every platform
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -34,27 +34,35 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             elif parts[:1] == ["g"]:
                 group = stays if parts[1:] == ["stays"] else faces
             elif parts[:1] == ["f"]:
-                corner = [int(p.split("/")[0]) for p in parts[1:]]
-                corner = [c - 1 if c > 0 else len(vertices) + c for c in corner]
-                group += [[corner[0], corner[k], corner[k + 1]] for k in range(1, len(corner) - 1)]
+                group += _fan(parts[1:], len(vertices))
         except (ValueError, IndexError):
             raise GapError(f"{path}: row {row} is '{line[:40]}', not a vertex or a face") from None
     if not vertices or not faces:
         raise GapError(f"{path}: the mesh is empty ({len(vertices)} vertices, {len(faces)} faces)")
     v, f = np.array(vertices, dtype=float), np.array(faces, dtype=int)
     s = np.array(stays, dtype=int).reshape(-1, 3)
-    every = np.vstack([f, s])
+    _check_mesh(path, v, np.vstack([f, s]))
+    return v, f, s
+
+
+def _fan(corners: list[str], vertices: int) -> list[list[int]]:
+    """Triangles of one polygon from its corners as written: `vertex/texture/normal`, from 1 on or back from the end."""
+    ids = [int(c.split("/")[0]) for c in corners]
+    ids = [i - 1 if i > 0 else vertices + i for i in ids]
+    return [[ids[0], ids[k], ids[k + 1]] for k in range(1, len(ids) - 1)]
+
+
+def _check_mesh(path: Path, v: np.ndarray, triangles: np.ndarray) -> None:
     if v.shape[1:] != (3,) or not np.isfinite(v).all():
         raise GapError(f"{path}: vertices need three finite coordinates")
-    if every.min() < 0 or every.max() >= len(v):
-        raise GapError(f"{path}: a face names vertex {int(every.max()) + 1}, there are {len(v)}")
-    if len(v) > MOST:
-        raise GapError(f"{path}: {len(v)} vertices, at most {MOST} can be simulated")
+    if triangles.min() < 0 or triangles.max() >= len(v):
+        raise GapError(f"{path}: a face names vertex {int(triangles.max()) + 1}, there are {len(v)}")
+    if len(v) > MAX_VERTICES:
+        raise GapError(f"{path}: {len(v)} vertices, at most {MAX_VERTICES} can be simulated")
     if np.ptp(v, axis=0).max() > 20.0:
         raise GapError(f"{path}: the mesh is {np.ptp(v, axis=0).max():.3g} long, it must be in metres")
-    if len(np.unique(every)) != len(v):
-        raise GapError(f"{path}: {len(v) - len(np.unique(every))} vertices belong to no face, remove them")
-    return v, f, s
+    if len(np.unique(triangles)) != len(v):
+        raise GapError(f"{path}: {len(v) - len(np.unique(triangles))} vertices belong to no face, remove them")
 
 
 def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray, stays: np.ndarray | None = None) -> None:

@@ -137,29 +137,38 @@ def read_scene(measured: MeasurementSet) -> tuple[ClothScene, list[ClothEpisode]
 def _physics(file: Path, given: Any, count: int) -> Physics:
     if not isinstance(given, dict):
         raise GapError(f"{file}: `physics` is {given!r}, names with numbers are needed (mass, elastic_stiffness, ...)")
-    values = {}
-    for key, default in DEFAULTS.items():
-        x = given.get(key, default)
-        if (
-            isinstance(x, bool)
-            or not isinstance(x, int | float)
-            or not np.isfinite(x)
-            or x < 0
-            or (key == "mass" and x == 0)
-        ):
-            raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
-        values[key] = float(x)
+    values = {key: _positive(file, key, given.get(key, default)) for key, default in DEFAULTS.items()}
     least = 1.5 * PROXY_MASS * proxy_count(count)
     if values["mass"] < least:
         raise GapError(
             f"{file}: physics.mass is {values['mass']:g} kg, effects act through proxy bodies of "
             f"{least / 1.5:g} kg together, so a cloth of {count} vertices must weigh at least {least:g} kg"
         )
-    g = given.get("gravity", -GRAVITY)
+    return Physics(
+        **values,
+        gravity=_gravity(file, given.get("gravity", -GRAVITY)),
+        time_step=_time_step(file, given.get("time_step", 0.002), values, count),
+        per_second=_per_second(file, given.get("per_second", 1.0)),
+    )
+
+
+def _positive(file: Path, key: str, x: Any) -> float:
+    """A finite number that is not negative; a mass may not be 0 either."""
+    if not _finite(x) or x < 0 or (key == "mass" and x == 0):
+        raise GapError(f"{file}: physics.{key} is {x!r}, a positive number is needed")
+    return float(x)
+
+
+def _gravity(file: Path, g: Any) -> tuple[float, float, float]:
+    """Acceleration (3,) [m/s^2]; one number points down."""
     g = (0.0, 0.0, -abs(g)) if isinstance(g, int | float) else g
     if not isinstance(g, list | tuple) or len(g) != 3 or not all(_finite(x) for x in g):
         raise GapError(f"{file}: physics.gravity is {g!r}, a number or three numbers [m/s^2] are needed")
-    step = given.get("time_step", 0.002)
+    return float(g[0]), float(g[1]), float(g[2])
+
+
+def _time_step(file: Path, step: Any, values: dict[str, float], count: int) -> float:
+    """The step asked for, halved until springs between `count` vertices are stable [s]."""
     if not _finite(step) or not 1e-5 <= step <= 0.02:
         raise GapError(f"{file}: physics.time_step is {step!r}, a number from 0.00001 to 0.02 [s] is needed")
     limit = float(np.sqrt(STABILITY_MAX * values["mass"] / count / max(values["elastic_stiffness"], 1e-9)))
@@ -170,12 +179,13 @@ def _physics(file: Path, given: Any, count: int) -> Physics:
         )
     while step > limit:  # explicit springs explode above this
         step /= 2.0
-    unit = given.get("per_second", 1.0)
+    return float(step)
+
+
+def _per_second(file: Path, unit: Any) -> float:
     if isinstance(unit, bool) or not isinstance(unit, int | float) or not 1.0 <= unit <= 1e6:
         raise GapError(f"{file}: physics.per_second is {unit!r}, a number from 1 to 1000000 is needed")
-    return Physics(
-        **values, gravity=(float(g[0]), float(g[1]), float(g[2])), time_step=float(step), per_second=float(unit)
-    )
+    return float(unit)
 
 
 def _finite(x: Any) -> bool:
@@ -201,31 +211,34 @@ def _pins(file: Path, listed: Any, scene: ClothScene) -> tuple[Pin, ...]:
         raise GapError(f"{file}: `pins` is {listed!r}, a list of entries with `vertices` is needed")
     if listed and all(isinstance(i, int) for i in listed):
         listed = [{"vertices": listed}]
-    out = []
-    for p in listed:
-        ids = p.get("vertices") if isinstance(p, dict) else None
-        ids = [ids] if isinstance(ids, int) else ids
-        if not isinstance(ids, list) or not all(isinstance(i, int) and 0 <= i < len(scene.vertices) for i in ids):
-            raise GapError(
-                f"{file}: every pin needs `vertices`, ids from 0 to {len(scene.vertices) - 1}, this one has {ids!r}"
-            )
-        path = None
-        if p.get("path") is not None and not isinstance(p["path"], str):
-            raise GapError(f"{file}: path of a pin is {p['path']!r}, the name of a CSV with t, x, y, z is needed")
-        if p.get("path"):
-            table = read_table(file.parent / p["path"])
-            for axis in "xyz":
-                if axis not in table:
-                    raise GapError(
-                        f"{file.parent / p['path']}: column '{axis}' is missing (row 1 has {', '.join(table)})"
-                    )
-            path = np.stack([table[c] for c in ("t", "x", "y", "z")], axis=1)
-            path[:, 1:] -= path[0, 1:]  # a displacement, whether the file gives places or displacements
-        release = p.get("release_t")
-        if release is not None and not _finite(release):
-            raise GapError(f"{file}: release_t of a pin is {release!r}, a time in seconds is needed")
-        out.append(Pin(vertices=tuple(ids), release_t=float("inf") if release is None else float(release), path=path))
-    return tuple(out)
+    return tuple(_pin(file, p, len(scene.vertices)) for p in listed)
+
+
+def _pin(file: Path, given: Any, count: int) -> Pin:
+    """One entry of `pins` for a cloth of `count` vertices."""
+    ids = given.get("vertices") if isinstance(given, dict) else None
+    ids = [ids] if isinstance(ids, int) else ids
+    if not isinstance(ids, list) or not all(isinstance(i, int) and 0 <= i < count for i in ids):
+        raise GapError(f"{file}: every pin needs `vertices`, ids from 0 to {count - 1}, this one has {ids!r}")
+    path = given.get("path")
+    if path is not None and not isinstance(path, str):
+        raise GapError(f"{file}: path of a pin is {path!r}, the name of a CSV with t, x, y, z is needed")
+    release = given.get("release_t")
+    displacement = _displacement(file.parent / path) if path else None
+    if release is not None and not _finite(release):
+        raise GapError(f"{file}: release_t of a pin is {release!r}, a time in seconds is needed")
+    return Pin(vertices=tuple(ids), release_t=float("inf") if release is None else float(release), path=displacement)
+
+
+def _displacement(file: Path) -> np.ndarray:
+    """(K, 4) time and displacement [s, m], whether the file gives places or displacements."""
+    table = read_table(file)
+    for axis in "xyz":
+        if axis not in table:
+            raise GapError(f"{file}: column '{axis}' is missing (row 1 has {', '.join(table)})")
+    path = np.stack([table[c] for c in ("t", "x", "y", "z")], axis=1)
+    path[:, 1:] -= path[0, 1:]
+    return path
 
 
 def _episode(e: Episode, scene: ClothScene, pins: tuple[Pin, ...]) -> ClothEpisode:

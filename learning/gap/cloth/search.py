@@ -19,8 +19,8 @@ from .simulate import Simulator
 ALPHA = 0.05
 SCREENED = 2  # episodes hypotheses are verified on; they are screened on the worst of them, the final fit uses all
 VERIFIED = 4  # candidates per round that are fitted by simulation
-MOST = 3  # effects and recalibrations at once
-CARRIED = 0.8  # carriers are taken as given where they alone bring the squares below this part
+MAX_CHOSEN = 3  # effects and recalibrations at once
+CARRIED = 0.8  # proxy bodies are taken as given where they alone bring the squares below this part
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
@@ -61,80 +61,132 @@ class ClothSearch:
 
 
 def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]) -> ClothSearch:
-    """Rounds of screening and verification until no effect pays its price."""
-    m = len(scene.markers)
-    pairs = neighbours(scene.vertices[list(scene.markers)])
-    first = ClothFitter(sim, episodes, np.ones(3 * m + (3 if episodes[0].load is not None else 0)))
-    weights = _weights(first, m)
-    fitter = ClothFitter(sim, episodes, weights)
-    some = ClothFitter(sim, episodes[:SCREENED], weights)
-    plain = fitter.fit(ClothModel(), {})
-    before = coherence(plain.residuals, pairs, m)
-    start = plain
-    carried = fitter.fit(ClothModel(carried=True), {})
-    if carried.rss < CARRIED * plain.rss:
-        start = carried  # recorded in a world whose cloth already has carriers
-        before = coherence(start.residuals, pairs, m)
-    rows = sum(r.size for r in plain.residuals)
-    chosen: list[Candidate] = []
-    fit, rivals = start, {}
-    worth = rows / memory(plain.residuals)
-    after = before
-    loads = [e.load for e in episodes]
-    while len(chosen) < MOST and (_shares(after) or load_misfit(fit.residuals, loads, m) < 0.01):
-        pool = candidates(scene, episodes, fitter.residuals(replace(fit.model, carried=True)))
-        taken = {c.name for c in chosen}
-        pool = [c for c in pool if c.name not in taken and not _clash(c.name, taken)]
-        say(f"round {len(chosen) + 1}: {len(pool)} hypotheses, {sim.runs} simulations so far")
-        part = some.fit(replace(fit.model, free=()), {})
-        part = replace(part, model=fit.model)
-        worst = int(np.argmax([np.mean((r * weights) ** 2) for r in part.residuals]))
-        alone = ClothFitter(sim, [some.episodes[worst]], weights)
+    """Rounds of screening and verification until no effect pays its price.
+
+    Args:
+        sim: runs the scene.
+        scene: the cloth.
+        episodes: recordings to be explained.
+        say: told of every round.
+    """
+    rounds = _Rounds(sim, scene, episodes, say)
+    while rounds.more and rounds.next():
+        pass
+    return rounds.result()
+
+
+class _Rounds:
+    """What is known between two rounds: the effects chosen so far, their fit, and what it leaves."""
+
+    def __init__(
+        self, sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]
+    ) -> None:
+        self._sim, self._scene, self._episodes, self._say = sim, scene, episodes, say
+        self._markers = m = len(scene.markers)
+        self._pairs = neighbours(scene.vertices[list(scene.markers)])
+        first = ClothFitter(sim, episodes, np.ones(3 * m + (3 if episodes[0].load is not None else 0)))
+        self._weights = _weights(first, m)
+        self._fitter = ClothFitter(sim, episodes, self._weights)
+        self._some = ClothFitter(sim, episodes[:SCREENED], self._weights)
+        self._plain = self._start = self._fitter.fit(ClothModel(), {})
+        carried = self._fitter.fit(ClothModel(carried=True), {})
+        if carried.rss < CARRIED * self._plain.rss:
+            self._start = carried  # recorded in a world whose cloth already has proxy bodies
+        self._before = self._after = self._coherence(self._start)
+        self._rows = sum(r.size for r in self._plain.residuals)
+        self._worth = self._rows / memory(self._plain.residuals)
+        self._fit, self._chosen = self._start, list[Candidate]()
+        self._rivals: dict[str, tuple[str, ...]] = {}
+
+    @property
+    def more(self) -> bool:
+        """Whether something is left to be explained and the model may still grow."""
+        loads = [e.load for e in self._episodes]
+        return len(self._chosen) < MAX_CHOSEN and (
+            _shares(self._after) or load_misfit(self._fit.residuals, loads, self._markers) < 0.01
+        )
+
+    def next(self) -> bool:
+        """One round; whether it added an effect."""
+        pool = self._pool()
+        self._say(f"round {len(self._chosen) + 1}: {len(pool)} hypotheses, {self._sim.runs} simulations so far")
+        part = replace(self._some.fit(replace(self._fit.model, free=()), {}), model=self._fit.model)
+        verified = self._verified(pool, part)
+        if not verified:
+            return False
+        best = min(verified, key=lambda x: x[1].rss)[1]
+        count = sum(r.size for r in best.residuals)
+        self._worth = count / memory(best.residuals)
+        scored = [Tried(added=c, fit=f, score=self._score(f, f.model, count, len(pool))) for c, f in verified]
+        scored.sort(key=lambda t: t.score - (3.0 if t.added.recalibration else 0.0))
+        top = scored[0]
+        drop = part.rss - top.fit.rss
+        explained = self._start.rss * count / self._rows - top.fit.rss
+        now = self._score(part, self._fit.model, count, len(pool))
+        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
+            return False
+        polished = _polish(self._fitter, top.fit, [*self._chosen, top.added], self._scene)
+        after = self._coherence(polished)
+        if drop < SHARE * explained and _shares(after):
+            return False  # a large effect that is not quite right leaves something to mop up for any other
+        self._fit, self._after = polished, after
+        self._chosen.append(top.added)
+        alike = (t.added.name for t in scored[1:] if t.score - top.score < SAME and t.added.name != top.added.name)
+        self._rivals[top.added.name] = tuple(dict.fromkeys(alike))
+        return True
+
+    def result(self) -> ClothSearch:
+        """The final model, without what later rounds made unnecessary."""
+        fit, chosen = _prune(self._fitter, self._fit, self._chosen, self._worth)
+        return ClothSearch(
+            chosen=tuple(chosen),
+            fit=fit,
+            plain=self._plain,
+            before=self._before,
+            after=self._coherence(fit),
+            rivals=self._rivals,
+            worth=self._worth,
+        )
+
+    def _coherence(self, fit: ClothFit) -> Coherence:
+        return coherence(fit.residuals, self._pairs, self._markers)
+
+    def _pool(self) -> list[Candidate]:
+        """Hypotheses that can join what is chosen."""
+        with_bodies = self._fitter.residuals(replace(self._fit.model, carried=True))
+        taken = {c.name for c in self._chosen}
+        every = candidates(self._scene, self._episodes, with_bodies)
+        return [c for c in every if c.name not in taken and not _clash(c.name, taken)]
+
+    def _verified(self, pool: list[Candidate], part: ClothFit) -> list[tuple[Candidate, ClothFit]]:
+        """The best screened candidates, each fitted beside what is chosen.
+
+        Args:
+            pool: all candidates.
+            part: what is chosen so far on the recordings candidates are verified on.
+        """
+        worst = int(np.argmax([np.mean((r * self._weights) ** 2) for r in part.residuals]))
+        alone = ClothFitter(self._sim, [self._some.episodes[worst]], self._weights)
         seen = replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
-        ranked, left = _screen(sim, alone, seen, chosen, pool)
-        tried = []
+        ranked, left = _screen(self._sim, alone, seen, self._chosen, pool)
+        verified: list[tuple[Candidate, ClothFit]] = []
         done = False  # once one explains all, the others only have to show whether they would too
         for k, c in enumerate(ranked[:VERIFIED]):
             # screening saw one recording, fits see several
-            least = min((f.rss for _, f in tried), default=0.0) * seen.rss / max(part.rss, 1e-30)
+            least = min((f.rss for _, f in verified), default=0.0) * seen.rss / max(part.rss, 1e-30)
             if done and left[c.name] > max(HOPELESS * least, 0.25 * seen.rss):
                 continue
-            begun = _begun(some, fit.model, c, part.rss)
-            joined = some.fit(begun, _steps([*chosen, c]), rounds=1 if done else 2)
-            done = done or not _shares(coherence(joined.residuals, pairs, m))
-            say(f"  {k + 1}/{VERIFIED} {c.name}: {np.sqrt(joined.rss / max(part.rss, 1e-30)):.3f} of the residual left")
-            tried.append((c, joined))
-        if not tried:
-            break
-        best = min(tried, key=lambda x: x[1].rss)
-        count = sum(r.size for r in best[1].residuals)
-        worth = count / memory(best[1].residuals)
-        scored = [
-            Tried(added=c, fit=f, score=worth * np.log(f.rss / count) + _price(len(pool), f.model)) for c, f in tried
-        ]
-        scored.sort(key=lambda t: t.score - (3.0 if t.added.recalibration else 0.0))
-        top = scored[0]
-        now = worth * np.log(part.rss / count) + _price(len(pool), fit.model)
-        drop = part.rss - top.fit.rss
-        explained = start.rss * count / rows - top.fit.rss
-        if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
-            break
-        polished = _polish(fitter, top.fit, [*chosen, top.added], scene)
-        left_over = coherence(polished.residuals, pairs, m)
-        if drop < SHARE * explained and _shares(left_over):
-            break  # a large effect that is not quite right leaves something to mop up for any other
-        fit, after = polished, left_over
-        chosen.append(top.added)
-        rivals[top.added.name] = tuple(
-            dict.fromkeys(
-                t.added.name for t in scored[1:] if t.score - top.score < SAME and t.added.name != top.added.name
-            )
-        )
-    fit, chosen = _prune(fitter, fit, chosen, worth, rows)
-    after = coherence(fit.residuals, pairs, m)
-    return ClothSearch(
-        chosen=tuple(chosen), fit=fit, plain=plain, before=before, after=after, rivals=rivals, worth=worth
-    )
+            begun = _begun(self._some, self._fit.model, c, part.rss)
+            joined = self._some.fit(begun, _steps([*self._chosen, c]), rounds=1 if done else 2)
+            done = done or not _shares(self._coherence(joined))
+            part_left = np.sqrt(joined.rss / max(part.rss, 1e-30))
+            self._say(f"  {k + 1}/{VERIFIED} {c.name}: {part_left:.3f} of the residual left")
+            verified.append((c, joined))
+        return verified
+
+    def _score(self, fit: ClothFit, model: ClothModel, count: int, tried: int) -> float:
+        """The criterion, smaller is better: misfit over `count` samples, and the price of a model among `tried`."""
+        return self._worth * np.log(fit.rss / count) + _price(tried, model)
 
 
 def _shares(left: Coherence) -> bool:
@@ -182,7 +234,7 @@ def _screen(
             model = fit.model.joined(c.start.moved({f: c.push.value(f)}))
             runs += [(e, model.acting, model.physics) for e in fitter.episodes]
     sim.ahead(runs)
-    own = [fitter._columns(fit.model, fit.residuals, _steps(chosen))] if chosen and fit.model.free else []
+    own = [fitter.columns(fit.model, fit.residuals, _steps(chosen))] if chosen and fit.model.free else []
     scored = []
     for c in pool:
         base = fit.model.joined(c.start)
@@ -261,7 +313,7 @@ def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: 
 
 
 def _prune(
-    fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], worth: float, rows: int
+    fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], worth: float
 ) -> tuple[ClothFit, list[Candidate]]:
     """Take back what later rounds made unnecessary."""
     changed = True

@@ -83,6 +83,11 @@ def table_of(values: dict[str, dict[str, float]], duration: float, factor: float
     return table, 1.0 + values.get("gain_error", {"fraction": 0.0})["fraction"]
 
 
+def instants_of(mode: str, drops: int) -> int:
+    """How many release instants are free under what is assumed of them (one of `MODES`)."""
+    return {"together": 0, "late": 1, "free": drops}[mode]
+
+
 def fit_drops(
     drops: list[Drop],
     names: tuple[str, ...],
@@ -101,89 +106,128 @@ def fit_drops(
         late: keep the common lateness at this value [s].
         near: begin at this fit of the same effects and mode.
     """
-    parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
-    theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
-    moving, e = 0 if start is not None else len(parameters), len(drops)
-    instants = {"together": 0, "late": 0 if late is not None else 1, "free": e}[mode]
-    duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
-    times, measured = (np.concatenate(x) for x in ([d.t for d in drops], [d.h for d in drops]))
-    counts = [len(d.t) for d in drops]
-    ends = np.cumsum(counts)[:-1]
-    factor_of = np.repeat([d.factor for d in drops], counts)
-    rows_of = {f: np.flatnonzero(factor_of == f) for f in dict.fromkeys(factor_of.tolist())}
-    first = np.concatenate([theta[:moving], [d.h[:3].mean() for d in drops], np.zeros(instants)])
-    low = np.concatenate([[p.lower for p in parameters][:moving], [-np.inf] * e, [-RELEASE] * instants])
-    high = np.concatenate([[p.upper for p in parameters][:moving], [np.inf] * e, [RELEASE] * instants])
-
-    def split(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        tail = x[moving + e :]
-        release = tail if mode == "free" else np.full(e, tail[0] if instants else (late or 0.0))
-        return np.concatenate([x[:moving], theta[moving:]]), x[moving : moving + e], release
-
-    def model(x: np.ndarray) -> tuple[np.ndarray, list[np.ndarray], float]:
-        values, tops, release = split(x)
-        under, scale = unpack(names, values), 1.0
-        tables: dict[float, np.ndarray] = {}
-        for factor in rows_of:
-            tables[factor], scale = table_of(under, duration, factor)
-        read, speeds = np.empty(len(measured)), np.empty(len(measured))
-        top, when = np.repeat(tops, counts), np.repeat(release, counts)
-        for factor, rows in rows_of.items():
-            h, speeds[rows] = height(times[rows], tables[factor], top[rows], when[rows])
-            read[rows] = top[rows] + scale * (h - top[rows])
-        return read, np.split(speeds, ends), scale
-
-    white = [d.white for d in drops if d.white is not None]
-
-    def whitened(x: np.ndarray) -> np.ndarray:
-        return np.concatenate([w @ y for w, y in zip(white, np.split(x, ends), strict=True)]) if white else x
-
-    def residual(x: np.ndarray) -> np.ndarray:
-        return whitened(model(x)[0] - measured)
-
-    def jacobian(x: np.ndarray) -> np.ndarray:
-        return whitened(change(x))
-
-    def change(x: np.ndarray) -> np.ndarray:
-        base, speeds, scale = model(x)
-        J = np.zeros((len(base), len(x)))
-        for j in range(moving):
-            step = 1e-5 * max(1.0, abs(x[j]))
-            y = x.copy()
-            y[j] += -step if x[j] + step > high[j] else step
-            J[:, j] = (model(y)[0] - base) / (y[j] - x[j])
-        at = 0
-        for i, d in enumerate(drops):
-            rows = slice(at, at + len(d.t))
-            J[rows, moving + i] = 1.0
-            if instants:
-                J[rows, moving + e + (i if mode == "free" else 0)] = scale * speeds[i]
-            at += len(d.t)
-        return J
-
-    if near is not None:
-        instant = {"together": [], "late": near.releases[:1, 1][:instants], "free": near.releases[:, 1]}[mode]
-        first = np.concatenate([near.theta[:moving], near.releases[:, 0], instant])
-    first[:moving] = np.clip(first[:moving], low[:moving] + 1e-9, high[:moving] - 1e-9)
+    problem = _DropProblem(drops, names, mode, start, late)
+    low, high = problem.bounds
     solved = least_squares(
-        residual,
-        first,
-        jac=jacobian,  # pyright: ignore[reportArgumentType] - scipy's stubs know strings only
+        problem.residual,
+        problem.first(near),
+        jac=problem.jacobian,  # pyright: ignore[reportArgumentType] - scipy's stubs know strings only
         bounds=(low, high),
         x_scale="jac",
         max_nfev=60,
     )
-    r, J = residual(solved.x), jacobian(solved.x)
-    values, tops, release = split(solved.x)
-    return DropFit(
-        names=names,
-        mode=mode,
-        values=unpack(names, values),
-        theta=values,
-        releases=np.stack([tops, release], axis=1),
-        residuals=np.split(measured - model(solved.x)[0], ends),
-        jacobian=change(solved.x),
-        rss=float(r @ r),
-        parts=np.split(r**2, ends),
-        information=J.T @ J,
-    )
+    return problem.fitted(solved.x)
+
+
+class _DropProblem:
+    """Residuals of drops over x = (effects' parameters that move, release heights, free release instants).
+
+    Attributes:
+        bounds: of x, lower and upper.
+    """
+
+    def __init__(
+        self, drops: list[Drop], names: tuple[str, ...], mode: str, start: np.ndarray | None, late: float | None
+    ) -> None:
+        self._drops, self._names, self._mode = drops, names, mode
+        parameters = [p for name in names for p in BODY_EFFECTS[name].parameters]
+        self._theta = np.array([START[p.name] for p in parameters]) if start is None else np.asarray(start, dtype=float)
+        self._moving = len(parameters) if start is None else 0
+        self._instants = instants_of(mode, len(drops)) if late is None or mode != "late" else 0
+        self._late = late or 0.0
+        self._duration = max(float(d.t[-1]) for d in drops) + RELEASE + 0.1
+        self._times, self._measured = np.concatenate([d.t for d in drops]), np.concatenate([d.h for d in drops])
+        self._counts = [len(d.t) for d in drops]
+        self._ends = np.cumsum(self._counts)[:-1]
+        factor_of = np.repeat([d.factor for d in drops], self._counts)
+        self._rows_of = {f: np.flatnonzero(factor_of == f) for f in dict.fromkeys(factor_of.tolist())}
+        self._white = [d.white for d in drops if d.white is not None]
+        own, e = parameters[: self._moving], len(drops)
+        self.bounds = (
+            np.concatenate([[p.lower for p in own], [-np.inf] * e, [-RELEASE] * self._instants]),
+            np.concatenate([[p.upper for p in own], [np.inf] * e, [RELEASE] * self._instants]),
+        )
+
+    def first(self, near: DropFit | None) -> np.ndarray:
+        """Where to begin: at a fit, or at typical values and the heights first seen."""
+        k = self._moving
+        if near is None:
+            tops = [d.h[:3].mean() for d in self._drops]
+            x = np.concatenate([self._theta[:k], tops, np.zeros(self._instants)])
+        else:
+            # all instants of a fit that is equally late are the same
+            x = np.concatenate([near.theta[:k], near.releases[:, 0], near.releases[: self._instants, 1]])
+        low, high = self.bounds
+        x[:k] = np.clip(x[:k], low[:k] + 1e-9, high[:k] - 1e-9)
+        return x
+
+    def residual(self, x: np.ndarray) -> np.ndarray:
+        """Predicted minus measured heights of all drops in a row, whitened."""
+        return self._whitened(self._heights(x)[0] - self._measured)
+
+    def jacobian(self, x: np.ndarray) -> np.ndarray:
+        """Derivative of the residual with respect to x."""
+        return self._whitened(self._change(x))
+
+    def fitted(self, x: np.ndarray) -> DropFit:
+        """The fit with everything others ask of it."""
+        r, J = self.residual(x), self.jacobian(x)
+        values, tops, release = self._split(x)
+        return DropFit(
+            names=self._names,
+            mode=self._mode,
+            values=unpack(self._names, values),
+            theta=values,
+            releases=np.stack([tops, release], axis=1),
+            residuals=np.split(self._measured - self._heights(x)[0], self._ends),
+            jacobian=self._change(x),
+            rss=float(r @ r),
+            parts=np.split(r**2, self._ends),
+            information=J.T @ J,
+        )
+
+    def _split(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """All effects' parameters, and height and instant of each release."""
+        k, e = self._moving, len(self._drops)
+        instants = x[k + e :]
+        if self._mode != "free":
+            instants = np.full(e, instants[0] if self._instants else self._late)
+        return np.concatenate([x[:k], self._theta[k:]]), x[k : k + e], instants
+
+    def _heights(self, x: np.ndarray) -> tuple[np.ndarray, list[np.ndarray], float]:
+        """Heights as read (rows of all drops), speeds per drop, and the scale of the reading."""
+        values, tops, release = self._split(x)
+        under, scale = unpack(self._names, values), 1.0
+        tables: dict[float, np.ndarray] = {}
+        for factor in self._rows_of:
+            tables[factor], scale = table_of(under, self._duration, factor)
+        read, speeds = np.empty(len(self._measured)), np.empty(len(self._measured))
+        top, when = np.repeat(tops, self._counts), np.repeat(release, self._counts)
+        for factor, rows in self._rows_of.items():
+            h, speeds[rows] = height(self._times[rows], tables[factor], top[rows], when[rows])
+            read[rows] = top[rows] + scale * (h - top[rows])
+        return read, np.split(speeds, self._ends), scale
+
+    def _whitened(self, x: np.ndarray) -> np.ndarray:
+        if not self._white:
+            return x
+        return np.concatenate([w @ y for w, y in zip(self._white, np.split(x, self._ends), strict=True)])
+
+    def _change(self, x: np.ndarray) -> np.ndarray:
+        """Derivative of the heights: by finite differences over the effects, exact over the releases."""
+        base, speeds, scale = self._heights(x)
+        high = self.bounds[1]
+        J = np.zeros((len(base), len(x)))
+        for j in range(self._moving):
+            step = 1e-5 * max(1.0, abs(x[j]))
+            y = x.copy()
+            y[j] += -step if x[j] + step > high[j] else step
+            J[:, j] = (self._heights(y)[0] - base) / (y[j] - x[j])
+        at, e = 0, len(self._drops)
+        for i, d in enumerate(self._drops):
+            rows = slice(at, at + len(d.t))
+            J[rows, self._moving + i] = 1.0
+            if self._instants:
+                J[rows, self._moving + e + (i if self._mode == "free" else 0)] = scale * speeds[i]
+            at += len(d.t)
+        return J

@@ -9,7 +9,9 @@ diameter where both are known.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -17,7 +19,7 @@ import numpy as np
 from ....sim.effects.body.body_registry import BODY_EFFECTS
 from ....sim.effects.body.buoyancy import AIR_DENSITY
 from .colour import Colour, estimated, grid
-from .fit import MODES, Drop, DropFit, fit_drops
+from .fit import MODES, Drop, DropFit, fit_drops, instants_of
 
 SEARCHED = ("linear_drag", "quadratic_drag", "buoyancy", "gain_error", "wind")
 IMPOSSIBLE = ({"quadratic_drag", "wind"}, {"buoyancy", "gain_error"})
@@ -93,14 +95,14 @@ class DropSearch:
 
 
 def search(drops: list[Drop], mass: float | None, diameter: float | None) -> DropSearch:
-    """Fit every plausible set and rank them."""
-    sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
-    sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
-    # one or two drops cannot tell late from each at its own instant
-    tried = [(mode, names) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3]
-    if any(d.factor != 1.0 for d in drops):  # two effects and an instant for every drop would follow any smooth force
-        tried = [(mode, names) for mode, names in tried if mode != "free" or len(names) < LARGEST]
-    plain = [fit_drops(drops, names, mode) for mode, names in tried]
+    """Fit every plausible set and rank them.
+
+    Args:
+        drops: to be explained.
+        mass: of the body [kg], None where it is not known.
+        diameter: of the body [m], None where it is not known.
+    """
+    plain = [fit_drops(drops, names, mode) for mode, names in _sets(drops)]
     colours = grid([d.t for d in drops])
     cleanest = min(plain, key=lambda f: f.rss)
     white = _coloured(drops, estimated(colours, np.concatenate(cleanest.residuals), cleanest.jacobian))
@@ -109,26 +111,10 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     spent = len(cleanest.theta) + 2 * len(drops)
     worth = float(max(rows - spent, 4))
     number = max(NUMBER, worth * MATERIAL**2)
-
-    def price(fit: DropFit) -> float:
-        paid = price_of(fit.names, fit.mode, len(drops), number) - foreseen(fit.names, mass, diameter)
-        return paid + implausibility(fit, mass, diameter)
-
+    price = partial(_price, drops=len(drops), number=number, mass=mass, diameter=diameter)
     rough = [worth * float(np.log(max(f.rss, 1e-12) / rows)) + price(f) for f in fits]
     close = [f for f, score in zip(fits, rough, strict=True) if score - min(rough) < CLOSE]
-    # a set that bends away from the drops may call its misfit slow noise, at that noise's price
-    own = [estimated(colours, np.concatenate(f.residuals), f.jacobian) for f in close]
-    likely = {(c.memory, c.slow): c for c in own}
-    candidates = []
-    for fit in close:
-        options = []
-        for c in likely.values():
-            other = fit_drops(_coloured(drops, c), fit.names, fit.mode, near=fit)
-            deviance = rows * float(np.log(max(other.rss, 1e-12) / rows)) + c.volume
-            # what a fit takes up itself does not count
-            misfit = worth / rows * deviance
-            options.append(Candidate(fit=other, score=misfit + price(other), misfit=misfit))
-        candidates.append(min(options, key=lambda o: o.score))
+    candidates = _under_likely_colours(drops, close, colours, worth, price)
     behind = max(c.score for c in candidates) - min(rough)
     far = [(f, x) for f, x in zip(fits, rough, strict=True) if x - min(rough) >= CLOSE]
     candidates += [Candidate(fit=f, score=behind + x, misfit=behind + x - price(f)) for f, x in far]
@@ -146,13 +132,50 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     )
 
 
+def _sets(drops: list[Drop]) -> list[tuple[str, tuple[str, ...]]]:
+    """Assumption on the release instants and names of every set that these drops can bear."""
+    sets: list[tuple[str, ...]] = [(), *((n,) for n in SEARCHED)]
+    sets += [p for p in combinations(SEARCHED, 2) if set(p) not in IMPOSSIBLE]
+    # one or two drops cannot tell late from each at its own instant
+    tried = [(mode, names) for mode in MODES for names in sets if mode != "late" or len(drops) >= 3]
+    if any(d.factor != 1.0 for d in drops):  # two effects and an instant for every drop would follow any smooth force
+        tried = [(mode, names) for mode, names in tried if mode != "free" or len(names) < LARGEST]
+    return tried
+
+
+def _price(fit: DropFit, drops: int, number: float, mass: float | None, diameter: float | None) -> float:
+    paid = price_of(fit.names, fit.mode, drops, number) - foreseen(fit.names, mass, diameter)
+    return paid + implausibility(fit, mass, diameter)
+
+
+def _under_likely_colours(
+    drops: list[Drop], close: list[DropFit], colours: list[Colour], worth: float, price: Callable[[DropFit], float]
+) -> list[Candidate]:
+    """Each of the best sets under that noise which suits it best, of those that are the likeliest for one of them."""
+    rows = sum(len(d.t) for d in drops)
+    # a set that bends away from the drops may call its misfit slow noise, at that noise's price
+    own = [estimated(colours, np.concatenate(f.residuals), f.jacobian) for f in close]
+    likely = {(c.memory, c.slow): c for c in own}
+    candidates = []
+    for fit in close:
+        options = []
+        for c in likely.values():
+            other = fit_drops(_coloured(drops, c), fit.names, fit.mode, near=fit)
+            deviance = rows * float(np.log(max(other.rss, 1e-12) / rows)) + c.volume
+            # what a fit takes up itself does not count
+            misfit = worth / rows * deviance
+            options.append(Candidate(fit=other, score=misfit + price(other), misfit=misfit))
+        candidates.append(min(options, key=lambda o: o.score))
+    return candidates
+
+
 def _coloured(drops: list[Drop], colour: Colour) -> list[Drop]:
     return [replace(d, white=w) for d, w in zip(drops, colour.white, strict=True)]
 
 
 def price_of(names: tuple[str, ...], mode: str, drops: int, number: float) -> float:
     """What a set has to gain: for each number, for each effect, and for being the first."""
-    numbers = sum(len(BODY_EFFECTS[n].parameters) for n in names) + {"together": 0, "late": 1, "free": drops}[mode]
+    numbers = sum(len(BODY_EFFECTS[n].parameters) for n in names) + instants_of(mode, drops)
     effects = len(names) + (mode != "together")
     return numbers * number + effects * EFFECT + (FIRST if effects else 0.0)
 

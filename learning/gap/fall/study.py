@@ -22,7 +22,7 @@ from .search import EFFECT, LARGEST, DropSearch, equals, foreseen, price_of, riv
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 VISIBLE = 0.1  # of the floor, with ballast: then the same numbers have to hold for every mass, and less has to be left
-SURE = 2e-3  # `unknown` below this p-value of what repeats
+SIGNIFICANT = 2e-3  # `unknown` below this p-value of what repeats
 CLEAN = 0.05  # a set leaves nothing that repeats at or above it
 NEAR = 12.0  # criterion within which another set is asked before `unknown` is said
 TRANSFER = 3.0  # held-out energy over the worst fitted drop's from which on an explanation is asked if it holds there
@@ -68,7 +68,7 @@ class FallStudy(Study):
             names = tuple(n for n in best.names if kept[n] >= CONFIDENCE)
             fit = fit if names == best.names else self.found.refit(names, best.mode)
         many = len(fit.names) + (fit.mode == "late") > LARGEST
-        if not many and self._repeats(fit).p_value >= SURE:
+        if not many and self._repeats(fit).p_value >= SIGNIFICANT:
             return fit
         for c in self.found.candidates:
             if c.score - self.found.candidates[0].score > NEAR:
@@ -152,7 +152,7 @@ class FallStudy(Study):
         much = energy / (energy + explained + 1e-30) > REMAINDER
         if any(d.factor != 1.0 for d in self.fitted):
             much = energy > (VISIBLE * self.found.floor) ** 2
-        if self.leftover.p_value < SURE and much:
+        if self.leftover.p_value < SIGNIFICANT and much:
             return "unknown"
         if self._strange > TRANSFERRED or self._many:
             return "unknown"
@@ -282,7 +282,7 @@ class FallStudy(Study):
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
             if self._strange > TRANSFERRED:
                 guess = "the effects that explain the fitted drops do not hold on the held-out ones"
-            elif self._many and self.leftover.p_value >= SURE:
+            elif self._many and self.leftover.p_value >= SIGNIFICANT:
                 guess = "a smooth force that only three effects of the bank together can follow, as they follow any"
         return self.verdict, tuple(out), (), guess
 

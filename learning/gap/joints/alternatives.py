@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,59 +31,102 @@ class Alternative:
 
 
 def alternatives(search: Search, chosen: tuple[int, ...], index: int) -> list[Alternative]:
-    """Explanations that could stand in for one chosen block without a noticeably worse fit."""
-    block = search.blocks[index]
-    base = float(search.rows @ np.log(search.rss(chosen)))
-    rest = tuple(i for i in chosen if i != index)
-    slack = SAME * max(search.widening[index], 1.0)
-    out: dict[tuple[str, ...], tuple[float, Alternative]] = {}
+    """Explanations that could stand in for one chosen block without a noticeably worse fit.
 
-    def consider(new: tuple[int, ...]) -> None:
-        theta = search.fit((*rest, *new))
-        mine = theta[len(search.columns(rest)) :]
-        if not np.any(np.abs(mine) > 1e-9):
-            return
-        worse = float(search.rows @ np.log(search.rss((*rest, *new), theta))) - base
-        names = tuple(
-            search.blocks[i].name
-            + ("" if search.blocks[i].target == block.target else f" of {search.blocks[i].target}")
-            for i in new
-        )
-        if worse < slack and (names not in out or worse < out[names][0]):
-            out[names] = (worse, Alternative(names=names, replaces=index, blocks=tuple(search.blocks[i] for i in new)))
+    Args:
+        search: knows all blocks and how well any set of them fits.
+        chosen: blocks of the explanation.
+        index: the one to be replaced, among `chosen`.
+    """
+    stand_ins = _StandIns(search, chosen, index)
+    for i in _other_effects(search, chosen, index):
+        stand_ins.consider((i,))
+    parts = _friction_parts(search, chosen, index)
+    if parts:
+        stand_ins.consider(parts)
+    stand_ins.consider_asymmetric_friction()
+    return stand_ins.best(4)
 
+
+FRICTION_PARTS = frozenset({"coulomb_friction", "offset"})  # together they are asymmetric friction
+
+
+def _other_effects(search: Search, chosen: tuple[int, ...], index: int) -> list[int]:
+    """Blocks that act where the block does, and neither replace nor extend what is chosen."""
+    block, rest = search.blocks[index], tuple(i for i in chosen if i != index)
+    out = []
     for i, other in enumerate(search.blocks):
         if i in chosen or other.key == block.key or not set(other.channels) & set(block.channels):
             continue
         if block.name in other.contains and other.target == block.target:
             continue  # a richer form of the same effect always fits as well; that says nothing
         if not search.clash(i, rest):
-            consider((i,))
-    if block.name == "asymmetric_friction":
-        parts = [
-            i
-            for i, b in enumerate(search.blocks)
-            if b.target == block.target and b.name in ("coulomb_friction", "offset") and i not in chosen
-        ]
-        if len(parts) == 2:
-            consider(tuple(parts))
-    if block.name in ("coulomb_friction", "offset"):
+            out.append(i)
+    return out
+
+
+def _friction_parts(search: Search, chosen: tuple[int, ...], index: int) -> tuple[int, ...]:
+    """The level and the offset that an asymmetric friction on the same joint consists of; () for any other block."""
+    block = search.blocks[index]
+    if block.name != "asymmetric_friction":
+        return ()
+    parts = tuple(
+        i
+        for i, b in enumerate(search.blocks)
+        if b.target == block.target and b.name in FRICTION_PARTS and i not in chosen
+    )
+    return parts if len(parts) == 2 else ()
+
+
+class _StandIns:
+    """Explanations that could stand in for one chosen block, each with how much worse it fits."""
+
+    def __init__(self, search: Search, chosen: tuple[int, ...], index: int) -> None:
+        self._search, self._index = search, index
+        self._base = float(search.rows @ np.log(search.rss(chosen)))
+        self._rest = tuple(i for i in chosen if i != index)
+        self._slack = SAME * max(search.widening[index], 1.0)
+        self._found: dict[tuple[str, ...], tuple[float, Alternative]] = {}
+
+    def best(self, count: int) -> list[Alternative]:
+        """The first few of those that fit as well, best first."""
+        return [a for _, a in sorted(self._found.values(), key=lambda pair: pair[0])][:count]
+
+    def consider(self, new: tuple[int, ...]) -> None:
+        """Keep some blocks as an explanation if they do something and fit as well."""
+        search, rest = self._search, self._rest
+        theta = search.fit((*rest, *new))
+        mine = theta[len(search.columns(rest)) :]
+        if not np.any(np.abs(mine) > 1e-9):
+            return
+        worse = float(search.rows @ np.log(search.rss((*rest, *new), theta))) - self._base
+        target = search.blocks[self._index].target
+        names = tuple(
+            b.name if b.target == target else f"{b.name} of {b.target}" for b in (search.blocks[i] for i in new)
+        )
+        if names not in self._found or worse < self._found[names][0]:
+            self._keep(names, worse, new)
+
+    def consider_asymmetric_friction(self) -> None:
+        """A level and an offset on one joint, both chosen, may be one friction that differs with the direction."""
+        search, block = self._search, self._search.blocks[self._index]
+        if block.name not in FRICTION_PARTS:
+            return
         partner = [
             i
-            for i in rest
-            if search.blocks[i].target == block.target
-            and {block.name, search.blocks[i].name} == {"coulomb_friction", "offset"}
+            for i in self._rest
+            if search.blocks[i].target == block.target and {block.name, search.blocks[i].name} == FRICTION_PARTS
         ]
         unequal = [i for i, b in enumerate(search.blocks) if b.key == ("asymmetric_friction", block.target)]
         if partner and unequal:
-            new = tuple(i for i in rest if i != partner[0])
-            worse = float(search.rows @ np.log(search.rss((*new, unequal[0])))) - base
-            if worse < slack:
-                out[("asymmetric_friction",)] = (
-                    worse,
-                    Alternative(names=("asymmetric_friction",), blocks=(search.blocks[unequal[0]],), replaces=index),
-                )
-    return [a for _, a in sorted(out.values(), key=lambda pair: pair[0])][:4]
+            others = tuple(i for i in self._rest if i != partner[0])
+            worse = float(search.rows @ np.log(search.rss((*others, unequal[0])))) - self._base
+            self._keep(("asymmetric_friction",), worse, unequal[:1])
+
+    def _keep(self, names: tuple[str, ...], worse: float, new: Sequence[int]) -> None:
+        if worse < self._slack:
+            blocks = tuple(self._search.blocks[i] for i in new)
+            self._found[names] = (worse, Alternative(names=names, replaces=self._index, blocks=blocks))
 
 
 def mass_twins(block: Block) -> tuple[str, ...]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from .search import Search
@@ -24,11 +22,11 @@ def smallest_found(search: Search, chosen: tuple[int, ...], index: int, theta: n
     if index not in chosen:
         rest = chosen
     low, high = 0.0, 4.0
-    if not _named(base, search, rest, index, span, theta * high):
+    if not _named(base, rest, index, span, theta * high):
         return float("inf")
     for _ in range(9):
         middle = 0.5 * (low + high)
-        if _named(base, search, rest, index, span, theta * middle):
+        if _named(base, rest, index, span, theta * middle):
             high = middle
         else:
             low = middle
@@ -47,23 +45,14 @@ def replace_residual(search: Search, chosen: tuple[int, ...]) -> Search:
         - 2 * gram.b[:, :, s] @ theta
         + np.einsum("i,fcij,j->fc", theta, gram.G[:, :, s[:, None], s[None, :]], theta)
     )
-    return Search(gram=replace(gram, b=b, yy=np.maximum(yy, 1e-12)), noise=search.noise, strict=search.strict)
+    return search.with_residual(b, np.maximum(yy, 1e-12))
 
 
-def _named(
-    base: Search, search: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray
-) -> bool:
+def _named(base: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray) -> bool:
     gram = base.gram
-    s = search.columns(rest)
     extra = gram.G[:, :, :, span] @ theta
     inner = np.einsum("i,fcij,j->fc", theta, gram.G[:, :, span[:, None], span[None, :]], theta)
     yy = gram.yy + 2 * gram.b[:, :, span] @ theta + inner
-    trial = object.__new__(Search)
-    trial.__dict__.update(base.__dict__)
-    trial.gram = replace(gram, b=gram.b + extra, yy=yy)
-    trial.bc, trial.yyc = trial.gram.b.sum(axis=0), trial.gram.yy.sum(axis=0)
-    trial.b = trial.weight @ trial.bc
-    trial.fold_b = np.einsum("c,fci->fi", trial.weight, trial.gram.b)
+    trial = base.with_residual(gram.b + extra, yy)
     with_it = (*rest, index)
-    del s
     return trial.score(with_it) < trial.score(rest) and trial.crossed(with_it, index, rest)

@@ -9,7 +9,7 @@ from ..measurement import MeasurementSet
 from ..regions import intervals, phase_of, scan, state_region
 from .block import Block
 from .log import JointLog
-from .outcome import SURE, Outcome
+from .outcome import SIGNIFICANT, Outcome
 from .rigid import RigidModel
 from .thresholds import REMAINDER_SIZE
 from .workflow import Named
@@ -56,7 +56,7 @@ def places(
     if outcome.verdict == "unknown":
         fitted = [log for log in logs if log.role != "heldout"]
         for r in outcome.remainders:
-            if r.p_value >= SURE / len(channels) or r.energy < REMAINDER_SIZE * (r.base - r.energy):
+            if r.p_value >= SIGNIFICANT / len(channels) or r.energy < REMAINDER_SIZE * (r.base - r.energy):
                 continue
             for log, left in zip(fitted, outcome.left, strict=True):
                 energy = left[:, r.channel] ** 2

@@ -90,36 +90,64 @@ def _matrix(episode: Episode, names: tuple[str, ...]) -> np.ndarray:
     return np.stack([episode.columns[name] for name in names], axis=1)
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Raw:
+    """One episode on a uniform grid: arrays (T, n); `dq` is None where the file has no speeds."""
+
+    t: np.ndarray
+    dt: float
+    q: np.ndarray
+    load: np.ndarray
+    dq: np.ndarray | None
+
+
 def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -> list[JointLog]:
     """Smooth and differentiate all episodes with one bandwidth, and compare each with the model.
 
     Raises:
         GapError: an episode is too short for that.
     """
-    raw = []
-    for episode in episodes:
-        n = len(names.q)
-        parts = [_matrix(episode, names.q), _matrix(episode, names.load)]
-        has_dq = all(name in episode.columns for name in names.dq)
-        if has_dq:
-            parts.append(_matrix(episode, names.dq))
-        t, table, dt = resample(episode.t, np.concatenate(parts, axis=1))
-        raw.append((t, dt, table[:, :n], table[:, n : 2 * n], table[:, 2 * n :] if has_dq else None))
-    measured_speed = all(r[4] is not None for r in raw)
-    dt = float(np.median([r[1] for r in raw]))
-    per_q = [[bandwidth(r[2][:, j], r[1]) for j in range(r[2].shape[1])] for r in raw]
-    cut = float(np.max(np.median([[c for c, _ in row] for row in per_q], axis=0)))
-    noise_q = np.median([[s for _, s in row] for row in per_q], axis=0)  # (n,)
-    use_speed = np.zeros(len(noise_q), dtype=bool)
-    noise_v = noise_q * 2 * np.pi * cut * np.sqrt(2 * cut * dt / 3)
-    if measured_speed:
-        per_v = [[bandwidth(r[4][:, j], r[1]) for j in range(r[4].shape[1])] for r in raw]
-        sensor = np.median([[s for _, s in row] for row in per_v], axis=0) * np.sqrt(2 * cut * dt)
-        # the same speed by either route; take the quieter, unless the speed column is no speed at all
-        agree = np.median([[_agree(r[2][:, j], r[4][:, j], r[1]) for j in range(r[4].shape[1])] for r in raw], axis=0)
-        use_speed = (sensor < noise_v) & (agree > 0.98)
-        noise_v = np.where(use_speed, sensor, noise_v)
+    raw = [_resampled(episode, names) for episode in episodes]
+    cut, noise_q = _bandwidth_of([(r.q, r.dt) for r in raw])
+    noise_v, use_speed = _speed_noise(raw, cut, noise_q)
     return [_prepare(episode, r, cut, use_speed, noise_v, model) for episode, r in zip(episodes, raw, strict=True)]
+
+
+def _resampled(episode: Episode, names: JointColumns) -> _Raw:
+    n = len(names.q)
+    parts = [_matrix(episode, names.q), _matrix(episode, names.load)]
+    has_dq = all(name in episode.columns for name in names.dq)
+    if has_dq:
+        parts.append(_matrix(episode, names.dq))
+    t, table, dt = resample(episode.t, np.concatenate(parts, axis=1))
+    return _Raw(t=t, dt=dt, q=table[:, :n], load=table[:, n : 2 * n], dq=table[:, 2 * n :] if has_dq else None)
+
+
+def _bandwidth_of(series: list[tuple[np.ndarray, float]]) -> tuple[float, np.ndarray]:
+    """Bandwidth of the fastest joint [Hz] and (n,) noise of each, medians over episodes.
+
+    Args:
+        series: (T, n) samples and their time step [s], per episode.
+    """
+    per = [[bandwidth(x[:, j], dt) for j in range(x.shape[1])] for x, dt in series]
+    cut = float(np.max(np.median([[c for c, _ in row] for row in per], axis=0)))
+    return cut, np.median([[s for _, s in row] for row in per], axis=0)
+
+
+def _speed_noise(raw: list[_Raw], cut: float, noise_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) noise of each joint's speed, and whether its measured speed is used rather than the slope of its position.
+
+    The same speed by either route; the quieter is taken, unless the speed column is no speed at all.
+    """
+    dt = float(np.median([r.dt for r in raw]))
+    noise_v = noise_q * 2 * np.pi * cut * np.sqrt(2 * cut * dt / 3)
+    speeds = [(r.q, r.dq, r.dt) for r in raw if r.dq is not None]
+    if len(speeds) < len(raw):
+        return noise_v, np.zeros(len(noise_q), dtype=bool)
+    sensor = _bandwidth_of([(dq, step) for _, dq, step in speeds])[1] * np.sqrt(2 * cut * dt)
+    agree = np.median([[_agree(q[:, j], dq[:, j], step) for j in range(dq.shape[1])] for q, dq, step in speeds], axis=0)
+    use_speed = (sensor < noise_v) & (agree > 0.98)
+    return np.where(use_speed, sensor, noise_v), use_speed
 
 
 def _agree(q: np.ndarray, dq: np.ndarray, dt: float) -> float:
@@ -131,9 +159,9 @@ def _agree(q: np.ndarray, dq: np.ndarray, dt: float) -> float:
 
 
 def _prepare(
-    episode: Episode, raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray, model: RigidModel
+    episode: Episode, raw: _Raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray, model: RigidModel
 ) -> JointLog:
-    t, dt, q, load, dq = raw
+    t, dt, q, load, dq = raw.t, raw.dt, raw.q, raw.load, raw.dq
     step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (4.0 * cut * dt)))
     cut = min(cut, 0.4 / (dt * step))
     position = lowpass(q, dt, cut)
@@ -142,10 +170,10 @@ def _prepare(
         speed[:, use_speed] = lowpass(dq, dt, cut)[:, use_speed]
         acceleration[:, use_speed] = derivative(dq, dt, cut, 1)[:, use_speed]
     smooth = lowpass(load, dt, cut)
-    raw = lowpass(load, dt, 0.4 / (dt * step)) if step > 1 else load
+    thinned = lowpass(load, dt, 0.4 / (dt * step)) if step > 1 else load
     pick = slice(None, None, step)
     t, position, speed, acceleration, smooth = t[pick], position[pick], speed[pick], acceleration[pick], smooth[pick]
-    raw = raw[pick]
+    thinned = thinned[pick]
     dt = dt * step
     rigid = model.load(position, speed, acceleration)
     # the motion was smoothed before the model saw it, the load was smoothed once: one more filter for both
@@ -170,7 +198,7 @@ def _prepare(
         rigid=rigid,
         measured=smooth,
         residual=residual,
-        raw=raw,
+        raw=thinned,
         slow=slow,
         trim=trim,
     )

@@ -41,77 +41,168 @@ class Outcome:
     guess: str
 
 
-OTHERWISE = 0.2  # part of what is left on held-out logs that other numbers for the same effects have to remove
-SURE = 0.01  # level of the test on leftovers, all channels together
+REFIT_GAIN = 0.2  # part of what is left on held-out logs that other numbers for the same effects have to remove
+SIGNIFICANT = 0.01  # level of the test on leftovers, all channels together
 
 
 def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: tuple[str, ...], unit: str) -> Outcome:
-    """Look at what the named effects leave and decide."""
-    blocks = list(named.blocks)
-    left = [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
-    channels = left[0].shape[1]
+    """Look at what the named effects leave and decide.
+
+    Args:
+        named: the effects the search chose, with their values.
+        logs: the logs they were fitted to.
+        heldout: logs nothing was fitted to.
+        joints: names, one per channel.
+        unit: of the load.
+    """
+    left = _unexplained(named, logs)
     broad = [log.wide() for log in logs]
-    wide = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad]
+    wide = _unexplained(named, broad)
+    found = _contact_bursts(logs, broad, wide)
+    calm, calm_wide = _without(logs, left, found), _without(logs, wide, found)
+    remainders = tuple(leftover(logs, calm, calm_wide, c) for c in range(left[0].shape[1]))
+    total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
+    rest = np.mean(np.concatenate(calm) ** 2, axis=0)
+    floor2 = _squared_floor(named, remainders, rest)
+    missing = _Missing(remainders=remainders, weight=1.0 / floor2, explained=np.maximum(total - rest, 0.0))
+    strange = bool(named.blocks) and _strange(named, heldout, left) > REMAINDER
+    unknown = (bool(missing.energy.any()) and missing.share > REMAINDER) or strange
+    text = ""
+    if strange:
+        text = "the effects that explain the fitted recordings do not hold on the held-out ones"
+    elif unknown:
+        text = guess(logs, calm, missing.worst)
+    return Outcome(
+        verdict=_verdict(named, found, unknown),
+        p_value=min(missing.p_value, 1.0),
+        floor=np.sqrt(floor2),
+        left=left,
+        bursts=(*found, *_bursts_in_held_out(named, heldout, found)),
+        contacts=_contacts(found, joints, unit),
+        remainders=remainders,
+        guess=text,
+    )
+
+
+def _unexplained(named: Named, logs: list[JointLog]) -> list[np.ndarray]:
+    """Residual the named effects leave, (T_inner, C) per log."""
+    blocks = list(named.blocks)
+    return [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
+
+
+def _verdict(named: Named, found: list[Burst], unknown: bool) -> VerdictName:
+    if unknown:
+        return "unknown"
+    if any(not b.recalibration for b in named.blocks) or found:
+        return "effects"
+    return "recalibration" if named.blocks else "adequate"
+
+
+def _bursts_of_channel(broad: list[JointLog], wide: list[np.ndarray], channel: int) -> list[Burst]:
+    """Bursts of one channel; they carry the names of the logs before `JointLog.wide`."""
+    return [replace(b, episode=b.episode.rstrip("~")) for b in bursts(broad, wide, channel)]
+
+
+def _contact_bursts(logs: list[JointLog], broad: list[JointLog], wide: list[np.ndarray]) -> list[Burst]:
+    """Bursts of the channels in which they hold a material part of what is left.
+
+    A short contact is broader in frequency than the motion, so bursts are looked for without the shared filter.
+
+    Args:
+        logs: the logs the effects were fitted to.
+        broad: the same logs without the shared filter.
+        wide: (T_inner, C) per log, what the effects leave of `broad`.
+    """
     found: list[Burst] = []
-    for c in range(channels):
-        # a short contact is broader in frequency than the motion, so bursts are looked for without the shared filter
-        mine = [replace(b, episode=b.episode.rstrip("~")) for b in bursts(broad, wide, c)]
+    for c in range(wide[0].shape[1]):
+        mine = _bursts_of_channel(broad, wide, c)
         total = np.mean(np.concatenate([w.residual[w.inner][:, c] for w in broad]) ** 2)
         rest = np.mean(np.concatenate([x[:, c] for x in wide]) ** 2)
         share = burst_share(logs, wide, c, mine) if mine else 0.0
         # next to a large effect, a burst may be no more than that effect's own form being a little wrong
         if share > BURST_SHARE and share * rest > REMAINDER * (total - rest + share * rest):
             found += mine
-    kept = [log.wide() for log in heldout]
-    spare = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in kept]
-    seen = list(found)  # the same channels in the held-out logs, to say where; nothing is fitted to them
-    for c in sorted({b.channel for b in found}):
-        seen += [replace(b, episode=b.episode.rstrip("~")) for b in bursts(kept, spare, c)]
-    calm = _without(logs, left, found)
-    wide = _without(logs, wide, found)
-    remainders = tuple(leftover(logs, calm, wide, c) for c in range(channels))
-    total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
-    rest = np.mean(np.concatenate(calm) ** 2, axis=0)
+    return found
+
+
+def _bursts_in_held_out(named: Named, heldout: list[JointLog], found: list[Burst]) -> list[Burst]:
+    """Bursts of the same channels in the held-out logs, to say where; nothing is fitted to them."""
+    channels = sorted({b.channel for b in found})
+    if not channels:
+        return []
+    broad = [log.wide() for log in heldout]
+    wide = _unexplained(named, broad)
+    return [b for c in channels for b in _bursts_of_channel(broad, wide, c)]
+
+
+def _squared_floor(named: Named, remainders: tuple[Remainder, ...], rest: np.ndarray) -> np.ndarray:
+    """(C,) squared noise floor: what no prediction removes, or what repeats say.
+
+    Args:
+        named: the effects and the noise they were found in.
+        remainders: per channel.
+        rest: (C,) mean square left without the bursts.
+    """
     floor2 = np.array(
         [
-            max(rest[c] - (r.energy if r.p_value < SURE / channels and r.kind != "time wave" else 0.0), 0.05 * rest[c])
+            max(
+                rest[c] - (r.energy if r.p_value < SIGNIFICANT / len(rest) and r.kind != "time wave" else 0.0),
+                0.05 * rest[c],
+            )
             for c, r in enumerate(remainders)
         ]
     )
     if named.noise.source == "repeats":
-        floor2 = np.minimum(named.noise.rms**2, np.maximum(rest, 1e-30))
-    weight = 1.0 / floor2
-    energy = np.array(
-        [
-            r.energy if r.p_value < SURE / channels and r.energy > REMAINDER_SIZE * (r.base - r.energy) else 0.0
-            for r in remainders
-        ]
-    )
-    explained_energy = np.maximum(total - rest, 0.0)
-    share = float(weight @ energy / (weight @ (energy + explained_energy) + 1e-30))
-    p = float(min([r.p_value * channels for r, e in zip(remainders, energy, strict=True) if e > 0], default=1.0))
-    strange = bool(blocks) and _strange(named, heldout, left) > REMAINDER
-    unknown = (bool(energy.any()) and share > REMAINDER) or strange
-    effects = any(not b.recalibration for b in blocks) or bool(found)
-    verdict: VerdictName = "unknown" if unknown else "effects" if effects else "recalibration" if blocks else "adequate"
-    text = ""
-    if strange:
-        text = "the effects that explain the fitted recordings do not hold on the held-out ones"
-    elif unknown:
-        worst = max(
-            (r for r, e in zip(remainders, energy, strict=True) if e > 0), key=lambda r: weight[r.channel] * r.energy
+        return np.minimum(named.noise.rms**2, np.maximum(rest, 1e-30))
+    return floor2
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Missing:
+    """What significant remainders say about effects that were not named.
+
+    Attributes:
+        remainders: per channel.
+        weight: (C,) one over the squared noise floor.
+        explained: (C,) mean square the named effects and the bursts explain.
+    """
+
+    remainders: tuple[Remainder, ...]
+    weight: np.ndarray
+    explained: np.ndarray
+
+    @property
+    def energy(self) -> np.ndarray:
+        """(C,) mean square that can be predicted, 0 where that may be chance or is small."""
+        channels = len(self.remainders)
+        return np.array(
+            [
+                r.energy
+                if r.p_value < SIGNIFICANT / channels and r.energy > REMAINDER_SIZE * (r.base - r.energy)
+                else 0.0
+                for r in self.remainders
+            ]
         )
-        text = guess(logs, calm, worst)
-    return Outcome(
-        verdict=verdict,
-        p_value=min(p, 1.0),
-        floor=np.sqrt(floor2),
-        left=left,
-        bursts=tuple(seen),
-        contacts=_contacts(found, joints, unit),
-        remainders=remainders,
-        guess=text,
-    )
+
+    @property
+    def share(self) -> float:
+        """Part of everything that can be explained."""
+        energy = self.energy
+        return float(self.weight @ energy / (self.weight @ (energy + self.explained) + 1e-30))
+
+    @property
+    def _counted(self) -> list[Remainder]:
+        return [r for r, e in zip(self.remainders, self.energy, strict=True) if e > 0]
+
+    @property
+    def p_value(self) -> float:
+        """Of the most significant one, all channels together; 1 where there is none."""
+        return float(min([r.p_value * len(self.remainders) for r in self._counted], default=1.0))
+
+    @property
+    def worst(self) -> Remainder:
+        """The largest against its noise."""
+        return max(self._counted, key=lambda r: self.weight[r.channel] * r.energy)
 
 
 def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) -> float:
@@ -127,7 +218,7 @@ def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) ->
     """
     blocks = list(named.blocks)
     before = [log.residual[log.inner] for log in heldout]
-    after = [y - explained(blocks, named.theta, log) for y, log in zip(before, heldout, strict=True)]
+    after = _unexplained(named, heldout)
     given = np.mean(np.concatenate(before) ** 2, axis=0)
     left = np.mean(np.concatenate(after) ** 2, axis=0)
     rest = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)
@@ -135,15 +226,15 @@ def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) ->
     if not len(loud):
         return 0.0
     broad = [log.wide() for log in heldout]
-    wide = [w.residual[w.inner] - explained(blocks, named.theta, w) for w in broad]
+    wide = _unexplained(named, broad)
     again = np.mean(np.concatenate(_refitted(blocks, heldout, after, rest)) ** 2, axis=0)
     excess = np.zeros(len(rest))
     for c in loud:
-        if again[c] < (1.0 - OTHERWISE) * left[c]:
+        if again[c] < (1.0 - REFIT_GAIN) * left[c]:
             excess[c] = left[c] - rest[c]
             continue
         found = leftover(heldout, after, wide, int(c))
-        if found.p_value < SURE / len(rest):
+        if found.p_value < SIGNIFICANT / len(rest):
             excess[c] = min(found.energy, left[c] - rest[c])
     weight = 1.0 / (rest + 1e-30)
     return float(weight @ excess / (weight @ (excess + np.maximum(given - left, 0.0)) + 1e-30))

@@ -32,46 +32,65 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
 def fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:
     """One block with its shape fitted, the linear parameters of all projected out."""
     channel = block.channels[0]
-    effect = JOINT_EFFECTS[block.name]
-    mine = [b for b in others if channel in b.channels]
-    base = [
-        np.column_stack(
-            [log.residual[log.inner, channel], *(b.build(log)[:, b.channels.index(channel), :] for b in mine)]
-        )
-        for log in logs
-    ]
-    table = np.concatenate(base)
-    y, X = table[:, 0], table[:, 1:]
-    q = np.linalg.qr(X)[0] if X.shape[1] else np.zeros((len(y), 0))
-    y = y - q @ (q.T @ y)
     free = [p.name for p in block.shape_parameters if p.name != "side"]
     start = np.array([block.shape[name] for name in free])
     span = float(max(np.ptp(log.q[:, channel]) for log in logs))
     unit = np.array([span if name == "threshold" else max(abs(block.shape[name]), 1e-9) for name in free])
+    problem = _ShapeProblem(block, others, logs)
+
+    def shape_of(x: np.ndarray) -> dict[str, float]:
+        return {**block.shape, **dict(zip(free, (float(v) for v in x * unit), strict=True))}
 
     def rss(x: np.ndarray) -> float:
-        shape = {**block.shape, **dict(zip(free, (float(v) for v in x * unit), strict=True))}
-        if any(p.lower > shape[p.name] or p.upper < shape[p.name] for p in block.shape_parameters):
-            return float(y @ y)
-        Z = np.concatenate([log.shared(effect.columns(log.motion(channel), shape)) for log in logs])
-        Z = Z - q @ (q.T @ Z)
-        theta = np.linalg.lstsq(Z, y, rcond=1e-8)[0]
-        if any(not p.lower <= v <= p.upper for p, v in zip(effect.linear, theta, strict=True)):
-            theta = np.array([np.clip(v, p.lower, p.upper) for p, v in zip(effect.linear, theta, strict=True)])
-        left = y - Z @ theta
-        return float(left @ left)
+        return problem.rss(shape_of(x))
 
-    simplex = np.stack(
-        [start / unit]
-        + [start / unit + (0.12 if free[k] == "threshold" else 0.4) * np.eye(len(free))[k] for k in range(len(free))]
-    )
+    first = rss(start / unit)
+    steps = np.array([0.12 if name == "threshold" else 0.4 for name in free])
     best = minimize(
         rss,
         start / unit,
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-4 * rss(start / unit), "maxfev": 60},
+        options={
+            "initial_simplex": np.vstack([start / unit, start / unit + np.diag(steps)]),
+            "xatol": 1e-3,
+            "fatol": 1e-4 * first,
+            "maxfev": 60,
+        },
     )
-    if best.fun >= rss(start / unit):
+    if best.fun >= first:
         return block
-    shape = {**block.shape, **dict(zip(free, (float(v) for v in best.x * unit), strict=True))}
-    return joint_block(effect, model, channel, shape, block.trials)
+    return joint_block(JOINT_EFFECTS[block.name], model, channel, shape_of(best.x), block.trials)
+
+
+class _ShapeProblem:
+    """Squares a block leaves of one channel's residual as a function of its shape."""
+
+    def __init__(self, block: Block, others: list[Block], logs: list[JointLog]) -> None:
+        self._block, self._logs, self._effect = block, logs, JOINT_EFFECTS[block.name]
+        self._channel = channel = block.channels[0]
+        beside = [b for b in others if channel in b.channels]
+        table = np.concatenate(
+            [
+                np.column_stack(
+                    [log.residual[log.inner, channel], *(b.build(log)[:, b.channels.index(channel), :] for b in beside)]
+                )
+                for log in logs
+            ]
+        )
+        y, X = table[:, 0], table[:, 1:]
+        self._others = np.linalg.qr(X)[0] if X.shape[1] else np.zeros((len(y), 0))
+        self._y = y - self._others @ (self._others.T @ y)
+
+    def rss(self, shape: dict[str, float]) -> float:
+        """Sum of squares left with the best linear parameters within their bounds."""
+        y = self._y
+        if any(p.lower > shape[p.name] or p.upper < shape[p.name] for p in self._block.shape_parameters):
+            return float(y @ y)
+        Z = np.concatenate([log.shared(self._effect.columns(log.motion(self._channel), shape)) for log in self._logs])
+        Z = Z - self._others @ (self._others.T @ Z)
+        theta = np.linalg.lstsq(Z, y, rcond=1e-8)[0]
+        linear = self._effect.linear
+        if any(not p.lower <= v <= p.upper for p, v in zip(linear, theta, strict=True)):
+            theta = np.array([np.clip(v, p.lower, p.upper) for p, v in zip(linear, theta, strict=True)])
+        left = y - Z @ theta
+        return float(left @ left)

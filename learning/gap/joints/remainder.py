@@ -59,10 +59,42 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         channel: which joint.
     """
     y = np.concatenate([x[:, channel] for x in left])
+    loud = np.concatenate([x[:, channel] for x in wide])
     edges = fold_edges(logs, FOLDS)
     fold = np.concatenate([np.concatenate([np.full(b - a, f) for f, a, b in parts]) for parts in edges])
-    scale = scales(logs)
     kinds = {
+        **_state_kinds(logs, channel),
+        "position wave": _position_wave(logs, y, channel),
+        "time wave": _time_wave(logs, wide, channel),
+    }
+    results = []
+    for kind, (X, detail) in kinds.items():
+        within = kind in ("time wave", "drift")
+        target = loud if kind == "time wave" else y
+        gain, p = _predict(X, target, _interleaved(fold, edges) if within else fold, within)
+        if kind == "drift":
+            gain, p = _wald(X, y, [len(x) for x in left])
+        results.append(
+            Remainder(
+                channel=channel,
+                energy=max(gain, 0.0),
+                base=float(np.mean(target**2)),
+                p_value=min(1.0, len(kinds) * TRIED.get(kind, 1) * p),
+                kind=kind,
+                detail=detail,
+            )
+        )
+    significant = [r for r in results if r.p_value < 0.01] or results
+    return max(significant, key=lambda r: r.energy / max(r.base, 1e-30))
+
+
+Kind = tuple[np.ndarray, str]  # (T_inner over all logs, p) features, and the form for the reader
+
+
+def _state_kinds(logs: list[JointLog], channel: int) -> dict[str, Kind]:
+    """Features that need no period to be found first."""
+    scale = scales(logs)
+    return {
         "state": (np.concatenate([generic_columns(log, channel, scale) for log in logs]), "a function of the state"),
         "place": (
             np.concatenate([place_columns(log, channel, scale) for log in logs]),
@@ -74,42 +106,26 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
             "slow in time, alone or with the state",
         ),
     }
+
+
+def _position_wave(logs: list[JointLog], y: np.ndarray, channel: int) -> Kind:
+    """Waves in position, as cogging makes them, with the loudest period of `y` (T_inner over all logs,)."""
     q = np.concatenate([log.q[log.inner, channel] for log in logs])
     reach = max(float(np.ptp(q)), 1e-9)
     k = _loudest([(y, q)], 2.0 * np.pi / reach, 2.0 * WAVES * np.pi / reach)
-    kinds["position wave"] = (_waves(q, k), f"period {2 * np.pi / k:.4g} in position")
+    return _waves(q, k), f"period {2 * np.pi / k:.4g} in position"
+
+
+def _time_wave(logs: list[JointLog], wide: list[np.ndarray], channel: int) -> Kind:
+    """Waves in time with the loudest period of `wide`, with a phase of their own in each episode."""
     clock = np.concatenate([log.t[log.inner] for log in logs])
     span = max(float(log.t[-1] - log.t[0]) for log in logs)
-    loud = np.concatenate([x[:, channel] for x in wide])
     top = 2 * np.pi * 0.4 / max(log.dt for log in logs)
     f = _loudest([(x[:, channel], log.t[log.inner]) for x, log in zip(wide, logs, strict=True)], 4 * np.pi / span, top)
-    phases = [
-        np.where(
-            np.concatenate([np.full(len(log.t[log.inner]), i == j) for j, log in enumerate(logs)])[:, None],
-            _waves(clock, f),
-            0.0,
-        )
-        for i in range(len(logs))
-    ]  # its own phase in each episode
-    kinds["time wave"] = (np.concatenate(phases, axis=1), f"period {2 * np.pi / f:.4g} s")
-    results = []
-    for kind, (X, detail) in kinds.items():
-        within = kind in ("time wave", "drift")
-        gain, p = _predict(X, loud if kind == "time wave" else y, _interleaved(fold, edges) if within else fold, within)
-        if kind == "drift":
-            gain, p = _wald(X, y, [len(x) for x in left])
-        results.append(
-            Remainder(
-                channel=channel,
-                energy=max(gain, 0.0),
-                base=float(np.mean((loud if kind == "time wave" else y) ** 2)),
-                p_value=min(1.0, len(kinds) * TRIED.get(kind, 1) * p),
-                kind=kind,
-                detail=detail,
-            )
-        )
-    sure = [r for r in results if r.p_value < 0.01] or results
-    return max(sure, key=lambda r: r.energy / max(r.base, 1e-30))
+    episode = np.repeat(np.arange(len(logs)), [len(log.t[log.inner]) for log in logs])
+    waves = _waves(clock, f)
+    phases = [np.where((episode == i)[:, None], waves, 0.0) for i in range(len(logs))]
+    return np.concatenate(phases, axis=1), f"period {2 * np.pi / f:.4g} s"
 
 
 def _wald(X: np.ndarray, y: np.ndarray, lengths: list[int]) -> tuple[float, float]:

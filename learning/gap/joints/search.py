@@ -8,7 +8,8 @@ folds it was not fitted to.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -40,12 +41,10 @@ class Search:
     def __post_init__(self) -> None:
         self.blocks: list[Block] = self.gram.blocks
         self.weight = 1.0 / self.noise.rms**2  # (C,)
-        self.Gc, self.bc = self.gram.G.sum(axis=0), self.gram.b.sum(axis=0)
-        self.yyc, self.rows = self.gram.yy.sum(axis=0), self.gram.rows.sum(axis=0)
+        self.Gc, self.rows = self.gram.G.sum(axis=0), self.gram.rows.sum(axis=0)
         self.G = np.einsum("c,cij->ij", self.weight, self.Gc)
-        self.b = self.weight @ self.bc
         self.fold_G = np.einsum("c,fcij->fij", self.weight, self.gram.G)
-        self.fold_b = np.einsum("c,fci->fi", self.weight, self.gram.b)
+        self._take_residual()
         single = [i for i, b in enumerate(self.blocks) if len(b.parameters) == 1 and len(b.channels) == 1]
         self._single = np.array(single, dtype=int)
         self._others = [i for i in range(len(self.blocks)) if i not in set(single)]
@@ -69,6 +68,24 @@ class Search:
         for i, b in enumerate(self.blocks):  # unequal levels are a level and an offset: same price, so the data decides
             if b.name == "asymmetric_friction":
                 self.price[i] = simple.get(("coulomb_friction", b.target), 0.0) + simple.get(("offset", b.target), 0.0)
+
+    def _take_residual(self) -> None:
+        """Everything that depends on the residual; the rest depends on the blocks and the noise alone."""
+        self.bc, self.yyc = self.gram.b.sum(axis=0), self.gram.yy.sum(axis=0)
+        self.b = self.weight @ self.bc
+        self.fold_b = np.einsum("c,fci->fi", self.weight, self.gram.b)
+
+    def with_residual(self, b: np.ndarray, yy: np.ndarray) -> Search:
+        """The same search, with the same prices, on another residual of the same logs.
+
+        Args:
+            b: (F, C, K) products of the columns with the residual, per fold and channel.
+            yy: (F, C) its squares.
+        """
+        other = copy(self)
+        other.gram = replace(self.gram, b=b, yy=yy)
+        other._take_residual()
+        return other
 
     def _widening(self, i: int) -> float:
         span, block = self.gram.spans[i], self.blocks[i]
