@@ -105,6 +105,28 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
     return light, facing
 
 
+@njit(inline="always")  # a call for every face would cost
+def _clip_near(points, uv, light, faces, f, shade, near, corner):
+    """Clip face `f` against the near plane into `corner`; returns how many corners it has then: 0, 3 or 4."""
+    count = 0
+    for k in range(3):
+        i, j = faces[f, k], faces[f, (k + 1) % 3]
+        zi, zj = points[i, 2], points[j, 2]
+        if zi > near:
+            corner[count, 0], corner[count, 1], corner[count, 2] = points[i, 0], points[i, 1], zi
+            corner[count, 3], corner[count, 4], corner[count, 5] = uv[i, 0], uv[i, 1], light[i, shade]
+            count += 1
+        if (zi > near) != (zj > near):
+            s = (near - zi) / (zj - zi)
+            for d in range(3):
+                corner[count, d] = points[i, d] + s * (points[j, d] - points[i, d])
+            corner[count, 3] = uv[i, 0] + s * (uv[j, 0] - uv[i, 0])
+            corner[count, 4] = uv[i, 1] + s * (uv[j, 1] - uv[i, 1])
+            corner[count, 5] = light[i, shade] + s * (light[j, shade] - light[i, shade])
+            count += 1
+    return count
+
+
 @njit()
 def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pitch, rgb, depth, owner, cosine):
     """Fill the buffers; `points` are in the optical frame."""
@@ -112,12 +134,6 @@ def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, n
     corner = np.empty((4, 6))  # x, y, z, u, v, light of the clipped polygon
     pixel = np.empty((4, 2))
     for f in range(faces.shape[0]):
-        in_front = 0
-        for k in range(3):
-            if points[faces[f, k], 2] > near:
-                in_front += 1
-        if in_front == 0:
-            continue
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
         vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
@@ -127,22 +143,7 @@ def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, n
         shade = 0 if outside else 1
         norm = np.sqrt(nx * nx + ny * ny + nz * nz)
         distance = abs(towards) / (norm + 1e-15)  # from the camera to the plane of the face
-        count = 0
-        for k in range(3):  # clip against the near plane: 3 or 4 corners remain
-            i, j = faces[f, k], faces[f, (k + 1) % 3]
-            zi, zj = points[i, 2], points[j, 2]
-            if zi > near:
-                corner[count, 0], corner[count, 1], corner[count, 2] = points[i, 0], points[i, 1], zi
-                corner[count, 3], corner[count, 4], corner[count, 5] = uv[i, 0], uv[i, 1], light[i, shade]
-                count += 1
-            if (zi > near) != (zj > near):
-                s = (near - zi) / (zj - zi)
-                for d in range(3):
-                    corner[count, d] = points[i, d] + s * (points[j, d] - points[i, d])
-                corner[count, 3] = uv[i, 0] + s * (uv[j, 0] - uv[i, 0])
-                corner[count, 4] = uv[i, 1] + s * (uv[j, 1] - uv[i, 1])
-                corner[count, 5] = light[i, shade] + s * (light[j, shade] - light[i, shade])
-                count += 1
+        count = _clip_near(points, uv, light, faces, f, shade, near, corner)
         for k in range(count):
             pixel[k, 0] = fx * corner[k, 0] / corner[k, 2] + cx
             pixel[k, 1] = fy * corner[k, 1] / corner[k, 2] + cy

@@ -121,16 +121,52 @@ class GownMesh:
 
 def build_gown(spec: GownSpec) -> GownMesh:
     """Cut and sew a gown: pure geometry, no simulation."""
-    h = spec.spacing
     across = spec.front + 2 * (spec.hole[0] + spec.back)
-    xs = (np.arange(across + 1) - across / 2) * h
-    zs = -np.arange(spec.length + 1) * h
     holes = {
         "left": range(spec.back, spec.back + spec.hole[0]),
         "right": range(across - spec.back - spec.hole[0], across - spec.back),
     }
     rows = range(spec.strap, spec.strap + spec.hole[1])
-    panel = range(spec.back + spec.hole[0], across - spec.back - spec.hole[0])
+    panel = range(holes["left"].stop, holes["right"].start)
+    sewing = _Sewing([], [], [], [])
+    index = _cut_sheet(spec, across, holes, rows, panel, sewing)
+    loops: dict[str, np.ndarray] = {}
+    for side, columns in holes.items():
+        loop = _hole_loop(index, columns, rows)
+        around = _hole_loop(index, columns, rows, out=1)  # the panel's vertices one cell off the armhole
+        loops[f"armhole_{side}"] = np.array(loop)
+        loops[f"cuff_{side}"] = np.array(_sew_sleeve(spec, around, loop, sewing))
+    front = [n for (i, _), n in index.items() if panel.start <= i <= panel.stop]
+    collar = np.array([index[i, 0] for i in range(panel.start, panel.stop + 1)])
+    return GownMesh(
+        spec=spec,
+        vertices=np.array(sewing.vertices),
+        faces=np.array(sewing.faces),
+        labels=np.array(sewing.labels),
+        loops=loops,
+        collar=collar,
+        corners=(int(collar[0]), int(collar[-1])),
+        front=np.array(front),
+        stays=np.array(sewing.stays),
+    )
+
+
+@dataclass(frozen=True)
+class _Sewing:
+    """What has been sewn so far: vertices [m], faces with their labels, stays."""
+
+    vertices: list[np.ndarray]
+    faces: list[tuple[int, int, int]]
+    labels: list[int]
+    stays: list[tuple[int, int, int]]
+
+
+def _cut_sheet(
+    spec: GownSpec, across: int, holes: dict[str, range], rows: range, panel: range, sewing: _Sewing
+) -> dict[tuple[int, int], int]:
+    """Lay out the sheet with its armholes; returns (column, row) -> vertex id."""
+    xs = (np.arange(across + 1) - across / 2) * spec.spacing
+    zs = -np.arange(spec.length + 1) * spec.spacing
     cells = [
         (i, j)
         for j in range(spec.length)
@@ -139,50 +175,35 @@ def build_gown(spec: GownSpec) -> GownMesh:
     ]
     used = sorted({(i + a, j + b) for i, j in cells for a in (0, 1) for b in (0, 1)})
     index = {key: n for n, key in enumerate(used)}
-    vertices = [np.array((xs[i], 0.0, zs[j])) for i, j in used]
-    faces: list[tuple[int, int, int]] = []
-    labels: list[int] = []
+    sewing.vertices.extend(np.array((xs[i], 0.0, zs[j])) for i, j in used)
     for i, j in cells:
         a, b, c, d = index[i, j], index[i + 1, j], index[i, j + 1], index[i + 1, j + 1]
         # alternate the diagonal: a sheet with all diagonals one way shears more easily the other way
-        faces += [(a, b, c), (b, d, c)] if (i + j) % 2 else [(a, b, d), (a, d, c)]
-        labels += [COLLAR if j == 0 and i in panel else FABRIC] * 2
-    loops: dict[str, np.ndarray] = {}
-    stays: list[tuple[int, int, int]] = []
-    for side, columns in holes.items():
-        loop = _hole_loop(index, columns, rows)
-        loops[f"armhole_{side}"] = np.array(loop)
-        around = _hole_loop(index, columns, rows, out=1)  # the panel's vertices one cell off the armhole
-        rings = [around, loop]
-        for step in range(1, spec.sleeve + 1):
-            fresh = []
-            for k in loop:
-                fresh.append(len(vertices))
-                vertices.append(vertices[k] + (0.0, step * h, 0.0))
-            label = CUFF if step == spec.sleeve else ARMHOLE if step == 1 else FABRIC
-            ring = rings[-1]
-            for q in range(len(loop)):
-                a, b, c, d = ring[q], ring[(q + 1) % len(loop)], fresh[q], fresh[(q + 1) % len(loop)]
-                faces += [(a, b, d), (a, d, c)] if q % 2 else [(a, b, c), (b, d, c)]
-                labels += [label] * 2
-            rings.append(fresh)
-        loops[f"cuff_{side}"] = np.array(rings[-1])
-        for three in zip(rings, rings[1:], rings[2:], strict=False):
-            stays += zip(*three, strict=True)
-        stays += zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)  # the binding is a tape
-    front = [index[i, j] for i, j in used if panel.start <= i <= panel.stop]
-    collar = np.array([index[i, 0] for i in range(panel.start, panel.stop + 1)])
-    return GownMesh(
-        spec=spec,
-        vertices=np.array(vertices),
-        faces=np.array(faces),
-        labels=np.array(labels),
-        loops=loops,
-        collar=collar,
-        corners=(int(collar[0]), int(collar[-1])),
-        front=np.array(front),
-        stays=np.array(stays),
-    )
+        sewing.faces.extend([(a, b, c), (b, d, c)] if (i + j) % 2 else [(a, b, d), (a, d, c)])
+        sewing.labels.extend([COLLAR if j == 0 and i in panel else FABRIC] * 2)
+    return index
+
+
+def _sew_sleeve(spec: GownSpec, around: list[int], armhole: list[int], sewing: _Sewing) -> list[int]:
+    """Sew a tube to an armhole, and stays along it; returns the vertex ids of its cuff."""
+    rings = [around, armhole]
+    for step in range(1, spec.sleeve + 1):
+        ring, fresh = rings[-1], []
+        for k in armhole:
+            fresh.append(len(sewing.vertices))
+            sewing.vertices.append(sewing.vertices[k] + (0.0, step * spec.spacing, 0.0))
+        label = CUFF if step == spec.sleeve else ARMHOLE if step == 1 else FABRIC
+        for q in range(len(armhole)):
+            after = (q + 1) % len(armhole)
+            a, b, c, d = ring[q], ring[after], fresh[q], fresh[after]
+            sewing.faces.extend([(a, b, d), (a, d, c)] if q % 2 else [(a, b, c), (b, d, c)])
+            sewing.labels.extend([label] * 2)
+        rings.append(fresh)
+    for three in zip(rings, rings[1:], rings[2:], strict=False):
+        sewing.stays.extend(zip(*three, strict=True))
+    # the binding is a tape
+    sewing.stays.extend(zip(armhole[-1:] + armhole[:-1], armhole, armhole[1:] + armhole[:1], strict=True))
+    return rings[-1]
 
 
 def _hole_loop(index: dict[tuple[int, int], int], columns: range, rows: range, out: int = 0) -> list[int]:
