@@ -10,7 +10,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from ..perception.image.cloud import unit
 from .belief.person_tracking import careful, watch_arm
-from .belief.strap_grasp import STRAP_GRASP, presenting_place
+from .belief.strap_grasp import STRAP_GRASP, presenting_position
 from .control.compliant_hold import while_holding
 from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_load
 from .core.ports import Input
@@ -146,7 +146,7 @@ class PresentSleeve(Skill):
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
         problem: MotionError | None = None
         for beyond in STRAP_GRASP.presenting_distances:
-            goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
+            goal = presenting(self.grip, path.direction(2.5), presenting_position(path, beyond))
             try:
                 motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
                 yield from until_load(self, self.grip.hand, taut, motion)

@@ -102,7 +102,7 @@ class WayIn:
     inside: np.ndarray
 
 
-def presenting_place(path: ArmPath, beyond: float) -> np.ndarray:
+def presenting_position(path: ArmPath, beyond: float) -> np.ndarray:
     """(3,) position in the map `beyond` [m] the fingertip, level with it, where the sleeve is held towards the hand."""
     return path.points[3] + beyond * unit(path.hand_direction * (1.0, 1.0, 0.0))
 
@@ -179,10 +179,11 @@ def _room_to_pull(
     """
     limits, room, lost = kinematics.limits[grip.hand], np.inf, 0
     stand, clearance = stance(grip.arm, "shoulder"), PullLaw().clearance
-    for place in (place for place in tuning.pull_coordinates if place < begin):
-        drift = np.clip((tuning.drift_from - place) / tuning.drift_length, 0.0, 1.0)
+    for coordinate in (one for one in tuning.pull_coordinates if one < begin):
+        drift = np.clip((tuning.drift_from - coordinate) / tuning.drift_length, 0.0, 1.0)
         there = base + drift * (stand - base) * (1.0, 1.0, 0.0)
-        pose = presenting(grip, path.direction(place), path.point(place) + clearance * path.frame(place)[:, 2])
+        position = path.point(coordinate) + clearance * path.frame(coordinate)[:, 2]
+        pose = presenting(grip, path.direction(coordinate), position)
         try:
             reached = solve_ik(kinematics, grip.hand, pose, there, q, seeds=1)
         except Unreachable:
@@ -208,7 +209,7 @@ def _presented(
     """Arm angles (7,) that present the sleeve as far out as can be reached."""
     tries = Tries(Unreachable)
     for beyond in tuning.presenting_distances:
-        pose = presenting(grip, path.hand_direction, presenting_place(path, beyond))
+        pose = presenting(grip, path.hand_direction, presenting_position(path, beyond))
         with tries:
             return solve_ik(kinematics, grip.hand, pose, base, q, seeds=tuning.seeds, accept=accept)
     raise tries.last

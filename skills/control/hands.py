@@ -32,7 +32,7 @@ from ..motion.reach import plan_arms, plan_hand_line, plan_reach
 from .follow import FOLLOW, follow, joint_values
 
 Way = Literal["line", "any", "either"]
-Speed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one by the hand's place (3,)
+Speed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one by the hand's position (3,) in the map
 
 
 @dataclass(frozen=True, kw_only=True)
