@@ -11,15 +11,15 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Frame, Side
 from .belief.person_tracking import careful
-from .belief.sleeve_search import SeenWell
+from .belief.sleeve_search import SleeveMemory
 from .control.base import drive_to
-from .control.hands import hand_now, look_towards, move_hands, open_gripper, until_taut
+from .control.hands import hand_now, look_towards, move_hands, open_gripper, until_load
 from .control.pinch import back_off, pinch, reach_in
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .geometry.arm_path import UP
-from .geometry.stances import AHEAD, FACING, HEADWARD, LANE, LIFTING, outwards
+from .geometry.stances import HEADWARD, LIFTING, STANCES, outwards
 from .motion.errors import MotionError
 from .scripted.scripted_person import laid_strap
 from .scripted.scripted_senses import ScriptedSenses
@@ -59,7 +59,7 @@ class CarryAcross(Skill):
             return
         self.note(f"carries the {self.side} sleeve across")
         hand, place = LIFTING[self.side], seen.position_in_map
-        lane = np.array((-LANE * outwards(self.side)[0], place[1] + AHEAD, FACING))
+        lane = np.array((-STANCES.lane * outwards(self.side)[0], place[1] + STANCES.ahead, STANCES.heading))
         yield from drive_to(self, lane)
         yield from reach_in(self, hand, place, -UP, seen.closing_in_map, opening=_OPENING)
         try:
@@ -90,7 +90,7 @@ class CarryAcross(Skill):
 
     def _carry(self, hand: Side) -> Iterator[None]:
         """Up, across, down, as far as the sleeve goes; let go of it and rise."""
-        memory = self.context.memory.of(SeenWell, SeenWell)
+        memory = self.context.memory.of(SleeveMemory, SleeveMemory)
         memory.sleeves.pop(self.side, None)
         out, feetward, above = LAID
         for there in (
@@ -101,7 +101,7 @@ class CarryAcross(Skill):
             pose = hand_now(self, hand)
             pose[:3, 3] = there
             motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")
-            yield from until_taut(self, hand, TAUT, motion)
+            yield from until_load(self, hand, TAUT, motion)
         memory.last[self.side] = hand_now(self, hand)[:3, 3]
         yield from open_gripper(self, hand)
         with suppress(MotionError):  # it is open, and the next motion begins with a way out

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
-from .belief.person_tracking import VISIBLE, visible_share, watch_arm
+from .belief.person_tracking import PERSON_TRACKING, visible_share, watch_arm
 from .belief.sleeve_search import find_sleeve
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
@@ -34,7 +34,7 @@ class CheckLaidOut(Skill):
         posture = watch_arm(self, self.side)
         share = visible_share(self.world.look("head"), posture)
         self.note(f"{share:.0%} of the {self.side} arm show")
-        if share < VISIBLE:
+        if share < PERSON_TRACKING.min_visible:
             raise SkillFailure(Reason.ARM_COVERED, f"{share:.0%} of it show")
         try:
             sleeve = find_sleeve(self, self.side, posture.points_in_map)

@@ -12,7 +12,7 @@ from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import SIDES, Side
 from .belief.person_tracking import watch_arm
-from .belief.sleeve_search import TO_STRAP, find_sleeve, strap_views
+from .belief.sleeve_search import find_sleeve, strap_position, strap_views
 from .control.arm_grip import over_arm
 from .control.hands import collision_checker
 from .core.ports import Input, Output
@@ -73,7 +73,7 @@ class FindStand(Skill):
         lifts = [over_arm(posture, 1.0, lift=ABOVE), end]
         views = strap_views(sleeve, self.side, self.pulling, bed)
         approach = -np.cos(_TILT) * outwards(self.side) - np.sin(_TILT) * UP
-        strap = sleeve.position_in_map + TO_STRAP - _STRAP_ABOVE * approach
+        strap = strap_position(sleeve) - _STRAP_ABOVE * approach
         grasps = [hand_pose(strap, approach, turn * sleeve.closing_in_map) for turn in (1.0, -1.0)]
         for pose in lifts:
             q = self._posture(self.lifting, [pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))], base, arms)

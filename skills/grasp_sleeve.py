@@ -10,9 +10,9 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.world import Side
 from .belief.person_tracking import careful, watch_arm
-from .belief.sleeve_search import RESTS, look_for_sleeve, seen_well, strap_views
+from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
-from .control.compliant_hold import holding
+from .control.compliant_hold import while_holding
 from .control.hands import hand_now, move_hands, open_gripper
 from .control.pinch import back_off, pinch
 from .core.ports import Input, Output
@@ -52,7 +52,7 @@ class GraspSleeve(Skill):
 
     def steps(self) -> Iterator[None]:
         """Grasp, easing the hold of the arm on every tick."""
-        yield from holding(self, self.hold, self._grasp())
+        yield from while_holding(self, self.hold, self._grasp())
 
     def _grasp(self) -> Iterator[None]:
         """Look, reach in, pinch."""
@@ -108,7 +108,7 @@ class GraspSleeve(Skill):
             except MotionError as stop:
                 problem = problem or stop
                 continue
-            yield from self.wait(RESTS)
+            yield from self.wait(SLEEVE_SEARCH.settle_time)
             try:
                 return self.context.senses.sleeve_strap(
                     self.world.look(f"{self.hand}_hand"),

@@ -14,7 +14,7 @@ from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
-from .geometry.stances import AHEAD, FACING, LANE
+from .geometry.stances import STANCES
 from .motion.errors import MotionError
 
 BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
@@ -45,7 +45,7 @@ class LayGown(Skill):
         """Drive and lower in turn; then open, rise, drive back."""
         self.note("lays the gown on the person")
         self._apart, self._middle = self.width, CENTRE
-        yield from drive_to(self, np.array((LANE, BEGIN + AHEAD, FACING)), speed=0.4)
+        yield from drive_to(self, np.array((STANCES.lane, BEGIN + STANCES.ahead, STANCES.heading)), speed=0.4)
         for share in (0.25, 0.5, 0.75):  # over the bed in steps: the hands cross before the chest one behind the other
             try:
                 yield from self._hands_to(BEGIN, 1.28, share)
@@ -55,7 +55,9 @@ class LayGown(Skill):
         before = BEGIN
         for y, z in PATH:  # down first: what then touches is drawn after the neckline, and nothing gets ahead of it
             yield from self._hands_to(before, z)
-            yield from drive_to(self, np.array((LANE, y + AHEAD, FACING)), speed=DRIVE, straight=True)
+            yield from drive_to(
+                self, np.array((STANCES.lane, y + STANCES.ahead, STANCES.heading)), speed=DRIVE, straight=True
+            )
             before = y
         yield from self._hands_to(*PATH[-1])
         yield from self._centre()
@@ -66,7 +68,7 @@ class LayGown(Skill):
         for pose in up.values():
             pose[:3, 3] += (0.0, 0.06, 0.22)
         yield from move_hands(self, up, speed=0.3, free="any", retreat=True)
-        yield from drive_to(self, np.array((LANE, 1.6, FACING)), straight=True, retreat=True)
+        yield from drive_to(self, np.array((STANCES.lane, 1.6, STANCES.heading)), straight=True, retreat=True)
 
     def _centre(self) -> Iterator[None]:
         """Draw a gown that was taken askew, longer on the far side, towards the near side.

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from .belief.person_tracking import careful
-from .control.compliant_hold import holding
-from .control.hands import hand_now, move_hands, open_gripper, until_taut
+from .control.compliant_hold import while_holding
+from .control.hands import hand_now, move_hands, open_gripper, until_load
 from .control.pinch import back_off
 from .core.ports import Input
 from .core.reasons import Reason
@@ -40,7 +40,7 @@ class LaySleeve(Skill):
     def steps(self) -> Iterator[None]:
         """Out, down, open, back."""
         self.note(f"lays the {self.grip.arm} sleeve down again")
-        yield from holding(self, self.hold, self._lay())
+        yield from while_holding(self, self.hold, self._lay())
 
     def _lay(self) -> Iterator[None]:
         hand, out, bed = self.grip.hand, outwards(self.grip.arm), self.world.room.bed
@@ -50,7 +50,7 @@ class LaySleeve(Skill):
             pose = hand_now(self, hand)
             pose[:3, 3] = place
             motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")
-            yield from until_taut(self, hand, TAUT, motion)
+            yield from until_load(self, hand, TAUT, motion)
         yield from open_gripper(self, hand)
         try:
             yield from back_off(self, hand)

@@ -12,8 +12,8 @@ from ..perception.image.cloud import unit
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
-from .control.arm_grip import ARM_MIN, FORCE, lost_arm, over_arm, top_down_reachable
-from .control.hands import OPEN, close_gripper, hand_now, move_hands, open_gripper
+from .control.arm_grip import ARM_GRIP, lost_arm, over_arm, top_down_reachable
+from .control.hands import close_gripper, hand_now, move_hands, open_gripper
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -81,9 +81,9 @@ class LiftArm(Skill):
         grip = above.copy()
         grip[:3, 3] = place - DEEPER * UP
         yield from move_hands(self, {self.hand: grip}, speed=0.12)
-        gap = yield from close_gripper(self, self.hand, force=FORCE)
-        if gap < ARM_MIN:
-            yield from open_gripper(self, self.hand, OPEN)
+        gap = yield from close_gripper(self, self.hand, force=ARM_GRIP.force)
+        if gap < ARM_GRIP.min_gap:
+            yield from open_gripper(self, self.hand)
             yield from move_hands(self, {self.hand: above}, retreat=True)
             raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
         self.context.guard.declare_grip(self.hand, "arm")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ..perception.errors import PerceptionFailure
 from ..sim.world import Side
 from .belief.person_tracking import careful
-from .belief.sleeve_search import WELL, look_for_sleeve
+from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve
 from .control.hands import hand_now, move_hands
 from .core.ports import Input
 from .core.reasons import Reason
@@ -36,7 +36,7 @@ class LookForSleeve(Skill):
         except PerceptionFailure as hidden:
             self.note(f"does not see the {self.side} sleeve: {hidden}")
         else:
-            shows = "shows well" if seen.confidence > WELL else "shows badly"
+            shows = "shows well" if seen.confidence > SLEEVE_SEARCH.clear_confidence else "shows badly"
             self.note(f"the {self.side} sleeve {shows}, {seen.confidence:.2f}")
         try:
             yield from move_hands(self, {self.hand: start}, way="any", speed=careful(self, 0.5))

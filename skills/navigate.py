@@ -8,7 +8,7 @@ import numpy as np
 
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import JointTrajectory
-from .control.base import SPEED, drive_to
+from .control.base import BASE, drive_to
 from .control.follow import follow
 from .control.hands import collision_checker
 from .core.ports import Input
@@ -26,7 +26,7 @@ class Navigate(Skill):
     """
 
     goal = Input(str | np.ndarray)
-    speed = Input(float, default=SPEED)
+    speed = Input(float, default=BASE.speed)
     arms = Input(np.ndarray, default=None)
     hand_speed = Input(float, default=0.5)
     reasons = (Reason.PATH_BLOCKED, Reason.COMMAND_LOST, Reason.TIMEOUT, Reason.MOTION_BLOCKED)

@@ -14,7 +14,7 @@ from ..perception.image.cloud import unit
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, Side
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
-from .control.hold_up import RANGE, present
+from .control.hold_up import HOLD_UP, present
 from .control.pinch import back_off, grasp_poses, pinch, reach_in
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
@@ -120,7 +120,7 @@ class PreGraspManipulate(Skill):
     def _angle(self, pose: np.ndarray) -> float:
         """By how much a presented hand is turned at a pose (4, 4) in the map [rad]."""
         angle = np.arctan2(-pose[0, 1], pose[1, 1]) - self.world.observe().pose_base_in_map[2]
-        return float(np.clip((angle + np.pi) % (2 * np.pi) - np.pi, -RANGE, RANGE))
+        return float(np.clip((angle + np.pi) % (2 * np.pi) - np.pi, -HOLD_UP.max_turn, HOLD_UP.max_turn))
 
     def _towards(self, hand: Side, views: Views, chosen: PreGrasp) -> PreGrasp:
         """The same with the approach turned to where the hand reaches in between the fewest sheets.

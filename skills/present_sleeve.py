@@ -10,9 +10,9 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from ..perception.image.cloud import unit
 from .belief.person_tracking import careful, watch_arm
-from .belief.strap_grasp import BEYOND, presenting_place
-from .control.compliant_hold import holding
-from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_taut
+from .belief.strap_grasp import STRAP_GRASP, presenting_position
+from .control.compliant_hold import while_holding
+from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_load
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -64,11 +64,11 @@ class PresentSleeve(Skill):
         arm, hand = self.grip.arm, self.grip.hand
         self.note(f"brings the {arm} sleeve to the fingertips")
         self.context.guard.declare_grip(hand, "cloth")
-        yield from holding(self, self.hold, self._raise())
+        yield from while_holding(self, self.hold, self._raise())
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
-        yield from holding(self, self.hold, look_towards(self, path.point(LOOK)))
+        yield from while_holding(self, self.hold, look_towards(self, path.point(LOOK)))
         yield from self._bring(path, self.taut)
         if (folded := (yield from self._folded(path))) is not None and np.isfinite(self.taut):
             self.note(f"brings the {arm} sleeve from farther out")  # on its way back the cuff trails behind
@@ -96,8 +96,8 @@ class PresentSleeve(Skill):
     def _bring(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Out beyond the fingertips, then back before them."""
         hand = self.grip.hand
-        yield from holding(self, self.hold, self._carry_out(path, taut))
-        yield from holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
+        yield from while_holding(self, self.hold, self._carry_out(path, taut))
+        yield from while_holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
         if np.linalg.norm(cloth_load(self, hand)) < HELD:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
@@ -105,7 +105,7 @@ class PresentSleeve(Skill):
         start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
         goal = presenting(self.grip, path.direction(2.5), start)
         motion = move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either")
-        yield from holding(self, self.hold, until_taut(self, hand, CAUGHT, motion))
+        yield from while_holding(self, self.hold, until_load(self, hand, CAUGHT, motion))
         if (load := float(np.linalg.norm(cloth_load(self, hand)))) > CAUGHT:
             raise SkillFailure(Reason.SLEEVE_CAUGHT, f"the gown pulls with {load:.1f} N")
 
@@ -116,11 +116,11 @@ class PresentSleeve(Skill):
         """
         if not np.isfinite(self.opens):
             return None
-        yield from holding(self, self.hold, self.wait(0.3))
+        yield from while_holding(self, self.hold, self.wait(0.3))
         try:
             seen = self._heading()
         except PerceptionFailure:  # beside the picture, or truly hidden
-            yield from holding(self, self.hold, look_towards(self, hand_now(self, self.grip.hand)[:3, 3]))
+            yield from while_holding(self, self.hold, look_towards(self, hand_now(self, self.grip.hand)[:3, 3]))
             try:
                 seen = self._heading()
             except PerceptionFailure as hidden:
@@ -145,11 +145,11 @@ class PresentSleeve(Skill):
     def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
         problem: MotionError | None = None
-        for beyond in BEYOND:
-            goal = presenting(self.grip, path.direction(2.5), presenting_place(path, beyond))
+        for beyond in STRAP_GRASP.presenting_distances:
+            goal = presenting(self.grip, path.direction(2.5), presenting_position(path, beyond))
             try:
                 motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
-                yield from until_taut(self, self.grip.hand, taut, motion)
+                yield from until_load(self, self.grip.hand, taut, motion)
                 return
             except MotionError as stop:
                 problem = stop

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
-from .belief.armhole_watch import CENTRED, RingWatch
+from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_tracking import watch_arm
-from .control.compliant_hold import ease_hold, holding
+from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now, look_towards
 from .control.pull_law import PullLaw
 from .core.ports import Input
@@ -69,24 +69,24 @@ class PullAlongArm(Skill):
         self.note(f"pulls the {self.grip.arm} sleeve up")
         n = SIDES.index(self.grip.hand)
         arm = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
-        ahead = 0.5 * (arm.place_of(hand_now(self, self.grip.hand)[:3, 3]) + self.upto)
-        yield from holding(self, self.hold, look_towards(self, arm.point(ahead)))
+        ahead = 0.5 * (arm.coordinate_of(hand_now(self, self.grip.hand)[:3, 3]) + self.upto)
+        yield from while_holding(self, self.hold, look_towards(self, arm.point(ahead)))
         follower = None if self.stand is None else self._drift()
         window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
         place: float | None = None
         waits_until = -np.inf
-        ring, travelled, begun = RingWatch(self, self.grip.arm, self.grip.hand), 0.0, self.now()
+        ring, travelled, begun = ArmholeWatch(self, self.grip.arm, self.grip.hand), 0.0, self.now()
         while True:
             path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
             seen = self.world.observe()
             hand, load = seen.pose_hand_in_map[n], seen.wrench_hand_in_map[n, :3]
-            before, place = place, path.place_of(hand[:3, 3], place)
+            before, place = place, path.coordinate_of(hand[:3, 3], place)
             if before is not None:
                 travelled += np.sign(before - place) * path.distance(before, place)
             if place < _LAST and np.isfinite(self.seat):
-                ring.follow(path, hand[:3, 3])
-            if self._there(ring.place, place) or (place < _ON and np.linalg.norm(load) > self.taut):
-                if self.upto > 1.0 and ring.beside(path):
+                ring.locate(path, hand[:3, 3])
+            if self._there(ring.coordinate, place) or (place < _ON and np.linalg.norm(load) > self.taut):
+                if self.upto > 1.0 and ring.arm_is_beside(path):
                     raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} arm shows beside the cuff")
                 break
             window.append((seen.time, travelled, float(np.linalg.norm(load))))
@@ -105,12 +105,12 @@ class PullAlongArm(Skill):
                 yield
                 continue
             if place > _THROUGH:
-                ring.look(path, place, hand[:3, 3])
-            if before is not None and before > _SURE >= place and ring.missed(path):
+                ring.centre(path, place, hand[:3, 3])
+            if before is not None and before > _SURE >= place and ring.hand_is_bare(path):
                 raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
             ease_hold(self, self.hold)
-            linear = self.law.velocity(path, place, hand[:3, 3], ring.aside, SPEED, load)
-            if place > 3.0 and abs(ring.off) > CENTRED and seen.time < begun + _PATIENCE:
+            linear = self.law.velocity(path, place, hand[:3, 3], ring.offset, SPEED, load)
+            if place > 3.0 and abs(ring.error) > ARMHOLE_WATCH.tolerance and seen.time < begun + _PATIENCE:
                 along = path.direction(place)  # centre the armhole before the hand enters it
                 linear = linear - (1.0 if place < _BEFORE else 0.8) * (linear @ along) * along
                 window.clear()  # it waits on purpose

@@ -10,7 +10,7 @@ from ..sim.robot import model
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful
 from .control.arm_grip import lost_arm
-from .control.compliant_hold import FASTEST, giving_way
+from .control.compliant_hold import COMPLIANT_HOLD, compliant_velocity
 from .control.hands import move_arms, open_gripper
 from .core.ports import Input
 from .core.reasons import Reason
@@ -60,8 +60,8 @@ class ReleaseArm(Skill):
             if self.now() - begin > 1.0 and -seen.wrench_hand_in_map[n, 2] < _RESTS:
                 return
             # the arm turns about its shoulder, so that the way down is no straight line: give way to what pulls aside
-            give = giving_way(seen.wrench_hand_in_map[n, :3])
-            ease = float(np.clip(1.0 - np.linalg.norm(give) / FASTEST, 0.0, 1.0))
+            give = compliant_velocity(seen.wrench_hand_in_map[n, :3])
+            ease = float(np.clip(1.0 - np.linalg.norm(give) / COMPLIANT_HOLD.max_speed, 0.0, 1.0))
             linear = -_SPEED * ease * UP + give
             self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))), retreat=True)
             yield

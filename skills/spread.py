@@ -10,7 +10,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..perception.image.cloud import unit
 from ..sim.world import SIDES, HandTwist, Side
-from .belief.armhole_watch import RingWatch
+from .belief.armhole_watch import ArmholeWatch
 from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
 from .control.pinch import pinch, reach_in
@@ -92,15 +92,15 @@ class Spread(Skill):
 
     def _draw(self, path: ArmPath) -> Iterator[None]:
         """Pull on until the armhole is seen at the shoulder, far enough, or taut."""
-        n, law, ring = SIDES.index(self.hand), PullLaw(), RingWatch(self, self.side, self.hand)
+        n, law, ring = SIDES.index(self.hand), PullLaw(), ArmholeWatch(self, self.side, self.hand)
         way = unit(unit(-path.direction(0.0) * (1.0, 1.0, 0.0)) + HEADWARD)
         start = hand_now(self, self.hand)[:3, 3]
         end = self.now() + 2.0 * DRAW / SPEED
         while self.now() < end:
             here = self.world.observe().pose_hand_in_map[n, :3, 3]
             load = cloth_load(self, self.hand)
-            ring.follow(path, here)
-            seated = ring.place is not None and ring.place < SEATED
+            ring.locate(path, here)
+            seated = ring.coordinate is not None and ring.coordinate < SEATED
             if seated or (here - start) @ way > DRAW or np.linalg.norm(load) > TAUT:
                 return
             gone = float((here - start) @ way)

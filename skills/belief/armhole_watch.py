@@ -2,59 +2,100 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 from ..core.skill import Skill
 from ..geometry.arm_path import ArmPath
 from ..geometry.stances import outwards
 
-PERIOD = 0.2  # between two looks [s]
-# Where the armhole's outer edge belongs, outwards of the arm's axis [m].  The hoop is 0.17 m wide, and its inner
-# half hides behind the outer one, so that the middle of what is seen is not the middle.
-EDGE = 0.07
-CENTRED = 0.02  # how far off that lets the hand in [m]
-_FARTHEST = 0.14  # that the grip goes to the side for it [m]
-_STEP = 0.03  # by which the grip goes to the side after one look, at most [m]
-_HAND = np.linspace(2.3, 2.95, 10)  # places along the arm that must be under the sleeve
-_COVERED = 0.5  # share of them
-# With the grip half way up the forearm the cuff is somewhere between the wrist and beyond the fingertips.  In recorded
-# pulls it showed at least so far round these places with the hand inside, 0.25 where the sleeve had missed it.
-_CHAIN, ROUND = (1.2, 2.0, 3.0, 4.4), 0.4
-_STALE = 0.8  # an armhole that was not seen for so long may have moved on [s]
-_SOME = 25  # of the armhole's points are asked for their place
+
+@dataclass(frozen=True, kw_only=True)
+class ArmholeWatchTuning(Quantities):
+    """Numbers of watching an armhole."""
+
+    period: float = quantity(0.2, "s", "between two looks", "choice: one look serves three ticks")
+    edge_offset: float = quantity(
+        0.07,
+        "m",
+        "where the armhole's outer edge belongs, outwards of the arm's axis",
+        "choice: the hoop is 0.17 m wide; its inner half hides, so the middle of what is seen is not its middle",
+    )
+    edge_percentile: int = quantity(
+        97, "%", "of the armhole's points outwards that counts as its outer edge", "choice: leaves stray points out"
+    )
+    tolerance: float = quantity(0.02, "m", "error of the edge that lets the hand in", "choice: the hand has room")
+    max_offset: float = quantity(0.14, "m", "of the grip to the side of the arm", "choice: a little less than the hoop")
+    gain: float = quantity(0.5, "1", "share of the error that one look corrects", "choice: the cloth follows late")
+    max_step: float = quantity(0.03, "m", "of the grip's offset after one look", "choice: the cloth does not swing")
+    hand_from: float = quantity(
+        2.3, "1", "arm coordinate from which the hand must be under the sleeve", "choice: a third into the hand"
+    )
+    hand_to: float = quantity(2.95, "1", "arm coordinate up to which it must be", "choice: just short of the fingertip")
+    hand_points: int = quantity(10, "1", "points of the hand that are looked at", "choice: one every cm")
+    min_covered: float = quantity(0.5, "1", "share of them that the sleeve covers", "choice: the larger part")
+    cuff_coordinates: tuple[float, float, float, float] = quantity(
+        (1.2, 2.0, 3.0, 4.4),
+        "1",
+        "arm coordinates round which the cuff is looked for, with the grip half way up the forearm",
+        "choice: the cuff is then between the wrist and beyond the fingertips",
+    )
+    min_round: float = quantity(
+        0.4,
+        "1",
+        "share of the way round them that the cuff shows with the hand inside",
+        "measured: in recorded pulls at least this much with the hand inside, 0.25 where the sleeve had missed it",
+    )
+    memory: float = quantity(0.8, "s", "after which an armhole that is hidden may have moved on", "choice: four looks")
+    max_points: int = quantity(
+        25, "1", "points of the armhole whose arm coordinate is computed, about", "choice: bounds the time of computing"
+    )
 
 
-class RingWatch:
+ARMHOLE_WATCH = ArmholeWatchTuning()
+
+
+class ArmholeWatch:
     """What the head's and the pulling hand's cameras see of a held armhole.
 
+    Args:
+        skill: that pulls.
+        arm: the wearer's side of the sleeve.
+        hand: of the robot that holds it.
+        tuning: numbers of the watch.
+
     Attributes:
-        aside: how far to the side of the arm the grip should be, along the first axis of `ArmPath.frame` [m].
-        off: how far the armhole was from its place at the last look, 0 before it was seen [m].
-        place: where along the arm `follow` saw the armhole, the median over what shows of it; None when it is hidden.
+        offset: how far to the side of the arm the grip should be, along the first axis of `ArmPath.frame` [m].
+        error: how far the armhole's outer edge was from where it belongs at the last look, 0 before it was seen [m].
+        coordinate: arm coordinate at which `locate` saw the armhole, the median over what shows of it; None when it is
+            hidden.
     """
 
-    def __init__(self, skill: Skill, arm: Side, hand: Side) -> None:
+    def __init__(self, skill: Skill, arm: Side, hand: Side, *, tuning: ArmholeWatchTuning = ARMHOLE_WATCH) -> None:
         self._skill = skill
         self._arm: Side = arm
         self._hand: Side = hand
-        self.aside = self.off = 0.0
-        self.place: float | None = None
-        self._looked = self._placed = -np.inf
+        self._tuning = tuning
+        self.offset = self.error = 0.0
+        self.coordinate: float | None = None
+        self._looked = self._located = -np.inf
 
-    def look(self, path: ArmPath, place: float, grip_in_map: np.ndarray) -> None:
-        """Look, at most every `PERIOD`; shifts `aside` by part of what the armhole is off.
+    def centre(self, path: ArmPath, coordinate: float, grip_in_map: np.ndarray) -> None:
+        """Look, unless the last look is recent; shift `offset` by a part of the armhole's `error`.
 
         Args:
             path: of the arm now.
-            place: of the gripper along it.
+            coordinate: arm coordinate of the gripper.
             grip_in_map: (3,) fingertips that hold the strap [m].
         """
-        if self._skill.now() - self._looked < PERIOD:
+        if self._skill.now() - self._looked < self._tuning.period:
             return
         self._looked = self._skill.now()
-        across = path.frame(place)[:, 0]
+        across = path.frame(coordinate)[:, 0]
         side = float(np.sign(across @ outwards(self._arm)))
         edges = []
         for camera in ("head", f"{self._hand}_hand"):
@@ -64,16 +105,25 @@ class RingWatch:
                 )
             except PerceptionFailure:
                 continue
-            edges.append(np.percentile((ring.ring_points_in_map - path.point(place)) @ (side * across), 97))
+            outwards_of_axis = (ring.ring_points_in_map - path.point(coordinate)) @ (side * across)
+            edges.append(np.percentile(outwards_of_axis, self._tuning.edge_percentile))
         if not edges:
             return
-        self.off = EDGE - float(np.max(edges))
-        self.aside = float(np.clip(self.aside + side * np.clip(0.5 * self.off, -_STEP, _STEP), -_FARTHEST, _FARTHEST))
+        step, most = self._tuning.max_step, self._tuning.max_offset
+        self.error = self._tuning.edge_offset - float(np.max(edges))
+        self.offset = float(
+            np.clip(self.offset + side * np.clip(self._tuning.gain * self.error, -step, step), -most, most)
+        )
 
-    def follow(self, path: ArmPath, grip_in_map: np.ndarray) -> None:
-        """Look where along the arm the armhole is, at most every `PERIOD`; updates `place`."""
+    def locate(self, path: ArmPath, grip_in_map: np.ndarray) -> None:
+        """Look where along the arm the armhole is, unless the last look is recent; updates `coordinate`.
+
+        Args:
+            path: of the arm now.
+            grip_in_map: (3,) fingertips that hold the strap [m].
+        """
         now = self._skill.now()
-        if now - self._looked < PERIOD:
+        if now - self._looked < self._tuning.period:
             return
         self._looked = now
         try:
@@ -81,27 +131,37 @@ class RingWatch:
                 self._skill.world.look("head"), side=self._arm, near_in_map=grip_in_map
             )
         except PerceptionFailure:
-            if now - self._placed > _STALE:
-                self.place = None
+            if now - self._located > self._tuning.memory:
+                self.coordinate = None
             return
-        some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // _SOME)]
-        self.place, self._placed = float(np.median([path.place_of(point) for point in some])), now
+        some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // self._tuning.max_points)]
+        self.coordinate, self._located = float(np.median([path.coordinate_of(point) for point in some])), now
 
-    def missed(self, path: ArmPath) -> bool:
-        """Whether the pulling hand's camera, which looks down at the person's hand, sees it bare."""
-        points = np.array([path.point(float(place)) for place in _HAND])
+    def hand_is_bare(self, path: ArmPath) -> bool:
+        """Whether the pulling hand's camera sees the person's hand bare; False where it cannot tell.
+
+        Args:
+            path: of the arm now; the camera looks down at its hand.
+        """
+        tuning = self._tuning
+        hand = np.linspace(tuning.hand_from, tuning.hand_to, tuning.hand_points)
+        points = np.array([path.point(float(coordinate)) for coordinate in hand])
         camera = self._skill.world.look(f"{self._hand}_hand")
         try:
             cover = self._skill.context.senses.hand_cover(camera, points_in_map=points)
         except PerceptionFailure:
             return False
-        return cover.share < _COVERED
+        return cover.share < tuning.min_covered
 
-    def beside(self, path: ArmPath) -> bool:
-        """Whether the head's camera sees the cuff on one side of the arm only; False where it cannot tell."""
-        chain = np.array([path.point(place) for place in _CHAIN])
+    def arm_is_beside(self, path: ArmPath) -> bool:
+        """Whether the head's camera sees the cuff on one side of the arm only; False where it cannot tell.
+
+        Args:
+            path: of the arm now.
+        """
+        chain = np.array([path.point(coordinate) for coordinate in self._tuning.cuff_coordinates])
         try:
             cover = self._skill.context.senses.cuff_round(self._skill.world.look("head"), points_in_map=chain)
         except PerceptionFailure:
             return False
-        return cover.share < ROUND
+        return cover.share < self._tuning.min_round

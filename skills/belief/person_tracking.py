@@ -19,19 +19,56 @@ from ...perception.estimates import ArmPosture, Head
 from ...perception.image.projection import pixels_of
 from ...perception.image.surfaces import Surface, surfaces
 from ...perception.person.arm_fit import turned_about_shoulder
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, Frame, Side
 from ..core.skill import Skill
 from ..geometry.arm_path import ArmPath
 from ..geometry.hold import Hold
 
-PERIOD = 0.25  # between two looks [s]
-SEARCHING = 2.0  # between two searches for an arm that does not show where it was, 0.3 s of computing each [s]
-PATIENCE = 300.0  # an arm under the gown, which its owner cannot move, is taken to stay for this long [s]
-VISIBLE = 0.75  # share of the arm that has to be in view for a picture to count
-_BEHIND = 0.06  # a sample of the axis this far behind what is seen is hidden [m]
-NEAR_SPEED, _NEAR = 0.13, 0.34  # of a hand this near to the person; the guard's limits are 0.135 and 0.30 [m/s], [m]
-_ARM_RADIUS, _TRUNK_RADIUS, _HEAD_RADIUS = 0.05, 0.16, 0.11  # [m]
-_CROWN_TO_SHOULDER, _TRUNK, _LEGS = 0.31, 0.55, 0.85  # along the body [m]
+
+@dataclass(frozen=True, kw_only=True)
+class PersonTrackingTuning(Quantities):
+    """Numbers of tracking the person, and of what the guard is told."""
+
+    period: float = quantity(0.25, "s", "between two looks", "choice: a look costs about 20 ms of computing")
+    search_period: float = quantity(
+        2.0, "s", "between two searches for an arm that is not where it was", "choice: each costs 0.3 s of computing"
+    )
+    patience: float = quantity(
+        300.0,
+        "s",
+        "for which an arm that is hidden is taken to stay where it was",
+        "choice: under the gown its owner cannot move it",
+    )
+    min_visible: float = quantity(
+        0.75, "1", "share of the arm that has to be in view for a picture to count", "choice: a tracker follows cloth"
+    )
+    visible_from: float = quantity(
+        0.3, "1", "arm coordinate from which the arm has to be in view", "choice: the gown covers the shoulder"
+    )
+    visible_to: float = quantity(3.0, "1", "arm coordinate up to which it has to be", "choice: the fingertip")
+    visible_points: int = quantity(28, "1", "points of the arm's axis that are looked at", "choice: some cm apart")
+    hidden_behind: float = quantity(
+        0.06, "m", "behind what is seen, from which a point of the arm's axis is hidden", "choice: just over its radius"
+    )
+    near_speed: float = quantity(
+        0.13, "m/s", "of a hand near the person", "choice: just below the 0.135 m/s that the guard commands at most"
+    )
+    near_distance: float = quantity(
+        0.34, "m", "from the person's surface at which a hand is near", "choice: a little more than the guard's 0.30 m"
+    )
+    arm_radius: float = quantity(0.05, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
+    trunk_radius: float = quantity(0.16, "m", "of trunk and legs, as the guard is told", "choice: half their width")
+    head_radius: float = quantity(0.11, "m", "of the head, as the guard is told", "choice: an adult's, with hair")
+    crown_to_shoulders: float = quantity(0.31, "m", "along the body", "choice: an adult's")
+    trunk_length: float = quantity(0.55, "m", "from the shoulders to the hips", "choice: an adult's")
+    leg_length: float = quantity(0.85, "m", "from the hips to the feet", "choice: an adult's")
+    axis_above_bed: float = quantity(
+        0.11, "m", "of the body's axis above the mattress", "choice: half the depth of a trunk that lies on its back"
+    )
+
+
+PERSON_TRACKING = PersonTrackingTuning()
 
 
 @dataclass
@@ -59,7 +96,13 @@ def watch_of(skill: Skill) -> Watch:
 
 
 def watch_arm(
-    skill: Skill, side: Side, *, hold: Hold | None = None, period: float = PERIOD, patience: float = PATIENCE
+    skill: Skill,
+    side: Side,
+    *,
+    hold: Hold | None = None,
+    period: float = PERSON_TRACKING.period,
+    patience: float = PERSON_TRACKING.patience,
+    tuning: PersonTrackingTuning = PERSON_TRACKING,
 ) -> ArmPosture:
     """Posture of one arm, no older than `period` [s] when the arm can be seen.
 
@@ -69,6 +112,7 @@ def watch_arm(
         hold: the hand that holds this arm, if one does.
         period: between two looks; 0 looks at once [s].
         patience: how long an arm that cannot be seen counts as staying where it was [s].
+        tuning: when an arm counts as seen, and how often it is looked for elsewhere.
 
     Raises:
         PerceptionFailure: it was never found, or has been lost for longer than `patience`.
@@ -81,33 +125,40 @@ def watch_arm(
         frame = skill.world.look("head")
         if hold is not None and side in watch.arms:
             # looked for where it was, a moving arm has something in front of it, and is never found again
-            points = turned_about_shoulder(watch.arms[side].points_in_map, hold.place, _held_at(skill, hold))
+            points = turned_about_shoulder(watch.arms[side].points_in_map, hold.coordinate, _held_at(skill, hold))
             watch.arms[side] = replace(watch.arms[side], points_in_map=points)
         try:
-            if side not in watch.arms or visible_share(frame, watch.arms[side]) >= VISIBLE:
-                _take(skill, frame, side, hold)
-            elif hold is not None or now - watch.searched.get(side, -np.inf) < SEARCHING:
+            if side not in watch.arms or visible_share(frame, watch.arms[side], tuning=tuning) >= tuning.min_visible:
+                _take(skill, frame, side, hold, tuning)
+            elif hold is not None or now - watch.searched.get(side, -np.inf) < tuning.search_period:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
             else:
                 watch.searched[side] = now
-                _keep(skill, side, skill.context.senses.relocalised_arm(frame, side=side))
+                _keep(skill, side, skill.context.senses.relocalised_arm(frame, side=side), tuning)
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
 
 
-def visible_share(frame: Frame, posture: ArmPosture) -> float:
-    """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm."""
+def visible_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> float:
+    """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm.
+
+    Args:
+        frame: that may show the arm.
+        posture: where the arm is, or was.
+        tuning: where it is looked at, and when it is hidden.
+    """
     path = ArmPath.of(posture)
-    axis = np.array([path.point(float(place)) for place in np.linspace(0.3, 3.0, 28)])
+    coordinates = np.linspace(tuning.visible_from, tuning.visible_to, tuning.visible_points)
+    axis = np.array([path.point(float(coordinate)) for coordinate in coordinates])
     rows, columns, depth, inside = pixels_of(frame, axis)
     seen = frame.depth[rows, columns]
     skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN  # an arm in front of where it was is not hidden
-    return float((inside & (skin | (seen > depth - _BEHIND))).mean())
+    return float((inside & (skin | (seen > depth - tuning.hidden_behind))).mean())
 
 
-def see_person(skill: Skill) -> list[Side]:
+def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> list[Side]:
     """Look once and tell the guard of everything that is seen; returns the arms found.
 
     Raises:
@@ -119,47 +170,50 @@ def see_person(skill: Skill) -> list[Side]:
     watch_of(skill).looked = skill.now()
     for side in SIDES:
         try:
-            _take(skill, frame, side, None)
+            _take(skill, frame, side, None, tuning)
             found.append(side)
         except PerceptionFailure:
             continue
     try:
-        _tell_body(skill, skill.context.senses.head(frame))
+        _tell_body(skill, skill.context.senses.head(frame), tuning)
     except PerceptionFailure:
         if not found:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "person") from None
     return found
 
 
-def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None) -> None:
+def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, tuning: PersonTrackingTuning) -> None:
     """Update one arm from a frame and tell the guard."""
     if hold is None:
         posture = skill.context.senses.arm(frame, side=side)
     else:
         posture = skill.context.senses.arm(
-            frame, side=side, grip_in_map=_held_at(skill, hold), arm_coordinate=hold.place
+            frame, side=side, grip_in_map=_held_at(skill, hold), arm_coordinate=hold.coordinate
         )
-    _keep(skill, side, posture)
+    _keep(skill, side, posture, tuning)
 
 
-def _keep(skill: Skill, side: Side, posture: ArmPosture) -> None:
+def _keep(skill: Skill, side: Side, posture: ArmPosture, tuning: PersonTrackingTuning) -> None:
     """Remember one arm as it was seen now and tell the guard."""
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
-    _tell(skill, f"{side} arm", posture.points_in_map, _ARM_RADIUS)
+    _tell(skill, f"{side} arm", posture.points_in_map, tuning.arm_radius)
 
 
 def _held_at(skill: Skill, hold: Hold) -> np.ndarray:
     return skill.world.observe().pose_hand_in_map[SIDES.index(hold.hand), :3, 3]
 
 
-def _tell_body(skill: Skill, head: Head) -> None:
+def _tell_body(skill: Skill, head: Head, tuning: PersonTrackingTuning) -> None:
+    """Tell the guard of head and trunk, the legs with it, as far as they follow from the head."""
     crown, middle = head.crown_in_map, head.middle
-    level = skill.world.room.bed[1, 2] + 0.11
-    shoulders = crown[1] + _CROWN_TO_SHOULDER
-    trunk = np.array([(middle, shoulders + down, level) for down in (0.0, _TRUNK, _TRUNK + _LEGS)])
-    _tell(skill, "trunk", trunk, _TRUNK_RADIUS)
-    _tell(skill, "head", np.array((crown + (0.0, _HEAD_RADIUS, 0.0), (middle, shoulders, level))), _HEAD_RADIUS)
+    level = skill.world.room.bed[1, 2] + tuning.axis_above_bed
+    shoulders = crown[1] + tuning.crown_to_shoulders
+    along = (0.0, tuning.trunk_length, tuning.trunk_length + tuning.leg_length)
+    trunk = np.array([(middle, shoulders + down, level) for down in along])
+    _tell(skill, "trunk", trunk, tuning.trunk_radius)
+    radius = tuning.head_radius
+    _tell(skill, "head", np.array((crown + (0.0, radius, 0.0), (middle, shoulders, level))), radius)
 
 
 def _tell(skill: Skill, part: str, points: np.ndarray, radius: float) -> None:
@@ -167,22 +221,24 @@ def _tell(skill: Skill, part: str, points: np.ndarray, radius: float) -> None:
     watch_of(skill).parts[part] = points, radius
 
 
-def careful(skill: Skill, fast: float) -> Callable[[np.ndarray], float]:
-    """A limit on a hand's speed [m/s] by its place (3,): `fast` in the open, slow near the person.
+def careful(
+    skill: Skill, fast: float, *, tuning: PersonTrackingTuning = PERSON_TRACKING
+) -> Callable[[np.ndarray], float]:
+    """A limit on a hand's speed [m/s] by its position (3,) in the map: `fast` in the open, slow near the person.
 
     Planned with it, a motion is slow only where it must be; the guard would slow all of it.
     """
     parts = list(watch_of(skill).parts.values())
 
-    def limit(place: np.ndarray) -> float:
-        near = any(_gap(place, points) < radius + _NEAR for points, radius in parts)
-        return min(fast, NEAR_SPEED) if near or not parts else fast
+    def limit(position: np.ndarray) -> float:
+        near = any(_gap(position, points) < radius + tuning.near_distance for points, radius in parts)
+        return min(fast, tuning.near_speed) if near or not parts else fast
 
     return limit
 
 
-def _gap(place: np.ndarray, points: np.ndarray) -> float:
-    """Distance from a place (3,) to a chain of points (n, 3) [m]."""
+def _gap(position: np.ndarray, points: np.ndarray) -> float:
+    """Distance from a position (3,) to a chain of points (n, 3) [m]."""
     start, edge = points[:-1], np.diff(points, axis=0)
-    share = np.clip(np.einsum("ij,ij->i", place - start, edge) / np.maximum((edge**2).sum(axis=1), 1e-12), 0.0, 1.0)
-    return float(np.linalg.norm(start + share[:, None] * edge - place, axis=1).min())
+    share = np.clip(np.einsum("ij,ij->i", position - start, edge) / np.maximum((edge**2).sum(axis=1), 1e-12), 0.0, 1.0)
+    return float(np.linalg.norm(start + share[:, None] * edge - position, axis=1).min())

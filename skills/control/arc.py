@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
 from ..geometry.arm_path import UP
 
-_YIELDING = 0.004  # speed of giving way to a pull across the arc [m/s/N]
-_PULL = 3.0  # ... above this [N]
-_MOST = 0.08  # the offset never grows beyond this [m]
+
+@dataclass(frozen=True, kw_only=True)
+class ArcTuning(Quantities):
+    """How a hand on an arc gives way to a pull across it."""
+
+    compliance: float = quantity(
+        0.004, "m/s/N", "speed of giving way to a pull across the arc", "choice: 1 cm in a second for 2.5 N too much"
+    )
+    dead_band: float = quantity(3.0, "N", "pull across the arc that is borne", "choice: above the noise of the force")
+    max_offset: float = quantity(
+        0.08,
+        "m",
+        "greatest way that the hand gives",
+        "choice: the shoulder is a few cm from where it was seen",
+    )
+
+
+ARC = ArcTuning()
 
 
 class Arc:
@@ -21,7 +39,8 @@ class Arc:
     Args:
         shoulder: (3,) centre as it was seen [m].
         start: (3,) where the hand holds the arm [m].
-        goal: (3,) unit vector from the shoulder to where that place is brought.
+        goal: (3,) unit vector from the shoulder to where the hand is to bring the arm.
+        tuning: how it gives way.
 
     Attributes:
         radius: of the circle [m].
@@ -30,7 +49,8 @@ class Arc:
         offset: (3,) how far the hand has given way so far [m].
     """
 
-    def __init__(self, shoulder: np.ndarray, start: np.ndarray, goal: np.ndarray) -> None:
+    def __init__(self, shoulder: np.ndarray, start: np.ndarray, goal: np.ndarray, *, tuning: ArcTuning = ARC) -> None:
+        self._tuning = tuning
         self._shoulder = np.asarray(shoulder, float)
         arm = np.asarray(start, float) - self._shoulder
         self.radius = float(np.linalg.norm(arm))
@@ -49,8 +69,8 @@ class Arc:
     def give_way(self, load: np.ndarray, tangent: np.ndarray, step: float) -> np.ndarray:
         """Velocity (3,) [m/s] across the arc under a load (3,) [N]; moves `offset` on by `step` [s] of it."""
         pull = load - (load @ tangent) * tangent
-        pull = pull * max(0.0, 1.0 - _PULL / max(float(np.linalg.norm(pull)), 1e-9))
-        velocity = _YIELDING * pull
+        pull = pull * max(0.0, 1.0 - self._tuning.dead_band / max(float(np.linalg.norm(pull)), 1e-9))
+        velocity = self._tuning.compliance * pull
         self.offset = self.offset + velocity * step
-        self.offset *= min(1.0, _MOST / max(float(np.linalg.norm(self.offset)), 1e-9))
+        self.offset *= min(1.0, self._tuning.max_offset / max(float(np.linalg.norm(self.offset)), 1e-9))
         return velocity

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..core.skill import Skill
@@ -18,27 +20,49 @@ from ..motion.ik import hand_pose, solve_ik
 from ..motion.trajectory import free_postures
 from .hands import collision_checker
 
-FORCE = 28.0  # squeezing an arm; the guard allows 30 [N]
-ARM_MIN = 0.045  # fingers that stay further apart than this hold an arm [m]
+
+@dataclass(frozen=True, kw_only=True)
+class ArmGripTuning(Quantities):
+    """How a person's arm is taken."""
+
+    force: float = quantity(28.0, "N", "of squeezing an arm", "choice: just below the 30 N that the guard allows")
+    min_gap: float = quantity(
+        0.045, "m", "between the fingertips, from which on they hold an arm", "choice: thinner than any adult's arm"
+    )
+    min_gain: float = quantity(
+        0.05,
+        "rad",
+        "more room to the joint limits for which the hand turns round",
+        "choice: turning takes time",
+    )
 
 
-def over_arm(posture: ArmPosture, place: float, lift: float) -> np.ndarray:
-    """Pose (4, 4) of a hand pointing straight down, `lift` [m] above a place of the arm, closing across it."""
+ARM_GRIP = ArmGripTuning()
+
+
+def over_arm(posture: ArmPosture, coordinate: float, lift: float) -> np.ndarray:
+    """Pose (4, 4) in the map of a hand that points down, `lift` [m] above an arm coordinate, and closes across it."""
     path = ArmPath.of(posture)
-    across = unit(np.cross(path.direction(place), UP))
-    return hand_pose(path.point(place) + lift * UP, -UP, across)
+    across = unit(np.cross(path.direction(coordinate), UP))
+    return hand_pose(path.point(coordinate) + lift * UP, -UP, across)
 
 
 def top_down_reachable(
-    skill: Skill, side: Side, pose: np.ndarray, then: Sequence[np.ndarray] = (np.zeros(3),)
+    skill: Skill,
+    side: Side,
+    pose: np.ndarray,
+    then: Sequence[np.ndarray] = (np.zeros(3),),
+    *,
+    tuning: ArmGripTuning = ARM_GRIP,
 ) -> np.ndarray:
     """`pose`, or the same turned by half a turn about the approach, whichever the arm takes more easily.
 
     Args:
         skill: that asks.
         side: of the robot.
-        pose: (4, 4); the two fingers are alike, so the turned one is as good.
-        then: ways (3,) from there to places that must be within reach with the same turn [m].
+        pose: (4, 4) in the map; the two fingers are alike, so the turned one is as good.
+        then: offsets (3,) from there to positions that must be within reach with the same turn [m].
+        tuning: how much easier the turned one must be.
 
     Raises:
         Unreachable: neither can be reached.
@@ -56,13 +80,13 @@ def top_down_reachable(
                 there[:3, 3] += way
                 q = solve_ik(kinematics, side, there, seen.pose_base_in_map, q, accept=accept)
                 room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
-            if best is None or room > best[0] + 0.05:
+            if best is None or room > best[0] + tuning.min_gain:
                 best = (room, turned)
     if best is None:
         raise tries.last
     return best[1]
 
 
-def lost_arm(skill: Skill, side: Side) -> bool:
+def lost_arm(skill: Skill, side: Side, *, tuning: ArmGripTuning = ARM_GRIP) -> bool:
     """Whether the fingers of a hand that should hold an arm have closed on nothing."""
-    return bool(skill.world.observe().gripper_opening[SIDES.index(side)] < ARM_MIN)
+    return bool(skill.world.observe().gripper_opening[SIDES.index(side)] < tuning.min_gap)

@@ -3,7 +3,7 @@
     yield from drive_to(self, "bed_right")                     # a waypoint of the map, round what is in the way
     yield from drive_to(self, np.array((0.8, 0.3, -1.57)))     # x, y [m], yaw [rad] in the map
     yield from drive_to(self, pose, straight=True, speed=0.2)  # the straight line, whatever the map says
-    yield from stand_for(self, "right", point)                 # a step to where that hand reaches `point` with ease
+    yield from stand_for(self, "right", point)                 # to where that hand reaches `point` with ease
 
 Loads on the hands still count: the guard stops the base when the cloth pulls too hard.
 """
@@ -11,9 +11,11 @@ Loads on the hands still count: the guard stops the base when the cloth pulls to
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import planar_pose
 from ...sim.world import Side
@@ -23,11 +25,37 @@ from ..motion.drive import PathFollower
 from ..motion.errors import PathBlocked
 from ..motion.path import path_length, plan_path
 
-SPEED = float(model.BASE_VELOCITY[0])
-EASE = {"left": np.array((0.95, 0.22)), "right": np.array((0.95, -0.22))}  # in base, where a hand turns freely [m]
-_NEAR_ENOUGH = 0.06  # of a place to stand [m]
-_STUCK = 2.0  # a base that was told to drive and has not moved for so long does not obey [s]
-_MOVED = 0.01  # [m or rad]
+
+@dataclass(frozen=True, kw_only=True)
+class BaseTuning(Quantities):
+    """Numbers of driving the base and of choosing where to stand."""
+
+    speed: float = quantity(
+        float(model.BASE_VELOCITY[0]), "m/s", "of the base", "datasheet: half of what a Ridgeback can do, for indoors"
+    )
+    ease: tuple[float, float] = quantity(
+        (0.95, 0.22),
+        "m",
+        "ahead of the base's centre and to the hand's own side, where a hand turns freely",
+        "choice: middle of the workspace of an arm",
+    )
+    stand_tolerance: float = quantity(
+        0.06, "m", "from a place to stand at which the base stays where it is", "choice: within the arm's ease"
+    )
+    stuck_time: float = quantity(
+        2.0, "s", "without motion after which the base does not obey", "choice: longer than it takes to start"
+    )
+    min_motion: float = quantity(
+        0.01, "m or rad", "that counts as motion of the base", "choice: above the noise of where it is"
+    )
+    timeout: float = quantity(20.0, "s", "for any path, however short", "choice: turning round and settling")
+    timeout_factor: float = quantity(
+        4.0, "1", "of the time that the path would take at full speed, added to that", "choice: the guard slows it"
+    )
+    settle_time: float = quantity(0.2, "s", "after arrival", "choice: the last command runs out")
+
+
+BASE = BaseTuning()
 
 
 def waypoint(skill: Skill, goal: str | np.ndarray) -> np.ndarray:
@@ -48,20 +76,22 @@ def drive_to(
     skill: Skill,
     goal: str | np.ndarray,
     *,
-    speed: float = SPEED,
+    speed: float = BASE.speed,
     straight: bool = False,
     turn_from: float = np.inf,
     retreat: bool = False,
+    tuning: BaseTuning = BASE,
 ) -> Iterator[None]:
     """Drive the base to a waypoint or pose, turning on the way; both hands are carried along.
 
     Args:
         skill: that drives.
-        goal: name of a waypoint, or (3,) x, y [m], yaw [rad].
+        goal: name of a waypoint, or pose (3,) in the map: x, y [m], yaw [rad].
         speed: of the base [m/s]; the guard slows it near the person.
         straight: do not plan round obstacles, for short slides beside the bed.
         turn_from: distance to the end at which turning begins [m].
         retreat: the motion takes load off the person.
+        tuning: when it has failed.
 
     Raises:
         PathBlocked: no free way, or no such waypoint.
@@ -71,29 +101,30 @@ def drive_to(
     start = skill.world.observe().pose_base_in_map
     path = np.stack((start[:2], goal[:2])) if straight else plan_path(skill.world.room, start, goal)
     follower = PathFollower(path, float(goal[2]), speed=speed, turn_from=turn_from)
-    end = skill.now() + 20.0 + 4.0 * path_length(path) / speed
+    end = skill.now() + tuning.timeout + tuning.timeout_factor * path_length(path) / speed
     anchor, since = start, skill.now()
     while not follower.done(pose := skill.world.observe().pose_base_in_map):
-        if np.abs(pose - anchor).max() > _MOVED:
+        if np.abs(pose - anchor).max() > tuning.min_motion:
             anchor, since = pose, skill.now()
-        if skill.now() - since > _STUCK:
+        if skill.now() - since > tuning.stuck_time:
             raise SkillFailure(Reason.COMMAND_LOST, f"the base stands at {np.round(pose[:2], 2).tolist()} m")
         if skill.now() > end:
             raise SkillFailure(Reason.TIMEOUT, f"the base is still {np.linalg.norm(goal[:2] - pose[:2]):.2f} m away")
         skill.world.send(follower.command(pose), retreat=retreat)
         yield
-    yield from skill.wait(0.2)  # the last command runs out
+    yield from skill.wait(tuning.settle_time)
 
 
-def stand_for(skill: Skill, side: Side, position_in_map: np.ndarray) -> Iterator[None]:
-    """Step without turning to where the hand on `side` reaches a position (3,) with ease.
+def stand_for(skill: Skill, side: Side, position_in_map: np.ndarray, *, tuning: BaseTuning = BASE) -> Iterator[None]:
+    """Drive without turning to where the hand on `side` reaches a position (3,) [m] with ease.
 
     Raises:
         PathBlocked: the base cannot stand there.
         SkillFailure: COMMAND_LOST when the base does not move.
     """
     pose = skill.world.observe().pose_base_in_map
-    offset = planar_pose(pose)[:2, :2] @ EASE[side]
+    ahead, aside = tuning.ease
+    offset = planar_pose(pose)[:2, :2] @ np.array((ahead, aside if side == "left" else -aside))
     goal = np.append(np.asarray(position_in_map)[:2] - offset, pose[2])
-    if np.linalg.norm(goal[:2] - pose[:2]) > _NEAR_ENOUGH:
-        yield from drive_to(skill, goal)
+    if np.linalg.norm(goal[:2] - pose[:2]) > tuning.stand_tolerance:
+        yield from drive_to(skill, goal, speed=tuning.speed, tuning=tuning)

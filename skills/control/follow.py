@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 
-MOVED = 0.2  # fraction of the way below which nothing can be said to have moved
+
+@dataclass(frozen=True, kw_only=True)
+class FollowTuning(Quantities):
+    """When a trajectory has been followed, and when it has failed."""
+
+    tolerance: float = quantity(0.05, "rad", "largest error of a joint at the end", "choice: the hand is 3 cm off")
+    patience: float = quantity(2.0, "s", "for the joints to arrive after the trajectory's end", "choice: arms lag")
+    min_motion: float = quantity(
+        0.2, "1", "share of the way below which nothing has moved", "choice: tells a lost command from a blocked motion"
+    )
+
+
+FOLLOW = FollowTuning()
 
 
 def joint_values(observation: Observation, joints: tuple[str, ...]) -> np.ndarray:
@@ -25,7 +39,13 @@ def joint_values(observation: Observation, joints: tuple[str, ...]) -> np.ndarra
 
 
 def follow(
-    skill: Skill, trajectory: JointTrajectory, *, tolerance: float = 0.05, patience: float = 2.0, retreat: bool = False
+    skill: Skill,
+    trajectory: JointTrajectory,
+    *,
+    tolerance: float = FOLLOW.tolerance,
+    patience: float = FOLLOW.patience,
+    retreat: bool = False,
+    tuning: FollowTuning = FOLLOW,
 ) -> Iterator[None]:
     """Send `trajectory` and wait until it is done and has arrived; used with `yield from`.
 
@@ -35,6 +55,7 @@ def follow(
         tolerance: largest error of a joint at the end [rad].
         patience: how long the joints may take to arrive after the trajectory's end [s].
         retreat: the motion takes load off the person.
+        tuning: what tells a lost command from a blocked motion.
 
     Raises:
         SkillFailure: COMMAND_LOST when nothing moved, MOTION_BLOCKED when it did not arrive.
@@ -48,6 +69,6 @@ def follow(
     while (error := float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - goal).max())) > tolerance:
         if skill.now() >= end:
             moved = float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - start).max())
-            lost = moved < MOVED * float(np.abs(goal - start).max())
+            lost = moved < tuning.min_motion * float(np.abs(goal - start).max())
             raise SkillFailure(Reason.COMMAND_LOST if lost else Reason.MOTION_BLOCKED, f"{error:.2f} rad short")
         yield

@@ -2,8 +2,6 @@
 
     yield from move_hands(self, {"right": pose})                        # straight, poses (4, 4) in the map
     yield from move_hands(self, {"left": a, "right": b}, speed=0.5, way="any")
-    yield from move_along(self, {"right": poses}, speed=0.12)           # through all of (k, 4, 4) without a stop
-    yield from turn_hand(self, "right", np.deg2rad(30))                 # about the vertical through the fingertips
     gap = yield from close_gripper(self, "right", force=30.0)           # what is left between the fingertips [m]
     yield from open_gripper(self, "right")
     yield from look_towards(self, point)                                # pans the head
@@ -15,27 +13,54 @@ cannot be reached raise Unreachable or MotionBlocked, which a skill passes on as
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.collision import CollisionChecker
+from ...sim.robot.gripper import GRIPPER
 from ...sim.robot.kinematics import default_kinematics, planar_pose
 from ...sim.world import SIDES, GripperOpening, JointTrajectory, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..motion.errors import MotionError
-from ..motion.ik import FreeAxis, solve_ik
+from ..motion.ik import FreeAxis
 from ..motion.reach import plan_arms, plan_hand_line, plan_reach
-from ..motion.trajectory import plan_joint_motion
-from .follow import follow, joint_values
+from .follow import FOLLOW, follow, joint_values
 
 Way = Literal["line", "any", "either"]
-Speed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one by the hand's place (3,)
-SPEED = 0.4  # of a hand away from the person [m/s]
-OPEN = model.GRIPPER_STROKE
-_RESTS = 0.0005  # fingers that move less than this from tick to tick have come to rest [m]
+Speed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one by the hand's position (3,) in the map
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandsTuning(Quantities):
+    """Numbers of moving hands, fingers and the head."""
+
+    speed: float = quantity(0.4, "m/s", "of a hand away from the person", "choice: near the person the guard slows it")
+    stop_timeout: float = quantity(
+        2.0, "s", "for a motion to stop once the cloth pulls too hard", "choice: far longer than arms take to brake"
+    )
+    open_tolerance: float = quantity(
+        0.004, "m", "short of the opening that was asked for at which the fingers are open", "choice: half a finger"
+    )
+    grip_force: float = quantity(30.0, "N", "of squeezing cloth, at most", "choice: thin cloth is held without a slip")
+    gripper_timeout: float = quantity(3.0, "s", "for the fingers to open or close", "choice: five times what they take")
+    min_closing: float = quantity(0.002, "m", "of the fingers that counts as motion", "choice: above the noise")
+    rest_change: float = quantity(
+        0.0005, "m", "from tick to tick below which the fingers rest", "choice: a few per cent of their speed"
+    )
+    rest_ticks: int = quantity(2, "1", "ticks in a row in which the fingers must rest", "choice: one may be chance")
+    pan_tolerance: float = quantity(0.03, "rad", "of the head's angle", "choice: a small part of the picture's width")
+    pan_time: float = quantity(0.2, "s", "more than the head's speed asks for", "choice: it starts and stops gently")
+    pan_peak: float = quantity(
+        1.5, "1", "greatest speed of a smooth motion, as a multiple of its mean", "design: that of a cubic polynomial"
+    )
+
+
+HANDS = HandsTuning()
 
 
 def hand_now(skill: Skill, side: Side) -> np.ndarray:
@@ -45,7 +70,7 @@ def hand_now(skill: Skill, side: Side) -> np.ndarray:
 
 
 def cloth_load(skill: Skill, side: Side) -> np.ndarray:
-    """Force (3,) on a hand, in the map [N]."""
+    """Force (3,) in the map that the cloth, or whatever it holds, exerts on a hand [N]."""
     return skill.world.observe().wrench_hand_in_map[SIDES.index(side), :3]
 
 
@@ -55,16 +80,26 @@ def collision_checker(skill: Skill) -> CollisionChecker:
     return skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
 
 
-def until_taut(skill: Skill, side: Side, load: float, motion: Iterator[None]) -> Iterator[None]:
-    """Let `motion` go on until the cloth that the hand on `side` carries pulls harder than `load` [N].
+def until_load(
+    skill: Skill, side: Side, max_load: float, motion: Iterator[None], *, tuning: HandsTuning = HANDS
+) -> Iterator[None]:
+    """Let `motion` go on until the cloth that one hand carries pulls too hard, then stop it.
+
+    Args:
+        skill: that moves.
+        side: of the hand that carries the cloth.
+        max_load: that ends the motion [N].
+        motion: of that hand.
+        tuning: how long stopping may take.
 
     Raises:
         SkillFailure: MOTION_BLOCKED when the motion does not stop then, and whatever `motion` raises.
     """
     for _ in motion:
-        if np.linalg.norm(cloth_load(skill, side)) > load:
+        if np.linalg.norm(cloth_load(skill, side)) > max_load:
             skill.world.stop()
-            yield from skill.until(skill.context.guard.still, timeout=2.0, reason=Reason.MOTION_BLOCKED)
+            still = skill.context.guard.still
+            yield from skill.until(still, timeout=tuning.stop_timeout, reason=Reason.MOTION_BLOCKED)
             return
         yield
 
@@ -73,18 +108,18 @@ def move_hands(
     skill: Skill,
     goals: Mapping[Side, np.ndarray],
     *,
-    speed: Speed = SPEED,
+    speed: Speed = HANDS.speed,
     free: FreeAxis = "none",
     way: Way = "line",
     retreat: bool = False,
-    patience: float = 2.0,
+    patience: float = FOLLOW.patience,
 ) -> Iterator[None]:
     """Bring one or both hands to poses.
 
     Args:
         skill: that moves.
         goals: by side, pose (4, 4) in the map.
-        speed: greatest speed of each hand [m/s].
+        speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
         free: hand axis about which the orientation does not matter (see `solve_ik`).
         way: `line` straight and turning evenly; `any` way that is free; `either` straight where that is possible.
         retreat: the motion takes load off the person, so the guard lets it pass at any load.
@@ -96,7 +131,7 @@ def move_hands(
     """
     seen = skill.world.observe()
 
-    def plan(planner) -> JointTrajectory:
+    def plan(planner: Callable[..., JointTrajectory]) -> JointTrajectory:
         return planner(
             default_kinematics(),
             goals,
@@ -119,43 +154,27 @@ def move_hands(
     yield from follow(skill, trajectory, retreat=retreat, patience=patience)
 
 
-def move_along(
+def move_arms(
     skill: Skill,
-    paths: Mapping[Side, np.ndarray],
+    target: np.ndarray,
     *,
-    speed: float = SPEED,
-    free: FreeAxis = "none",
+    sides: tuple[Side, ...] = SIDES,
+    speed: Speed = HANDS.speed,
     retreat: bool = False,
 ) -> Iterator[None]:
-    """Lead hands through poses without a stop; `paths` by side (k, 4, 4), a few centimetres apart, the same k.
+    """Bring arms to joint angles by a free way.
+
+    Args:
+        skill: that moves.
+        target: (2, 7) joint angles, such as `model.READY` [rad].
+        sides: that move; the other row of `target` does not count.
+        speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
+        retreat: the motion takes load off the person.
 
     Raises:
-        MotionError: a pose is out of reach, or something is in the way.
+        MotionError: something is in the way.
         SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
     """
-    seen, kinematics = skill.world.observe(), default_kinematics()
-    waypoints: dict[Side, np.ndarray] = {}
-    for side, poses in paths.items():
-        path = [seen.arm_positions[SIDES.index(side)]]
-        for pose in poses:
-            path.append(solve_ik(kinematics, side, pose, seen.pose_base_in_map, path[-1], free=free, seeds=2))
-        waypoints[side] = np.array(path)
-    resting = [n for n, side in enumerate(SIDES) if side not in paths]
-    trajectory = plan_joint_motion(
-        kinematics,
-        waypoints,
-        seen.pose_base_in_map,
-        hand_speed=speed,
-        checker=collision_checker(skill),
-        other_arm=seen.arm_positions[resting[0]] if resting else None,
-    )
-    yield from follow(skill, trajectory, retreat=retreat)
-
-
-def move_arms(
-    skill: Skill, target: np.ndarray, *, sides: tuple[Side, ...] = SIDES, speed: Speed = SPEED, retreat: bool = False
-) -> Iterator[None]:
-    """Bring the arms on `sides` to joint angles `target` (2, 7) [rad], such as `model.READY`, by a free way."""
     seen = skill.world.observe()
     trajectory = plan_arms(
         default_kinematics(),
@@ -169,30 +188,44 @@ def move_arms(
     yield from follow(skill, trajectory, retreat=retreat)
 
 
-def turn_hand(skill: Skill, side: Side, angle: float, *, speed: float = SPEED) -> Iterator[None]:
-    """Turn a hand by `angle` [rad] about the vertical through its fingertips, which stay where they are."""
-    pose = hand_now(skill, side)
-    turned = pose.copy()
-    turned[:3, :3] = planar_pose(np.array((0.0, 0.0, angle)))[:3, :3] @ pose[:3, :3]
-    yield from move_hands(skill, {side: turned}, speed=speed)
+def open_gripper(
+    skill: Skill,
+    side: Side,
+    opening: float = GRIPPER.stroke,
+    *,
+    timeout: float = HANDS.gripper_timeout,
+    tuning: HandsTuning = HANDS,
+) -> Iterator[None]:
+    """Open the fingers and wait for it; the hand then holds nothing.
 
-
-def open_gripper(skill: Skill, side: Side, opening: float = OPEN, *, timeout: float = 3.0) -> Iterator[None]:
-    """Open the fingers to `opening` [m] and wait for it; the hand then holds nothing.
+    Args:
+        skill: that opens them.
+        side: which hand.
+        opening: between the fingertips [m].
+        timeout: when to give up [s].
+        tuning: how far they may be from it.
 
     Raises:
-        SkillFailure: COMMAND_LOST when they are not open after `timeout` [s].
+        SkillFailure: COMMAND_LOST when they are not open in time.
     """
     n = SIDES.index(side)
     skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
     yield from skill.until(
-        lambda: skill.world.observe().gripper_opening[n] > opening - 0.004, timeout=timeout, reason=Reason.COMMAND_LOST
+        lambda: skill.world.observe().gripper_opening[n] > opening - tuning.open_tolerance,
+        timeout=timeout,
+        reason=Reason.COMMAND_LOST,
     )
     skill.context.guard.declare_grip(side, "nothing")
 
 
 def close_gripper(
-    skill: Skill, side: Side, *, opening: float = 0.0, force: float = 30.0, timeout: float = 3.0
+    skill: Skill,
+    side: Side,
+    *,
+    opening: float = 0.0,
+    force: float = HANDS.grip_force,
+    timeout: float = HANDS.gripper_timeout,
+    tuning: HandsTuning = HANDS,
 ) -> Generator[None, None, float]:
     """Close the fingers until they rest on what is between them, or on each other.
 
@@ -202,6 +235,7 @@ def close_gripper(
         opening: where to stop at the latest [m].
         force: greatest squeezing force [N].
         timeout: when to give up [s].
+        tuning: when the fingers move, and when they rest.
 
     Returns:
         What is left between the fingertips [m]; the caller says by `declare_grip` what that is.
@@ -213,20 +247,20 @@ def close_gripper(
     before = start = float(skill.world.observe().gripper_opening[n])
     skill.world.send(GripperOpening(side=side, opening=opening, force_limit=force))
     end, calm, moved = skill.now() + timeout, 0, False
-    while calm < 2:
+    while calm < tuning.rest_ticks:
         if skill.now() >= end:
             if moved:
                 raise SkillFailure(Reason.GRASP_MISSED, f"the {side} fingers do not come to rest")
             raise SkillFailure(Reason.COMMAND_LOST, f"the {side} fingers do not close")
         yield
         gap = float(skill.world.observe().gripper_opening[n])
-        moved = moved or gap < start - 0.002 or start <= opening + 0.002
-        calm = calm + 1 if abs(gap - before) < _RESTS and moved else 0
+        moved = moved or gap < start - tuning.min_closing or start <= opening + tuning.min_closing
+        calm = calm + 1 if abs(gap - before) < tuning.rest_change and moved else 0
         before = gap
     return before
 
 
-def look_towards(skill: Skill, point_in_map: np.ndarray, *, tolerance: float = 0.03) -> Iterator[None]:
+def look_towards(skill: Skill, point_in_map: np.ndarray, *, tolerance: float = HANDS.pan_tolerance) -> Iterator[None]:
     """Pan the head so that `point_in_map` (2,) or (3,) lies in the middle of the image's width."""
     seen = skill.world.observe()
     x, y, yaw = seen.pose_base_in_map
@@ -235,13 +269,15 @@ def look_towards(skill: Skill, point_in_map: np.ndarray, *, tolerance: float = 0
     yield from pan_head(skill, float((wanted + np.pi) % (2 * np.pi) - np.pi), tolerance=tolerance)
 
 
-def pan_head(skill: Skill, angle: float, *, tolerance: float = 0.03) -> Iterator[None]:
+def pan_head(
+    skill: Skill, angle: float, *, tolerance: float = HANDS.pan_tolerance, tuning: HandsTuning = HANDS
+) -> Iterator[None]:
     """Turn the head to `angle` [rad], positive to the left, as far as the neck can."""
     low, high = default_kinematics().head_range
     here, angle = float(joint_values(skill.world.observe(), ("head_pan",))[0]), float(np.clip(angle, low, high))
     if abs(angle - here) <= tolerance:
         return
-    duration = 1.5 * abs(angle - here) / model.HEAD_VELOCITY + 0.2  # a smooth motion peaks at 1.5 of its mean speed
+    duration = tuning.pan_peak * abs(angle - here) / model.HEAD_VELOCITY + tuning.pan_time
     yield from follow(
         skill,
         JointTrajectory(joints=("head_pan",), times=np.array((0.0, duration)), positions=np.array(((here,), (angle,)))),

@@ -9,11 +9,15 @@ Thin cloth leaves no gap between closed fingers, so what is held is seen by the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
+from ...sim.quantity import Quantities, quantity
+from ...sim.robot.gripper import GRIPPER
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, GripperOpening, Side
 from ..core.reasons import Reason, SkillFailure
@@ -22,12 +26,37 @@ from ..core.tries import Tries
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
 from ..motion.trajectory import free_postures
-from .hands import OPEN, SPEED, close_gripper, collision_checker, hand_now, move_hands, open_gripper
+from .hands import HANDS, close_gripper, collision_checker, hand_now, move_hands, open_gripper
 
-DEPTH = 0.017  # of the cloth's edge between the finger pads, which are 38 mm long [m]
-STANDOFF = 0.12  # from the cloth, where the fingers wait open [m]
-SURE = 0.15  # confidence from which the fingers are taken to hold cloth
-_ROLLS = np.deg2rad((0, 180, 30, -30, 210, 150, 60, -60, 240, 120, 90, -90))  # about the approach, best first
+
+@dataclass(frozen=True, kw_only=True)
+class PinchTuning(Quantities):
+    """Numbers of taking hold of cloth."""
+
+    depth: float = quantity(
+        0.017, "m", "of the fingertips beyond the edge of the cloth", "choice: almost half of the finger pads' length"
+    )
+    standoff: float = quantity(
+        0.12,
+        "m",
+        "from the cloth to the fingertips that wait open",
+        "choice: the open fingers clear it",
+    )
+    inwards_share: float = quantity(
+        0.5, "1", "of the speed on the straight way in", "choice: what the fingers touch is pushed away less"
+    )
+    min_confidence: float = quantity(
+        0.15, "1", "from which the fingers are taken to hold cloth", "choice: thin cloth shows little between them"
+    )
+    rolls: tuple[float, ...] = quantity(
+        tuple(math.radians(roll) for roll in (0, 180, 30, -30, 210, 150, 60, -60, 240, 120, 90, -90)),
+        "rad",
+        "about the approach, tried in turn",
+        "choice: the wanted one first, and each beside the one turned by half a turn, as the fingers are alike",
+    )
+
+
+PINCH = PinchTuning()
 
 
 def reach_in(
@@ -37,12 +66,13 @@ def reach_in(
     approach: np.ndarray,
     closing: np.ndarray,
     *,
-    opening: float = OPEN,
-    standoff: float = STANDOFF,
-    depth: float = DEPTH,
-    speed: float = SPEED,
+    opening: float = GRIPPER.stroke,
+    standoff: float = PINCH.standoff,
+    depth: float = PINCH.depth,
+    speed: float = HANDS.speed,
+    tuning: PinchTuning = PINCH,
 ) -> Iterator[None]:
-    """Bring open fingers around a place, at first in front of it and then straight in.
+    """Bring open fingers around the edge of cloth, at first in front of it and then straight in.
 
     Args:
         skill: that grasps.
@@ -52,18 +82,21 @@ def reach_in(
         closing: (3,) along which the fingers should close; the nearest roll that the arm can take is used.
         opening: of the fingers on the way in [m].
         standoff: where to begin the straight way [m].
-        depth: how far the fingertips go beyond the place [m].
-        speed: of the hand until there; half of it on the straight way [m/s].
+        depth: how far the fingertips go beyond the position [m].
+        speed: of the hand until it waits in front of the cloth; less of it on the straight way [m/s].
+        tuning: rolls of the hand that are tried, and how much slower the straight way is.
 
     Raises:
         MotionError: out of reach.
         SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
     """
-    before, inside = grasp_poses(skill, side, position, approach, closing, standoff=standoff, depth=depth)
+    before, inside = grasp_poses(
+        skill, side, position, approach, closing, standoff=standoff, depth=depth, tuning=tuning
+    )
     skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
     yield from move_hands(skill, {side: before}, speed=speed, way="any")
     yield from open_gripper(skill, side, opening)
-    yield from move_hands(skill, {side: inside}, speed=speed / 2)
+    yield from move_hands(skill, {side: inside}, speed=tuning.inwards_share * speed)
 
 
 def grasp_poses(
@@ -74,8 +107,9 @@ def grasp_poses(
     closing: np.ndarray,
     *,
     sweep: np.ndarray | float = 0.0,
-    standoff: float = STANDOFF,
-    depth: float = DEPTH,
+    standoff: float = PINCH.standoff,
+    depth: float = PINCH.depth,
+    tuning: PinchTuning = PINCH,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Hand poses (4, 4) in front of and around the cloth, with the first roll at which the arm reaches both.
 
@@ -89,7 +123,7 @@ def grasp_poses(
     accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     across = np.cross(approach, closing)
     tries = Tries(Unreachable)
-    for roll in _ROLLS:
+    for roll in tuning.rolls:
         turned = np.cos(roll) * closing + np.sin(roll) * across
         before = hand_pose(position - standoff * approach, approach, turned)
         inside = hand_pose(position + depth * approach, approach, turned)
@@ -104,20 +138,20 @@ def grasp_poses(
     raise tries.last
 
 
-def pinch(skill: Skill, side: Side, *, force: float = 30.0) -> Iterator[None]:
+def pinch(skill: Skill, side: Side, *, force: float = HANDS.grip_force, tuning: PinchTuning = PINCH) -> Iterator[None]:
     """Close the fingers and look whether cloth is between them.
 
     Raises:
         SkillFailure: GRASP_MISSED when nothing is, COMMAND_LOST when they do not close.
     """
     yield from close_gripper(skill, side, force=force)
-    if holds_cloth(skill, side) < SURE:
+    if holds_cloth(skill, side) < tuning.min_confidence:
         raise SkillFailure(Reason.GRASP_MISSED, f"the {side} hand's camera sees no cloth between the fingers")
     skill.context.guard.declare_grip(side, "cloth")
 
 
 def holds_cloth(skill: Skill, side: Side) -> float:
-    """How sure the camera of the hand is that the fingers hold cloth, 0 to 1."""
+    """Confidence, 0 to 1, of the hand's camera that the fingers hold cloth."""
     frame = skill.world.look(f"{side}_hand")
     try:
         return skill.context.senses.gripped_cloth(frame, pose_hand_in_map=hand_now(skill, side)).confidence
@@ -125,8 +159,15 @@ def holds_cloth(skill: Skill, side: Side) -> float:
         return 0.0
 
 
-def back_off(skill: Skill, side: Side, distance: float = STANDOFF, *, speed: float = SPEED) -> Iterator[None]:
-    """Draw a hand back along its own approach by `distance` [m]."""
+def back_off(
+    skill: Skill, side: Side, distance: float = PINCH.standoff, *, speed: float = HANDS.speed
+) -> Iterator[None]:
+    """Draw a hand back along its own approach by `distance` [m].
+
+    Raises:
+        MotionError: out of reach, or something is in the way.
+        SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
+    """
     pose = hand_now(skill, side)
     pose[:3, 3] -= distance * pose[:3, 2]
     yield from move_hands(skill, {side: pose}, speed=speed, way="either", retreat=True)

@@ -40,24 +40,24 @@ class PullLaw(Quantities):
         return float(np.clip((self.stop_at - np.linalg.norm(load)) / (self.stop_at - self.slow_from), 0.0, 1.0))
 
     def velocity(
-        self, path: ArmPath, place: float, hand: np.ndarray, aside: float, speed: float, load: np.ndarray
+        self, path: ArmPath, coordinate: float, hand: np.ndarray, offset: float, speed: float, load: np.ndarray
     ) -> np.ndarray:
         """Velocity (3,) of the gripper [m/s].
 
         Args:
             path: of the arm now.
-            place: arm coordinate of the gripper: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
+            coordinate: arm coordinate of the gripper: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
             hand: (3,) position of the gripper [m].
-            aside: wanted offset across the arm [m].
+            offset: wanted one across the arm, along the first axis of `ArmPath.frame` [m].
             speed: along the arm when nothing pulls [m/s].
             load: (3,) force of the sleeve on the gripper [N].
         """
-        across, along, off = path.frame(place).T
+        across, along, off = path.frame(coordinate).T
         ease = self.ease(load)
-        wanted = path.point(place) + aside * across + self.clearance * off
+        wanted = path.point(coordinate) + offset * across + self.clearance * off
         error = wanted - hand
         error -= (error @ along) * along
-        travel = unit(path.point(path.moved(place, -self.look_ahead)) - path.point(place))
+        travel = unit(path.point(path.moved(coordinate, -self.look_ahead)) - path.point(coordinate))
         velocity = ease * speed * travel
         correction = self.steering * error
         size = float(np.linalg.norm(correction))

@@ -1,19 +1,44 @@
-"""A person's arm as a path for the hand that dresses it: places, directions and distances along it.
+"""A person's arm as a path for the hand that dresses it: points, directions and distances along it.
 
-A place is a number: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.  Beyond 3 the path goes straight on past the
-fingertip, below 0 past the shoulder towards the neck, both counted in lengths of the hand and the upper arm.
+An arm coordinate says where along the arm: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.  Beyond 3 the path goes straight
+on past the fingertip, in lengths of the hand; below 0 past the shoulder to the neck, in lengths of the upper arm.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
 
-UP = np.array((0.0, 0.0, 1.0))
-_BLEND = 0.35  # share of a segment over which directions change at a joint
-_STEEPEST = 0.9  # sine of the steepest direction: a hand cannot be turned about a vertical arm
+UP = np.array((0.0, 0.0, 1.0))  # in the map
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmPathTuning(Quantities):
+    """Numbers of the path along an arm."""
+
+    blend: float = quantity(
+        0.35, "1", "share of a segment over which the direction turns at a joint", "choice: the hand turns evenly"
+    )
+    max_slope: float = quantity(
+        0.9, "1", "sine of the steepest direction", "choice: a hand cannot be turned about a vertical arm"
+    )
+    search_from: float = quantity(
+        -0.6, "1", "arm coordinate from which the nearest point is looked for", "choice: as far as the neck"
+    )
+    search_to: float = quantity(
+        4.6, "1", "arm coordinate up to which it is looked for", "choice: beyond where a sleeve is presented"
+    )
+    search_step: float = quantity(
+        0.01, "1", "spacing of the arm coordinates that are tried", "choice: 2 to 3 mm of an arm"
+    )
+
+
+ARM_PATH = ArmPathTuning()
 
 
 class ArmPath:
@@ -21,12 +46,18 @@ class ArmPath:
 
     Args:
         points_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+        tuning: numbers of the path.
+
+    Attributes:
+        points: those, as an array.
+        lengths: (3,) upper arm, forearm, hand [m].
     """
 
-    def __init__(self, points_in_map: np.ndarray) -> None:
+    def __init__(self, points_in_map: np.ndarray, *, tuning: ArmPathTuning = ARM_PATH) -> None:
+        self._tuning = tuning
         self.points = np.asarray(points_in_map, float)
         steps = np.diff(self.points, axis=0)
-        self.lengths = np.linalg.norm(steps, axis=1)  # (3,) upper arm, forearm, hand [m]
+        self.lengths = np.linalg.norm(steps, axis=1)
         self._directions = steps / self.lengths[:, None]
 
     @classmethod
@@ -34,53 +65,60 @@ class ArmPath:
         """The path of a posture."""
         return cls(posture.points_in_map)
 
-    def point(self, place: float) -> np.ndarray:
+    def point(self, coordinate: float) -> np.ndarray:
         """(3,) point of the arm's axis [m]."""
-        segment = _segment(place)
-        return self.points[segment] + (place - segment) * self.lengths[segment] * self._directions[segment]
+        segment = _segment(coordinate)
+        return self.points[segment] + (coordinate - segment) * self.lengths[segment] * self._directions[segment]
 
-    def direction(self, place: float) -> np.ndarray:
+    def direction(self, coordinate: float) -> np.ndarray:
         """(3,) unit vector towards the fingertip, turning evenly near the joints."""
-        segment, rest = _segment(place), place - _segment(place)
-        here = self._directions[segment]
-        if rest < _BLEND and segment > 0:
-            return unit(here + (0.5 - 0.5 * rest / _BLEND) * (self._directions[segment - 1] - here))
-        if rest > 1.0 - _BLEND and segment < 2:
-            return unit(here + (0.5 - 0.5 * (1.0 - rest) / _BLEND) * (self._directions[segment + 1] - here))
+        segment, rest = _segment(coordinate), coordinate - _segment(coordinate)
+        here, blend = self._directions[segment], self._tuning.blend
+        if rest < blend and segment > 0:
+            return unit(here + (0.5 - 0.5 * rest / blend) * (self._directions[segment - 1] - here))
+        if rest > 1.0 - blend and segment < 2:
+            return unit(here + (0.5 - 0.5 * (1.0 - rest) / blend) * (self._directions[segment + 1] - here))
         return here
 
-    def frame(self, place: float) -> np.ndarray:
+    @property
+    def hand_direction(self) -> np.ndarray:
+        """(3,) unit vector from the wrist to the fingertip."""
+        return self._directions[2]
+
+    def frame(self, coordinate: float) -> np.ndarray:
         """(3, 3) columns: across the arm (horizontal), along it towards the fingertip, and off it (upwards)."""
-        along = self.direction(place)
-        if abs(along[2]) > _STEEPEST:  # keep the heading of a steep arm defined
+        along, slope = self.direction(coordinate), self._tuning.max_slope
+        if abs(along[2]) > slope:  # keep the heading of a steep arm defined
             flat = unit(along * (1.0, 1.0, 0.0) + 1e-6 * self._directions[0])
-            along = unit(flat * np.sqrt(1.0 - _STEEPEST**2) + np.sign(along[2]) * _STEEPEST * UP)
+            along = unit(flat * np.sqrt(1.0 - slope**2) + np.sign(along[2]) * slope * UP)
         across = unit(np.cross(along, UP))
         return np.column_stack((across, along, np.cross(across, along)))
 
-    def place_of(self, point_in_map: np.ndarray, near: float | None = None, window: float = 0.6) -> float:
-        """The place nearest to a point, looked for within `window` of `near` when given."""
-        low, high = (-0.6, 4.6) if near is None else (near - window, near + window)
-        places = np.linspace(low, high, int((high - low) / 0.01) + 1)
-        points = np.array([self.point(float(place)) for place in places])
-        return float(places[int(np.argmin(np.linalg.norm(points - point_in_map, axis=1)))])
+    def coordinate_of(self, point_in_map: np.ndarray, near: float | None = None, window: float = 0.6) -> float:
+        """The arm coordinate nearest to a point (3,), looked for within `window` of `near` when given."""
+        low, high = (
+            (self._tuning.search_from, self._tuning.search_to) if near is None else (near - window, near + window)
+        )
+        coordinates = np.linspace(low, high, int((high - low) / self._tuning.search_step) + 1)
+        points = np.array([self.point(float(coordinate)) for coordinate in coordinates])
+        return float(coordinates[int(np.argmin(np.linalg.norm(points - point_in_map, axis=1)))])
 
-    def moved(self, place: float, distance: float) -> float:
-        """The place `distance` [m] further towards the fingertip (negative: towards the shoulder)."""
+    def moved(self, coordinate: float, distance: float) -> float:
+        """The arm coordinate `distance` [m] further towards the fingertip (negative: towards the shoulder)."""
         left = distance
         while abs(left) > 1e-9:
-            segment = _segment(place if left > 0 else place - 1e-9)
+            segment = _segment(coordinate if left > 0 else coordinate - 1e-9)
             if left > 0:
-                room = (segment + 1 - place) * self.lengths[segment] if segment < 2 else np.inf
+                room = (segment + 1 - coordinate) * self.lengths[segment] if segment < 2 else np.inf
             else:
-                room = (place - segment) * self.lengths[segment] if segment > 0 else np.inf
+                room = (coordinate - segment) * self.lengths[segment] if segment > 0 else np.inf
             step = min(abs(left), float(room))
-            place += np.sign(left) * step / self.lengths[segment]
+            coordinate += np.sign(left) * step / self.lengths[segment]
             left -= np.sign(left) * step
-        return float(place)
+        return float(coordinate)
 
     def distance(self, start: float, end: float) -> float:
-        """Length of the path between two places [m]."""
+        """Length of the path between two arm coordinates [m]."""
         low, high = sorted((start, end))
         total = 0.0
         for segment in range(3):
@@ -96,5 +134,6 @@ class ArmPath:
         return float(np.arcsin(whole[2] / np.linalg.norm(whole)))
 
 
-def _segment(place: float) -> int:
-    return int(np.clip(np.floor(place), 0, 2))
+def _segment(coordinate: float) -> int:
+    """Index of the segment that a coordinate belongs to: 0 upper arm, 1 forearm, 2 hand."""
+    return int(np.clip(np.floor(coordinate), 0, 2))

@@ -9,7 +9,12 @@ from ...sim.world import Side
 
 @dataclass(frozen=True)
 class Hold:
-    """A robot hand that holds the person's arm at a place: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip."""
+    """A robot hand that holds the person's arm.
+
+    Attributes:
+        hand: of the robot.
+        coordinate: arm coordinate of the grip: 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
+    """
 
     hand: Side
-    place: float
+    coordinate: float

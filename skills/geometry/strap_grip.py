@@ -8,10 +8,24 @@ import numpy as np
 
 from ...perception.estimates import SleeveOpening
 from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 from .arm_path import UP
 
-LEAN = 0.25  # [rad]
+
+@dataclass(frozen=True, kw_only=True)
+class StrapGripTuning(Quantities):
+    """How a strap is presented."""
+
+    lean: float = quantity(
+        0.25,
+        "rad",
+        "of the hand off the vertical, away from the person",
+        "choice: the outside of the strap then faces the fingertips' side, so that the sleeve falls outwards",
+    )
+
+
+STRAP_GRIP = StrapGripTuning()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +50,7 @@ def strap_grip(arm: Side, hand: Side, strap: SleeveOpening, pose_hand_in_map: np
 
 
 def presenting(
-    grip: StrapGrip, along_in_map: np.ndarray, position_in_map: np.ndarray, lean: float = LEAN
+    grip: StrapGrip, along_in_map: np.ndarray, position_in_map: np.ndarray, lean: float = STRAP_GRIP.lean
 ) -> np.ndarray:
     """Hand pose (4, 4) that holds the strap across an arm, its armhole towards the fingertips.
 

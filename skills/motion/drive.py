@@ -2,16 +2,41 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.world import BaseVelocity
 
-POSITION_TOLERANCE = 0.02  # [m]
-YAW_TOLERANCE = np.deg2rad(2.0)
-_LOOKAHEAD = 0.15  # distance along the path of the point steered to [m]
-_GAIN = 1.6  # of the approach to the end [1/s]
-_TURN_GAIN = 1.6  # [1/s]
+
+@dataclass(frozen=True, kw_only=True)
+class DriveTuning(Quantities):
+    """Numbers of following a path with the base."""
+
+    position_tolerance: float = quantity(
+        0.02, "m", "from the end at which the base has arrived", "choice: hands reach poses planned from there"
+    )
+    yaw_tolerance: float = quantity(
+        math.radians(2.0), "rad", "from the final heading at which it has arrived", "choice: 3 cm at the hands"
+    )
+    look_ahead: float = quantity(
+        0.15, "m", "distance along the path of the point that is steered to", "choice: rounds corners by a few cm"
+    )
+    gain: float = quantity(1.6, "1/s", "of the approach to the end", "choice: settles without overshoot")
+    turn_gain: float = quantity(1.6, "1/s", "of turning to the final heading", "choice: as that of the approach")
+    search_ahead: float = quantity(
+        0.4,
+        "m",
+        "distance along the path in which the nearest point is sought",
+        "choice: over two look-aheads",
+    )
+    search_points: int = quantity(21, "1", "points of the path that are looked at for it", "choice: one every 2 cm")
+
+
+DRIVE = DriveTuning()
 
 
 class PathFollower:
@@ -22,11 +47,22 @@ class PathFollower:
         yaw: final heading [rad].
         speed: greatest speed [m/s].
         turn_from: distance to the end at which turning to `yaw` begins [m]; before that the heading is kept.
+        tuning: numbers of the controller.
+
+    Raises:
+        ValueError: the path is not (k, 2).
     """
 
     def __init__(
-        self, path: np.ndarray, yaw: float, *, speed: float = float(model.BASE_VELOCITY[0]), turn_from: float = np.inf
+        self,
+        path: np.ndarray,
+        yaw: float,
+        *,
+        speed: float = float(model.BASE_VELOCITY[0]),
+        turn_from: float = np.inf,
+        tuning: DriveTuning = DRIVE,
     ) -> None:
+        self._tuning = tuning
         self._path = np.asarray(path, float)
         if self._path.ndim != 2 or self._path.shape[1] != 2 or len(self._path) < 1:
             raise ValueError(f"a path is corner points (k, 2), got {np.shape(path)}")
@@ -36,28 +72,28 @@ class PathFollower:
         self._progress = 0.0
 
     def done(self, pose_base_in_map: np.ndarray) -> bool:
-        """Whether the base stands within 2 cm and 2 degrees of the end."""
+        """Whether the base at a pose (3,) stands at the end, within the tolerances."""
         pose = np.asarray(pose_base_in_map, float)
         return bool(
-            np.linalg.norm(self._path[-1] - pose[:2]) <= POSITION_TOLERANCE
-            and abs(_wrap(self._yaw - pose[2])) <= YAW_TOLERANCE
+            np.linalg.norm(self._path[-1] - pose[:2]) <= self._tuning.position_tolerance
+            and abs(_wrap(self._yaw - pose[2])) <= self._tuning.yaw_tolerance
         )
 
     def command(self, pose_base_in_map: np.ndarray) -> BaseVelocity:
-        """Velocity for the next moment, given where the base is (3,)."""
+        """Velocity for the next moment, in the base frame, given the base's pose (3,) in the map [m, m, rad]."""
         x, y, yaw = np.asarray(pose_base_in_map, float)
         here = np.array((x, y))
         self._advance(here)
         left = self._marks[-1] - self._progress
-        aim = self._point(self._progress + _LOOKAHEAD)
+        aim = self._point(self._progress + self._tuning.look_ahead)
         offset = aim - here
         distance = float(np.linalg.norm(offset))
         to_go = max(left, float(np.linalg.norm(self._path[-1] - here)))
         # Brake as half the acceleration limit allows, then settle exponentially.
-        speed = min(self._speed, np.sqrt(model.BASE_ACCELERATION[0] * to_go), _GAIN * to_go)
+        speed = min(self._speed, np.sqrt(model.BASE_ACCELERATION[0] * to_go), self._tuning.gain * to_go)
         velocity = offset / max(distance, 1e-9) * speed
         error = _wrap(self._yaw - yaw) if left <= self._turn_from else 0.0
-        turn = np.clip(_TURN_GAIN * error, -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
+        turn = np.clip(self._tuning.turn_gain * error, -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
         c, s = np.cos(yaw), np.sin(yaw)
         return BaseVelocity(
             velocity=np.array((c * velocity[0] + s * velocity[1], c * velocity[1] - s * velocity[0], turn))
@@ -65,7 +101,8 @@ class PathFollower:
 
     def _advance(self, here: np.ndarray) -> None:
         """Move the progress mark to the nearest point of the path ahead of it, never back."""
-        ahead = np.linspace(self._progress, min(self._progress + 0.4, self._marks[-1]), 21)
+        farthest = min(self._progress + self._tuning.search_ahead, self._marks[-1])
+        ahead = np.linspace(self._progress, farthest, self._tuning.search_points)
         distances = [float(np.linalg.norm(self._point(mark) - here)) for mark in ahead]
         self._progress = float(ahead[int(np.argmin(distances))])
 

@@ -6,21 +6,65 @@ where they approach.  `free` names the hand axis about which the solver may turn
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import Kinematics, planar_pose
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
 
 FreeAxis = Literal["none", "approach", "closing", "any"]
-POSITION_TOLERANCE = 1e-3  # [m]
-ROTATION_TOLERANCE = 5e-3  # [rad]
-_STEP = 0.25  # greatest change of a joint in one iteration [rad]
+
+_TRIED = "choice: reaches the success rates that tests/skills/motion/test_ik.py asks for"
+
+
+@dataclass(frozen=True, kw_only=True)
+class IkTuning(Quantities):
+    """Numbers of the search for joint angles."""
+
+    position_tolerance: float = quantity(
+        1e-3, "m", "error of the hand at which it is there", "choice: grasps need less"
+    )
+    rotation_tolerance: float = quantity(5e-3, "rad", "error of its turn at which it is there", "choice: 0.3 degrees")
+    seeds: int = quantity(12, "1", "starting points that are tried", _TRIED)
+    iterations: int = quantity(60, "1", "steps from each starting point", _TRIED)
+    max_step: float = quantity(0.25, "rad", "greatest change of a joint in one iteration", _TRIED)
+    rotation_weight: float = quantity(0.3, "m/rad", "what an error of turning counts, in position", _TRIED)
+    rotation_rank: float = quantity(
+        0.2,
+        "m/rad",
+        "the same, where the best of several failed descents is told",
+        "choice: only for the message",
+    )
+    stop_below: float = quantity(
+        0.1, "1", "share of the tolerances at which a descent ends early", "choice: more accuracy is of no use"
+    )
+    damping: float = quantity(1e-3, "1", "of the first step", _TRIED)
+    damping_range: tuple[float, float] = quantity((1e-6, 0.1), "1", "least and greatest damping", _TRIED)
+    damping_factors: tuple[float, float] = quantity(
+        (0.3, 4.0), "1", "of the damping after a step that made the error smaller, and after another one", _TRIED
+    )
+    stuck_after: int = quantity(25, "1", "iterations after which a descent that stands still is given up", _TRIED)
+    stuck_ratio: float = quantity(0.98, "1", "of two errors in a row from which it stands still", _TRIED)
+    stuck_error: float = quantity(
+        0.01, "m^2", "squared error above which it is given up", "choice: nearer ones may still arrive"
+    )
+    posture_gain: float = quantity(0.1, "1", "of the drift to a comfortable posture in the null space", _TRIED)
+    active_set_rounds: int = quantity(
+        3, "1", "solves in one iteration while joints at their limits are taken out", "choice: more are hardly needed"
+    )
+    random_seed: int = quantity(
+        7, "1", "of the random starting points", "choice: the same tries every time, as a run must be reproducible"
+    )
+
+
+IK = IkTuning()
 
 
 def solve_ik(
@@ -31,9 +75,10 @@ def solve_ik(
     q_seed: np.ndarray,
     *,
     free: FreeAxis = "none",
-    seeds: int = 12,
-    iterations: int = 60,
-    accept=None,
+    seeds: int = IK.seeds,
+    iterations: int = IK.iterations,
+    accept: Callable[[np.ndarray], bool] | None = None,
+    tuning: IkTuning = IK,
 ) -> np.ndarray:
     """Joint angles that bring a hand to a pose, near `q_seed` when possible.
 
@@ -48,6 +93,7 @@ def solve_ik(
         seeds: how many starting points to try before giving up.
         iterations: steps from each starting point.
         accept: optional predicate on (7,) angles, for instance a collision check; a solution it refuses is skipped.
+        tuning: numbers of the search.
 
     Returns:
         (7,) angles within the limits; the hand is within 1 mm and 0.3 degrees.
@@ -58,13 +104,14 @@ def solve_ik(
     target = pin.SE3(np.linalg.inv(planar_pose(pose_base_in_map)) @ np.asarray(pose_hand_in_map, float))
     best, refused = (np.inf, np.inf, np.asarray(q_seed, float)), 0
     ready = model.READY[SIDES.index(side)]
-    for n, start in enumerate(_starts(kinematics, side, np.asarray(q_seed, float), seeds)):
-        q, position, rotation = _descend(kinematics, side, target, start, ready if n else start, free, iterations)
-        if position <= POSITION_TOLERANCE and rotation <= ROTATION_TOLERANCE:
+    for n, start in enumerate(_starts(kinematics, side, np.asarray(q_seed, float), seeds, tuning)):
+        posture = ready if n else start
+        q, position, rotation = _descend(kinematics, side, target, start, posture, free, iterations, tuning)
+        if position <= tuning.position_tolerance and rotation <= tuning.rotation_tolerance:
             if accept is None or accept(q):
                 return q
             refused += 1
-        elif position + 0.2 * rotation < best[0] + 0.2 * best[1]:
+        elif position + tuning.rotation_rank * rotation < best[0] + tuning.rotation_rank * best[1]:
             best = (position, rotation, q)
     where = np.round(np.asarray(pose_hand_in_map)[:3, 3], 3).tolist()
     if refused:
@@ -75,29 +122,6 @@ def solve_ik(
         f"{np.rad2deg(best[1]):.1f} degrees are left",
         *best,
     )
-
-
-def solve_dual_ik(
-    kinematics: Kinematics,
-    poses_hand_in_map: np.ndarray,
-    pose_base_in_map: np.ndarray,
-    q_seed: np.ndarray,
-    *,
-    free: FreeAxis = "none",
-    accept=None,
-) -> np.ndarray:
-    """Both hands at once: poses (2, 4, 4), seed (2, 7); returns (2, 7).
-
-    `accept` is asked about pairs (2, 7), so that a check of one arm against the other can refuse.
-
-    Raises:
-        Unreachable: one of the hands does not get there.
-    """
-    seed = np.asarray(q_seed, float)
-    left = solve_ik(kinematics, SIDES[0], poses_hand_in_map[0], pose_base_in_map, seed[0], free=free)
-    pair_ok = None if accept is None else lambda q: accept(np.stack((left, q)))
-    right = solve_ik(kinematics, SIDES[1], poses_hand_in_map[1], pose_base_in_map, seed[1], free=free, accept=pair_ok)
-    return np.stack((left, right))
 
 
 def hand_pose(position: np.ndarray, approach: np.ndarray, closing: np.ndarray | None = None) -> np.ndarray:
@@ -124,13 +148,15 @@ def hand_pose(position: np.ndarray, approach: np.ndarray, closing: np.ndarray | 
     return pose
 
 
-def _starts(kinematics: Kinematics, side: Side, q_seed: np.ndarray, count: int) -> Iterator[np.ndarray]:
+def _starts(
+    kinematics: Kinematics, side: Side, q_seed: np.ndarray, count: int, tuning: IkTuning
+) -> Iterator[np.ndarray]:
     """The seed, the ready posture and its elbow variants, then seeded random postures around the middle."""
     limits = kinematics.limits[side]
     ready = model.READY[SIDES.index(side)]
     yield limits.clip(q_seed)
     yield ready
-    generator = np.random.default_rng(7)  # the same tries every time: a run must be reproducible
+    generator = np.random.default_rng(tuning.random_seed)
     for n in range(count - 2):
         random = generator.uniform(limits.lower, limits.upper)
         yield limits.clip(0.5 * (ready + random) if n % 2 else random)
@@ -144,6 +170,7 @@ def _descend(
     posture: np.ndarray,
     free: FreeAxis,
     iterations: int,
+    tuning: IkTuning,
 ) -> tuple[np.ndarray, float, float]:
     """Levenberg-Marquardt with clamping, drifting to `posture` where the task leaves it free.
 
@@ -151,40 +178,42 @@ def _descend(
     """
     limits = kinematics.limits[side]
     rows = _task_rows(free)
-    weight = np.array((1.0, 1.0, 1.0, 0.3, 0.3, 0.3))[rows]  # 1 rad counts as 0.3 m
+    turn, (shrink, grow), (least, most) = tuning.rotation_weight, tuning.damping_factors, tuning.damping_range
+    weight = np.array((1.0, 1.0, 1.0, turn, turn, turn))[rows]
     q = q.copy()
     last = np.inf
-    damping = 1e-3
+    damping = tuning.damping
     result = (q, np.inf, np.inf)
     for step in range(iterations):
         pose, jacobian = kinematics.pose_and_jacobian_local(side, q)
         error = _error(pose, target, free)
         position, rotation = float(np.linalg.norm(error[:3])), float(np.linalg.norm(error[3:]))
-        if position + 0.3 * rotation < result[1] + 0.3 * result[2]:
+        if position + turn * rotation < result[1] + turn * result[2]:
             result = (q.copy(), position, rotation)
-        if position < 0.1 * POSITION_TOLERANCE and rotation < 0.1 * ROTATION_TOLERANCE:
+        share = tuning.stop_below
+        if position < share * tuning.position_tolerance and rotation < share * tuning.rotation_tolerance:
             break
         e = weight * error[rows]
         size = float(e @ e)
-        damping = max(damping * 0.3, 1e-6) if size < last else min(damping * 4.0, 0.1)
-        if step > 25 and size > 0.98 * last and size > 0.01:
+        damping = max(damping * shrink, least) if size < last else min(damping * grow, most)
+        if step > tuning.stuck_after and size > tuning.stuck_ratio * last and size > tuning.stuck_error:
             break  # stuck far away: another seed is cheaper
         last = size
         J = weight[:, None] * jacobian[rows]
         # Joints at a limit that the step would push further are taken out of the solve.
         free_joints = np.ones(7, bool)
         step_q = np.zeros(7)
-        for _ in range(3):
+        for _ in range(tuning.active_set_rounds):
             Jf = J[:, free_joints]
             A = Jf @ Jf.T + damping * np.eye(len(rows))
-            drift = 0.1 * (posture - q)[free_joints]  # in the null space
+            drift = tuning.posture_gain * (posture - q)[free_joints]  # in the null space
             step_q = np.zeros(7)
             step_q[free_joints] = drift + Jf.T @ np.linalg.solve(A, e - Jf @ drift)
             blocked = ((q <= limits.lower) & (step_q < 0)) | ((q >= limits.upper) & (step_q > 0))
             if not blocked.any():
                 break
             free_joints &= ~blocked
-        q = limits.clip(q + step_q * min(1.0, _STEP / max(float(np.abs(step_q).max()), 1e-9)))
+        q = limits.clip(q + step_q * min(1.0, tuning.max_step / max(float(np.abs(step_q).max()), 1e-9)))
     return result
 
 

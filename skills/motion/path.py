@@ -3,15 +3,36 @@
 from __future__ import annotations
 
 import heapq
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import RoomMap
 from .errors import PathBlocked
 
 _NEIGHBOURS = [(r, c, float(np.hypot(r, c))) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
-_COMFORT = 0.25  # distance from obstacles below which a cell costs extra [m]
-_SNAP = 0.4  # a start or goal outside the free space is taken to the nearest free cell within this [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathTuning(Quantities):
+    """Numbers of the base's path planner."""
+
+    comfort: float = quantity(
+        0.25, "m", "distance from obstacles below which a cell costs extra", "choice: room to correct the path"
+    )
+    comfort_cost: float = quantity(
+        2.0, "1", "extra cost of a cell right beside an obstacle", "choice: a narrow way counts three times its length"
+    )
+    snap: float = quantity(
+        0.4, "m", "farthest that a start outside the free space is from it", "choice: a base half under the bed"
+    )
+    line_step: float = quantity(
+        0.3, "1", "spacing of the tests along a straight line, in cells", "choice: no cell is passed over"
+    )
+
+
+PATH = PathTuning()
 
 
 def is_free(room: RoomMap, position: np.ndarray) -> bool:
@@ -21,7 +42,7 @@ def is_free(room: RoomMap, position: np.ndarray) -> bool:
     return bool(0 <= row < rows and 0 <= column < columns and room.free[row, column])
 
 
-def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray) -> np.ndarray:
+def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray, *, tuning: PathTuning = PATH) -> np.ndarray:
     """Corner points (k, 2) of a free path of the base's centre, start first, goal last.
 
     A start just outside the free space (the base pushed half under the bed) is allowed: the path leaves by
@@ -30,7 +51,8 @@ def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray) -> np.ndarray:
     Args:
         room: the map.
         start: (2,) or (3,) in the map [m].
-        goal: (2,) or (3,).
+        goal: (2,) or (3,) in the map [m].
+        tuning: numbers of the planner.
 
     Raises:
         PathBlocked: the goal is not free, or walled off, or the start is nowhere near free space.
@@ -41,15 +63,15 @@ def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray) -> np.ndarray:
     if not is_free(room, goal):
         raise PathBlocked(f"the base cannot stand at {np.round(goal, 2).tolist()} m: the map has an obstacle there")
     clearance = np.asarray(distance_transform_edt(np.pad(room.free, 1)))[1:-1, 1:-1] * room.resolution
-    cost = 1.0 + 2.0 * np.clip(1.0 - clearance / _COMFORT, 0.0, 1.0)
-    cells = _astar(room.free, cost, _nearest_free(room, start), _cell(room, goal))
+    cost = 1.0 + tuning.comfort_cost * np.clip(1.0 - clearance / tuning.comfort, 0.0, 1.0)
+    cells = _astar(room.free, cost, _nearest_free(room, start, tuning.snap), _cell(room, goal))
     if cells is None:
         raise PathBlocked(f"no free way leads from {np.round(start, 2).tolist()} to {np.round(goal, 2).tolist()} m")
     points = [_centre(room, cell) for cell in cells]
     inside = is_free(room, start)
     points = [start, *(points[1:] if inside else points)]
     points = [*points[:-1], goal] if len(points) > 1 else [start, goal]
-    return np.array(_straighten(room, points, 0 if inside else 1))
+    return np.array(_straighten(room, points, 0 if inside else 1, tuning.line_step))
 
 
 def path_length(path: np.ndarray) -> float:
@@ -66,13 +88,13 @@ def _centre(room: RoomMap, cell: tuple[int, int]) -> np.ndarray:
     return np.asarray(room.origin, float) + room.resolution * np.array((cell[1], cell[0]))
 
 
-def _nearest_free(room: RoomMap, position: np.ndarray) -> tuple[int, int]:
+def _nearest_free(room: RoomMap, position: np.ndarray, snap: float) -> tuple[int, int]:
     if is_free(room, position):
         return _cell(room, position)
     cells = np.argwhere(room.free)
     distance = np.linalg.norm(cells[:, ::-1] * room.resolution + room.origin - position, axis=1)
-    if not len(cells) or distance.min() > _SNAP:
-        raise PathBlocked(f"the base at {np.round(position, 2).tolist()} m is over {_SNAP} m from any free space")
+    if not len(cells) or distance.min() > snap:
+        raise PathBlocked(f"the base at {np.round(position, 2).tolist()} m is over {snap} m from any free space")
     row, column = cells[int(distance.argmin())]
     return int(row), int(column)
 
@@ -108,19 +130,19 @@ def _astar(
     return None
 
 
-def _straighten(room: RoomMap, points: list[np.ndarray], keep: int) -> list[np.ndarray]:
+def _straighten(room: RoomMap, points: list[np.ndarray], keep: int, step: float) -> list[np.ndarray]:
     """Leave out corners that a straight free line makes unnecessary; the first `keep` segments stay."""
     result = points[: keep + 1]
     n = keep
     while n < len(points) - 1:
         m = len(points) - 1
-        while m > n + 1 and not _line_free(room, points[n], points[m]):
+        while m > n + 1 and not _line_free(room, points[n], points[m], step):
             m -= 1
         result.append(points[m])
         n = m
     return result
 
 
-def _line_free(room: RoomMap, a: np.ndarray, b: np.ndarray) -> bool:
-    count = int(np.ceil(np.linalg.norm(b - a) / (0.3 * room.resolution))) + 1
+def _line_free(room: RoomMap, a: np.ndarray, b: np.ndarray, step: float) -> bool:
+    count = int(np.ceil(np.linalg.norm(b - a) / (step * room.resolution))) + 1
     return all(is_free(room, point) for point in np.linspace(a, b, count))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot.collision import CollisionChecker
 from ...sim.robot.kinematics import Kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
@@ -14,9 +16,25 @@ from .ik import FreeAxis, solve_ik
 from .rrt import connect, segment_free
 from .trajectory import HandSpeed, free_postures, plan_joint_motion, standing_contacts
 
-_LINE_STEP = 0.02  # [m]
-_LINE_TURN = 0.1  # [rad]
-_JUMP = 0.5  # largest change of a joint from one point of a line to the next [rad]
+
+@dataclass(frozen=True, kw_only=True)
+class ReachTuning(Quantities):
+    """Numbers of planning motions of the hands."""
+
+    line_step: float = quantity(0.02, "m", "longest step along a straight line", "choice: the spline then keeps to it")
+    line_turn: float = quantity(0.1, "rad", "greatest turn of the hand in such a step", "choice: about the same effort")
+    max_joint_step: float = quantity(
+        0.5, "rad", "greatest change of a joint in such a step", "choice: more means that the arm folds over"
+    )
+    spacings: tuple[float, float, float] = quantity(
+        (0.25, 0.1, 0.04),
+        "rad",
+        "between the points of a path round an obstacle, tried in turn",
+        "choice: a spline through wide-spaced points is quicker, and may cut a corner",
+    )
+
+
+REACH = ReachTuning()
 
 
 def plan_hand_line(
@@ -29,6 +47,7 @@ def plan_hand_line(
     speed_scale: float = 1.0,
     hand_speed: HandSpeed | None = None,
     checker: CollisionChecker | None = None,
+    tuning: ReachTuning = REACH,
 ) -> JointTrajectory:
     """Move one or both hands along straight lines, turning evenly on the way.
 
@@ -41,6 +60,7 @@ def plan_hand_line(
         speed_scale: share of the joint limits to use.
         hand_speed: limit on the hands' speed (see `plan_joint_motion`).
         checker: tests the whole motion when given.
+        tuning: numbers of the planner.
 
     Raises:
         Unreachable: a point of a line is out of reach, or the arm would have to fold over on the way.
@@ -50,7 +70,7 @@ def plan_hand_line(
     starts = {
         side: kinematics.pose_hand_in_map(side, arm_positions[SIDES.index(side)], pose_base_in_map) for side in sides
     }
-    count = max(_line_points(starts[side], goals[side]) for side in sides)
+    count = max(_line_points(starts[side], goals[side], tuning) for side in sides)
     waypoints: dict[Side, np.ndarray] = {}
     for side in sides:
         q = np.asarray(arm_positions[SIDES.index(side)], float)
@@ -58,7 +78,7 @@ def plan_hand_line(
         for share in np.linspace(0.0, 1.0, count + 1)[1:]:
             pose = _between(starts[side], np.asarray(goals[side], float), share)
             q = solve_ik(kinematics, side, pose, pose_base_in_map, path[-1], free=free, seeds=1)
-            if np.abs(q - path[-1]).max() > _JUMP:
+            if np.abs(q - path[-1]).max() > tuning.max_joint_step:
                 raise Unreachable(
                     f"the {side} arm would fold over {share:.0%} along the straight line to "
                     f"{np.round(goals[side][:3, 3], 3).tolist()} m",
@@ -90,6 +110,7 @@ def plan_reach(
     speed_scale: float = 1.0,
     hand_speed: HandSpeed | None = None,
     checker: CollisionChecker | None = None,
+    tuning: ReachTuning = REACH,
 ) -> JointTrajectory:
     """Bring one or both hands to poses by any free joint motion: the straight one, or round what blocks it.
 
@@ -111,6 +132,7 @@ def plan_reach(
         speed_scale=speed_scale,
         hand_speed=hand_speed,
         checker=checker,
+        tuning=tuning,
     )
 
 
@@ -124,8 +146,20 @@ def plan_arms(
     speed_scale: float = 1.0,
     hand_speed: HandSpeed | None = None,
     checker: CollisionChecker | None = None,
+    tuning: ReachTuning = REACH,
 ) -> JointTrajectory:
-    """Move the arms on `sides` to joint angles `target` (2, 7): straight in joint space when that is free, else round.
+    """Move the arms on `sides` to joint angles: straight in joint space when that is free, else round what blocks it.
+
+    Args:
+        kinematics: the robot.
+        target: (2, 7) where the arms are to go [rad]; only the rows of `sides` count.
+        arm_positions: (2, 7) where the arms are now [rad].
+        pose_base_in_map: (3,) where the base stands.
+        sides: that move.
+        speed_scale: share of the joint limits to use.
+        hand_speed: limit on the hands' speed (see `plan_joint_motion`).
+        checker: tests the whole motion when given.
+        tuning: numbers of the planner.
 
     Raises:
         MotionBlocked: no free way was found.
@@ -174,12 +208,13 @@ def plan_arms(
         if not hits:
             raise
         raise MotionBlocked(f"{problem}: {hits[0][0]} is at {hits[0][1]}".replace("_", " ")) from problem
-    for spacing in (0.25, 0.1):  # a spline through wide-spaced points is quicker, and may cut a corner
+    *wide, narrow = tuning.spacings
+    for spacing in wide:
         try:
             return timed(_subdivide(corners, spacing))
         except MotionBlocked:
             continue
-    return timed(_subdivide(corners, 0.04))
+    return timed(_subdivide(corners, narrow))
 
 
 def _subdivide(points: np.ndarray, spacing: float) -> np.ndarray:
@@ -189,10 +224,11 @@ def _subdivide(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.column_stack([np.interp(marks, lengths, column) for column in points.T])
 
 
-def _line_points(start: np.ndarray, goal: np.ndarray) -> int:
+def _line_points(start: np.ndarray, goal: np.ndarray, tuning: ReachTuning) -> int:
+    """Steps of a straight line between two poses (4, 4)."""
     angle = np.arccos(np.clip((np.trace(start[:3, :3].T @ goal[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
     distance = np.linalg.norm(goal[:3, 3] - start[:3, 3])
-    return max(1, int(np.ceil(max(distance / _LINE_STEP, angle / _LINE_TURN))))
+    return max(1, int(np.ceil(max(distance / tuning.line_step, angle / tuning.line_turn))))
 
 
 def _between(start: np.ndarray, goal: np.ndarray, share: float) -> np.ndarray:

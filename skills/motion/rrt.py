@@ -3,16 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from .errors import MotionBlocked
 
-_STEP = 0.4  # longest branch of the tree, greatest joint change [rad]
-_RESOLUTION = 0.08  # spacing of the tests along a branch [rad]
-_OUT = 0.25  # farthest step out of a contact, in each joint [rad]
 Test = Callable[[np.ndarray], bool]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RrtTuning(Quantities):
+    """Numbers of the search for a free way."""
+
+    branch: float = quantity(
+        0.4, "rad", "longest branch of a tree, by the joint that moves most", "choice: few branches round an obstacle"
+    )
+    resolution: float = quantity(
+        0.08, "rad", "spacing of the tests along a branch", "choice: a hand moves by at most about 8 cm"
+    )
+    tries: int = quantity(1500, "1", "random samples before giving up", "choice: a few seconds of computing")
+    shortcuts: int = quantity(60, "1", "shortcuts that are tried on a path", "choice: later ones hardly shorten it")
+    escape: tuple[float, float] = quantity(
+        (0.03, 0.25),
+        "rad",
+        "least and greatest step out of a contact, in each joint",
+        "choice: a small motion unplanned",
+    )
+    escape_radii: int = quantity(12, "1", "sizes of that step, from the least on", "choice: 0.02 rad apart")
+    escape_samples: int = quantity(40, "1", "random steps of each size", "choice: cheap beside the search itself")
+
+
+RRT = RrtTuning()
 
 
 def connect(
@@ -22,8 +46,8 @@ def connect(
     upper: np.ndarray,
     free: Test,
     *,
-    tries: int = 1500,
     seed: int = 0,
+    tuning: RrtTuning = RRT,
 ) -> np.ndarray:
     """Waypoints (k, n) of a free path between two joint vectors (n,).
 
@@ -35,21 +59,21 @@ def connect(
         lower: lower joint limits (n,) [rad].
         upper: upper joint limits (n,) [rad].
         free: whether a joint vector is allowed.
-        tries: random samples before giving up.
         seed: of the samples; the same seed gives the same path.
+        tuning: numbers of the search.
 
     Raises:
         MotionBlocked: the goal or everything near the start is not free, or no path was found.
     """
     generator = np.random.default_rng(seed)
     if not free(start):
-        freed = _step_out(start, lower, upper, free, generator)
-        return np.vstack((start, connect(freed, goal, lower, upper, free, tries=tries, seed=seed)))
+        freed = _step_out(start, lower, upper, free, generator, tuning)
+        return np.vstack((start, connect(freed, goal, lower, upper, free, seed=seed, tuning=tuning)))
     if not free(goal):
         raise MotionBlocked("no way to plan: the goal posture touches something")
-    trees = (_Tree(start), _Tree(goal))
+    trees = (_Tree(start, tuning), _Tree(goal, tuning))
     forward = True
-    for n in range(tries):
+    for n in range(tuning.tries):
         grown, other = trees if forward else trees[::-1]
         sample = other.nodes[0] if n == 0 else generator.uniform(lower, upper)
         tip = grown.extend(sample, free)
@@ -58,31 +82,44 @@ def connect(
             if met is not None:
                 first, second = (tip, met) if forward else (met, tip)
                 path = np.array(trees[0].branch(first)[::-1] + trees[1].branch(second)[1:])
-                return _shorten(path, free, generator)
+                return _shorten(path, free, generator, tuning)
         forward = not forward
-    raise MotionBlocked(f"no free way found for the arms in {tries} tries")
+    raise MotionBlocked(f"no free way found for the arms in {tuning.tries} tries")
 
 
 def _step_out(
-    start: np.ndarray, lower: np.ndarray, upper: np.ndarray, free: Test, generator: np.random.Generator
+    start: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    free: Test,
+    generator: np.random.Generator,
+    tuning: RrtTuning,
 ) -> np.ndarray:
-    """The free joint vector found nearest to one that is not, within `_OUT`."""
-    for radius in np.linspace(0.03, _OUT, 12):
-        for _ in range(40):
+    """The free joint vector found nearest to one that is not."""
+    for radius in np.linspace(*tuning.escape, tuning.escape_radii):
+        for _ in range(tuning.escape_samples):
             q = np.clip(start + generator.uniform(-radius, radius, len(start)), lower, upper)
             if free(q):
                 return q
     raise MotionBlocked("no way to plan: the arms already touch something")
 
 
-def segment_free(a: np.ndarray, b: np.ndarray, free: Test) -> bool:
-    """Whether every posture between two joint vectors is allowed (the first one is taken on trust)."""
-    count = max(1, int(np.ceil(np.abs(b - a).max() / _RESOLUTION)))
+def segment_free(a: np.ndarray, b: np.ndarray, free: Test, *, resolution: float = RRT.resolution) -> bool:
+    """Whether every posture between two joint vectors (n,) is allowed; the first one is taken on trust.
+
+    Args:
+        a: joint vector to begin with [rad].
+        b: joint vector to end with [rad].
+        free: whether a joint vector is allowed.
+        resolution: spacing of the tests, by the joint that moves most [rad].
+    """
+    count = max(1, int(np.ceil(np.abs(b - a).max() / resolution)))
     return all(free(a + (b - a) * (n / count)) for n in range(1, count + 1))
 
 
 class _Tree:
-    def __init__(self, root: np.ndarray) -> None:
+    def __init__(self, root: np.ndarray, tuning: RrtTuning) -> None:
+        self._tuning = tuning
         self.nodes = [np.asarray(root, float)]
         self._parents = [-1]
 
@@ -113,18 +150,19 @@ class _Tree:
     def _grow(self, node: int, target: np.ndarray, free: Test) -> int | None:
         offset = target - self.nodes[node]
         size = float(np.abs(offset).max())
-        q = target if size <= _STEP else self.nodes[node] + offset * (_STEP / size)
-        if size < 1e-12 or not segment_free(self.nodes[node], q, free):
+        branch, resolution = self._tuning.branch, self._tuning.resolution
+        q = target if size <= branch else self.nodes[node] + offset * (branch / size)
+        if size < 1e-12 or not segment_free(self.nodes[node], q, free, resolution=resolution):
             return node if size < 1e-12 else None
         self.nodes.append(np.asarray(q, float))
         self._parents.append(node)
         return len(self.nodes) - 1
 
 
-def _shorten(path: np.ndarray, free: Test, generator: np.random.Generator, rounds: int = 60) -> np.ndarray:
+def _shorten(path: np.ndarray, free: Test, generator: np.random.Generator, tuning: RrtTuning) -> np.ndarray:
     """Replace stretches between random points of the path by straight free segments."""
     points = list(path)
-    for _ in range(rounds):
+    for _ in range(tuning.shortcuts):
         if len(points) < 3:
             break
         steps = [float(np.linalg.norm(b - a)) for a, b in pairwise(points)]
@@ -137,6 +175,6 @@ def _shorten(path: np.ndarray, free: Test, generator: np.random.Generator, round
             points[k] + (points[k + 1] - points[k]) * ((at - lengths[k]) / max(lengths[k + 1] - lengths[k], 1e-12))
             for k, at in ((i, first), (j, last))
         )
-        if segment_free(a, b, free):
+        if segment_free(a, b, free, resolution=tuning.resolution):
             points = [*points[: i + 1], a, b, *points[j + 1 :]]
     return np.array(points)

@@ -3,19 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.collision import CollisionChecker
 from ...sim.robot.kinematics import Kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked
 
-SAMPLE_PERIOD = 0.02  # [s]
-_MARGIN = 0.95  # of the limits: between the points where toppra checks them a motion overshoots by a few percent
 HandSpeed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one that depends on where the hand is (3,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrajectoryTuning(Quantities):
+    """Numbers of timing a joint motion."""
+
+    sample_period: float = quantity(0.02, "s", "between two samples of a trajectory", "choice: some in every tick")
+    limit_margin: float = quantity(
+        0.95,
+        "1",
+        "share of the limits that is used",
+        "choice: between the points where toppra checks them a motion overshoots by a few percent",
+    )
+    grid_step: float = quantity(0.02, "rad", "between the points where toppra checks the limits", "choice: fine enough")
+    grid_intervals: tuple[int, int] = quantity(
+        (40, 200), "1", "least and greatest number of intervals between them", "choice: bounds the time of computing"
+    )
+    checked_samples: int = quantity(
+        60, "1", "samples of a motion that are tested for contact, about", "choice: bounds the time of computing"
+    )
+
+
+TRAJECTORY = TrajectoryTuning()
 
 
 def plan_joint_motion(
@@ -27,6 +50,7 @@ def plan_joint_motion(
     hand_speed: HandSpeed | None = None,
     checker: CollisionChecker | None = None,
     other_arm: np.ndarray | None = None,
+    tuning: TrajectoryTuning = TRAJECTORY,
 ) -> JointTrajectory:
     """Time a smooth motion of one or both arms through waypoints, from rest to rest.
 
@@ -38,9 +62,10 @@ def plan_joint_motion(
         hand_speed: greatest speed of each hand [m/s], or a function of the hand's position in the map.
         checker: when given, every sample is tested.
         other_arm: (7,) angles of the arm that does not move, for `checker`; the ready posture when omitted.
+        tuning: numbers of the timing.
 
     Returns:
-        One trajectory with 7 or 14 joints, sampled every `SAMPLE_PERIOD`.
+        One trajectory with 7 or 14 joints, sampled evenly.
 
     Raises:
         MotionBlocked: a sample collides, or no timing exists.
@@ -57,10 +82,11 @@ def plan_joint_motion(
     points = _distinct(np.hstack(paths))
     joints = tuple(name for side in sides for name in model.arm_joints(side))
     if len(points) == 1:  # already there
-        return JointTrajectory(joints=joints, times=np.array((0.0, SAMPLE_PERIOD)), positions=np.repeat(points, 2, 0))
-    times, samples = _retime(kinematics, sides, points, base, speed_scale, hand_speed)
+        times = np.array((0.0, tuning.sample_period))
+        return JointTrajectory(joints=joints, times=times, positions=np.repeat(points, 2, 0))
+    times, samples = _retime(kinematics, sides, points, base, speed_scale, hand_speed, tuning)
     if checker is not None:
-        check_motion(checker, sides, samples, base, other_arm)
+        check_motion(checker, sides, samples, base, other_arm, tuning=tuning)
     return JointTrajectory(joints=joints, times=times, positions=samples)
 
 
@@ -70,10 +96,20 @@ def check_motion(
     samples: np.ndarray,
     pose_base_in_map: np.ndarray,
     other_arm: np.ndarray | None = None,
+    *,
+    tuning: TrajectoryTuning = TRAJECTORY,
 ) -> None:
-    """Test samples (k, 7 or 14) of the arms on `sides`.
+    """Test a motion for contacts.
 
     What touches at the first sample, where velocity control has brought the arms, may touch until it comes free.
+
+    Args:
+        checker: of the arms against the robot and what stands around it.
+        sides: that move.
+        samples: (k, 7 or 14) joint angles of those arms [rad].
+        pose_base_in_map: (3,) where the base stands.
+        other_arm: (7,) angles of the arm that does not move [rad]; the ready posture when omitted.
+        tuning: how many samples are tested.
 
     Raises:
         MotionBlocked: names the first pair that would touch.
@@ -83,7 +119,8 @@ def check_motion(
         arms[1 - SIDES.index(sides[0])] = other_arm
     leaving: set[tuple[str, str]] = set()
     given: set[tuple[str, str]] | None = None
-    chosen = np.unique(np.append(np.arange(0, len(samples), max(1, len(samples) // 60)), len(samples) - 1))
+    step = max(1, len(samples) // tuning.checked_samples)
+    chosen = np.unique(np.append(np.arange(0, len(samples), step), len(samples) - 1))
     for k in chosen:
         for n, side in enumerate(sides):
             arms[SIDES.index(side)] = samples[k, 7 * n : 7 * n + 7]
@@ -142,7 +179,9 @@ def _retime(
     base: np.ndarray,
     scale: float,
     hand_speed: HandSpeed | None,
+    tuning: TrajectoryTuning,
 ) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) [s] and samples (k, n) [rad] of the fastest motion through points (m, n)."""
     import toppra
 
     toppra.setup_logging("ERROR")
@@ -150,7 +189,7 @@ def _retime(
     path = toppra.SplineInterpolator(length, points)
     limits = [kinematics.limits[side] for side in sides]
     velocity = scale * np.concatenate([limit.velocity for limit in limits])
-    acceleration = _MARGIN * scale**2 * np.concatenate([limit.acceleration for limit in limits])
+    acceleration = tuning.limit_margin * scale**2 * np.concatenate([limit.acceleration for limit in limits])
     constraints: list[Any] = [
         toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
         toppra.constraint.JointAccelerationConstraint(
@@ -158,21 +197,23 @@ def _retime(
         ),
     ]
     if hand_speed is not None:
-        constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed))
-    grid = np.linspace(0.0, length[-1], int(np.clip(length[-1] / 0.02, 40, 200)) + 1)
+        constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed, tuning.limit_margin))
+    grid = np.linspace(0.0, length[-1], int(np.clip(length[-1] / tuning.grid_step, *tuning.grid_intervals)) + 1)
     problem = toppra.algorithm.TOPPRA(constraints, path, gridpoints=grid, solver_wrapper="seidel")
     trajectory: Any = problem.compute_trajectory(0.0, 0.0)
     if trajectory is None:
         raise MotionBlocked("no timing of this joint path keeps the velocity and acceleration limits")
     duration = float(trajectory.duration)
-    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / SAMPLE_PERIOD)) + 1))
+    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / tuning.sample_period)) + 1))
     samples = trajectory(times)
     lower = np.concatenate([limit.lower for limit in limits])
     upper = np.concatenate([limit.upper for limit in limits])
     return times, np.clip(samples, lower, upper)
 
 
-def _hand_speed_constraint(kinematics: Kinematics, sides: list[Side], base: np.ndarray, hand_speed: HandSpeed) -> Any:
+def _hand_speed_constraint(
+    kinematics: Kinematics, sides: list[Side], base: np.ndarray, hand_speed: HandSpeed, margin: float
+) -> Any:
     """A toppra constraint: path speed such that no hand exceeds its limit there."""
     from toppra.constraint import ConstraintType, DiscretizationType, LinearConstraint
 
@@ -195,7 +236,7 @@ def _hand_speed_constraint(kinematics: Kinematics, sides: list[Side], base: np.n
                     if callable(limit):
                         limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])
                     moved = np.linalg.norm(kinematics.jacobian_hand_in_base(side, arm)[:3] @ rate)
-                    bounds[n, 1] = min(bounds[n, 1], (_MARGIN * float(limit) / max(float(moved), 1e-6)) ** 2)
+                    bounds[n, 1] = min(bounds[n, 1], (margin * float(limit) / max(float(moved), 1e-6)) ** 2)
             return None, None, None, None, None, None, bounds
 
     return HandSpeedConstraint()

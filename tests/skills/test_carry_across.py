@@ -10,7 +10,7 @@ from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
-from caretree.skills.belief.sleeve_search import SeenWell
+from caretree.skills.belief.sleeve_search import SleeveMemory
 from caretree.skills.carry_across import ABOVE, LAID, CarryAcross
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.stances import stance
@@ -42,7 +42,7 @@ def ran(sleeve, load=(0.0, 0.0, -1.0)):
             world.load["right"] = np.append(load, np.zeros(3))
         if skill.status != Status.RUNNING:
             break
-    return skill, world, context.memory.of(SeenWell, SeenWell)
+    return skill, world, context.memory.of(SleeveMemory, SleeveMemory)
 
 
 def at(x, y):

@@ -11,7 +11,7 @@ from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
-from caretree.skills.geometry.stances import AHEAD, FACING, LANE
+from caretree.skills.geometry.stances import STANCES
 from caretree.skills.lay_gown import BEGIN, BEYOND, BY, FARTHEST, FOLLOWS, HIDDEN, LayGown
 from caretree.skills.scripted.scripted_person import laid_strap
 from caretree.trees.guard.guard import GuardedWorld
@@ -31,7 +31,7 @@ def armhole(x):
 def let_go_at(seen, taut_until=1.0):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
-    room.waypoints["start"] = (LANE, BEGIN + AHEAD, FACING)
+    room.waypoints["start"] = (STANCES.lane, BEGIN + STANCES.ahead, STANCES.heading)
     world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen))

@@ -3,7 +3,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, SleeveOpening
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.skills.belief.armhole_watch import EDGE, RingWatch
+from caretree.skills.belief.armhole_watch import ArmholeWatch
 from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.arm_path import ArmPath
@@ -46,7 +46,7 @@ def make(points=None, share=1.0):
     guard = GuardedWorld(world)
     senses = fake_senses(held_armhole=ring, hand_cover=cover, cuff_round=cover)
     skill = Watcher("watch", Context(world=guard, guard=guard, senses=senses))
-    return RingWatch(skill, GRIP.arm, GRIP.hand), world
+    return ArmholeWatch(skill, GRIP.arm, GRIP.hand), world
 
 
 def hoop(place, outer):
@@ -56,39 +56,39 @@ def hoop(place, outer):
     return PATH.point(place) + np.linspace(outer - 0.05, outer, 30)[:, None] * side * across - 0.05 * off
 
 
-@pytest.mark.parametrize(("outer", "wanted"), [(EDGE - 0.05, 1.0), (EDGE + 0.05, -1.0)])
+@pytest.mark.parametrize(("outer", "wanted"), [(0.02, 1.0), (0.12, -1.0)])
 def test_the_grip_shifts_until_the_outer_edge_is_in_its_place(outer, wanted):
     ring, world = make(hoop(3.4, outer))
-    ring.look(PATH, 3.4, PATH.point(3.4))
+    ring.centre(PATH, 3.4, PATH.point(3.4))
     side = np.sign(PATH.frame(3.4)[0, 0])
-    assert ring.off == pytest.approx(EDGE - outer, abs=0.005)
-    assert np.sign(side * ring.aside) == wanted
-    first = ring.aside
-    ring.look(PATH, 3.4, PATH.point(3.4))
-    assert ring.aside == first, "one look serves several ticks"
+    assert ring.error == pytest.approx(0.07 - outer, abs=0.005)
+    assert np.sign(side * ring.offset) == wanted
+    first = ring.offset
+    ring.centre(PATH, 3.4, PATH.point(3.4))
+    assert ring.offset == first, "one look serves several ticks"
     for _ in range(30):
         world.clock.wait_until(world.clock.now() + 0.25)
-        ring.look(PATH, 3.4, PATH.point(3.4))
-    assert abs(ring.aside) <= 0.14 + 1e-9
+        ring.centre(PATH, 3.4, PATH.point(3.4))
+    assert abs(ring.offset) <= 0.14 + 1e-9
 
 
 @pytest.mark.parametrize(("share", "said"), [(0.1, True), (0.9, False), (None, False)])
 def test_a_bare_hand_and_a_cuff_on_one_side_are_misses(share, said):
     ring, _ = make(share=share)
-    assert ring.missed(PATH) is ring.beside(PATH) is said
+    assert ring.hand_is_bare(PATH) is ring.arm_is_beside(PATH) is said
 
 
 def test_the_armhole_is_followed_and_forgotten_when_hidden():
     ring, world = make(hoop(0.4, 0.05))
-    ring.follow(PATH, PATH.point(0.2))
-    assert ring.place == pytest.approx(0.4, abs=0.15)
+    ring.locate(PATH, PATH.point(0.2))
+    assert ring.coordinate == pytest.approx(0.4, abs=0.15)
     hidden, world = make()
-    hidden.place, hidden._placed = 0.4, world.clock.now()
-    hidden.follow(PATH, PATH.point(0.2))
-    assert hidden.place == 0.4, "a moment out of sight changes nothing"
+    hidden.coordinate, hidden._located = 0.4, world.clock.now()
+    hidden.locate(PATH, PATH.point(0.2))
+    assert hidden.coordinate == 0.4, "a moment out of sight changes nothing"
     world.clock.wait_until(world.clock.now() + 2.0)
-    hidden.follow(PATH, PATH.point(0.2))
-    assert hidden.place is None
+    hidden.locate(PATH, PATH.point(0.2))
+    assert hidden.coordinate is None
 
 
 @pytest.mark.parametrize(

@@ -46,8 +46,8 @@ def test_the_nearest_place_is_found_near_a_guess():
     path = ArmPath.of(lying_posture("right"))
     for place in (-0.3, 0.4, 1.5, 2.5, 3.4):
         above = path.point(place) + 0.09 * path.frame(place)[:, 2]
-        assert path.place_of(above) == pytest.approx(place, abs=0.03)
-        assert path.place_of(above, near=place + 0.3) == pytest.approx(place, abs=0.03)
+        assert path.coordinate_of(above) == pytest.approx(place, abs=0.03)
+        assert path.coordinate_of(above, near=place + 0.3) == pytest.approx(place, abs=0.03)
 
 
 def test_pitch_is_that_of_the_whole_arm():

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caretree.skills.belief.strap_grasp import presenting_place
+from caretree.skills.belief.strap_grasp import presenting_position
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.strap_grip import presenting, strap_grip
 from caretree.skills.motion.ik import hand_pose
@@ -29,6 +29,6 @@ def test_the_strap_comes_to_lie_across_the_arm_however_it_was_taken(side, turned
 
 def test_the_sleeve_is_presented_straight_before_the_fingertips():
     path = ArmPath.of(lying_posture("right"))
-    place = presenting_place(path, 0.4)
+    place = presenting_position(path, 0.4)
     assert np.linalg.norm(place - path.points[3]) == pytest.approx(0.4)
     assert place[2] == pytest.approx(path.points[3, 2])

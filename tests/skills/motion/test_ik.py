@@ -4,7 +4,7 @@ from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import Kinematics
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import Unreachable
-from caretree.skills.motion.ik import hand_pose, solve_dual_ik, solve_ik
+from caretree.skills.motion.ik import hand_pose, solve_ik
 
 BASE = np.array((1.0, -0.2, np.pi))
 
@@ -94,13 +94,6 @@ def test_refused_postures_are_not_returned(kinematics):
         solve_ik(kinematics, "right", pose, BASE, model.READY[1], free="approach", accept=lambda q: False)
     low_elbow = solve_ik(kinematics, "right", pose, BASE, model.READY[1], free="approach", accept=lambda q: q[2] < 0.5)
     assert low_elbow[2] < 0.5
-
-
-def test_both_hands_hold_a_gown_wide(kinematics):
-    poses = np.stack([hand_pose((0.35, -0.2 - y, 1.35), (-1, 0, -1)) for y in (0.65, -0.65)])
-    arms = solve_dual_ik(kinematics, poses, BASE, model.READY, free="approach")
-    for n, side in enumerate(SIDES):
-        np.testing.assert_allclose(kinematics.pose_hand_in_map(side, arms[n], BASE)[:3, 3], poses[n, :3, 3], atol=1e-3)
 
 
 def test_hand_pose_is_a_rotation_that_points_and_closes_as_asked():
