@@ -1,4 +1,4 @@
-"""Stage A: look for the corner of the hung gown's neckline that shows, from in front of the hook or from beside it."""
+"""Look for a visible corner of the hung gown's neckline, from in front of the hook and from beside it."""
 
 from __future__ import annotations
 
@@ -9,17 +9,45 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import CORNER_OF, GraspPoint
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Frame, Side
 from .control.base import drive_to
-from .core.ports import Output
+from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
+from .core.tries import Tries
 
-STAND = 1.0  # before the hook, where both hands turn freely and the camera sees the whole gown [m]
-ROUND = tuple(np.deg2rad((0.0, -30.0, 30.0)))  # about the hook, from squarely before the rail [rad]
-CLEAR = 0.5  # confidence of a corner with no other cloth beside it
-NEAR_ENOUGH = 0.04  # of the place to stand [m or rad]
 OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class FindCornerTuning(Quantities):
+    """Numbers of `FindCorner`."""
+
+    distance: float = quantity(
+        1.0,
+        "m",
+        "from the base to the hook",
+        "choice: there both hands turn freely, and the camera sees the whole gown",
+    )
+    view_angles: tuple[float, float, float] = quantity(
+        (0.0, float(np.deg2rad(-30.0)), float(np.deg2rad(30.0))),
+        "rad",
+        "about the hook from squarely before the rail, where it looks from, in this order",
+        "measured: on simulated gowns a corner shows from at least one of the three",
+    )
+    clear_confidence: float = quantity(
+        0.5,
+        "1",
+        "confidence above which no other cloth hangs beside a corner, so that the search ends",
+        "design: perception gives less to a corner with other cloth beside it",
+    )
+    tolerance: float = quantity(
+        0.04,
+        "m, rad",
+        "distance from a place to stand at which no step is made",
+        "choice: a shorter step is not worth driving",
+    )
 
 
 @dataclass
@@ -30,23 +58,22 @@ class Tried:
 
 
 class FindCorner(Skill):
-    """Stands before the hook and looks; where no corner shows down to its end, it looks again from other places.
+    """Stands before the hook and looks; where no corner shows clear of other cloth, it looks from other places.
 
-    First from either side: a gown whose front bulges towards the camera shows it edge-on in front.  Then from
-    behind the rail: a gown that is wrapped round itself shows its outside on both sides, and its neckline on one.
+    The first of these are beside the hook: if the front of the gown bulges towards the camera, its neckline is seen
+    edge-on from straight ahead.  The last are behind the rail: a gown that is wrapped round itself shows its outside
+    on both sides of the rail, but its neckline on one only.
 
-    Asked again, it looks for the other corner first.
-
-    Outputs: `hook`; `found`, the corner; `sleeve`, the wearer's side that it belongs to, and `other`, the one that is
-    left; `hand` that takes it (the outside faces the robot: corners are mirrored), and `other_hand`.
+    When it is run again, it looks for the other corner first.  It fails where no corner shows from anywhere.
     """
 
-    hook = Output(GraspPoint)
-    found = Output(GraspPoint)
-    sleeve = Output(Side)
-    other = Output(Side)
-    hand = Output(Side)
-    other_hand = Output(Side)
+    tuning = Input(FindCornerTuning, default=FindCornerTuning(), doc="numbers of this skill")
+    hook = Output(GraspPoint, unit="m, map", doc="where the gown hangs")
+    corner = Output(GraspPoint, unit="m, map", doc="the corner that was found")
+    sleeve = Output(Side, doc="the wearer's side that the corner belongs to")
+    other_sleeve = Output(Side, doc="the wearer's other side")
+    hand = Output(Side, doc="the hand that takes the corner; the gown's outside faces the robot, so sides are mirrored")
+    other_hand = Output(Side, doc="the hand that takes the other corner")
     reasons = (Reason.NOTHING_SEEN, Reason.COMMAND_LOST, Reason.TIMEOUT, Reason.PATH_BLOCKED)
 
     def steps(self) -> Iterator[None]:
@@ -74,35 +101,30 @@ class FindCorner(Skill):
         sleeve: Side = "left" if found.target == CORNER_OF["left"] else "right"
         tried.append(sleeve)
         self.note(f"sees the {sleeve} corner of the neckline, confidence {found.confidence:.2f}")
-        self.hook, self.found, self.sleeve, self.other = hook, found, sleeve, OTHER[sleeve]
+        self.hook, self.corner, self.sleeve, self.other_sleeve = hook, found, sleeve, OTHER[sleeve]
         self.hand, self.other_hand = OTHER[sleeve], sleeve
 
     def _look_round(
         self, hook: GraspPoint, front: float, wanted: Side | None
     ) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
-        """Hook and corner, from the first place that shows the wanted one clear of other cloth, or else from the best.
+        """Hook and corner: from the first place that shows the wanted corner clear of other cloth, else from the best.
 
         Raises:
             PerceptionFailure: no corner is seen from anywhere.
         """
-        nothing: PerceptionFailure | None = None
-        best: tuple[float, float, Side | None] | None = None
-        for turn in ROUND:
+        tries, best = Tries(PerceptionFailure), None
+        for turn in self.tuning.view_angles:
             hook, frame = yield from self._stand(hook, front + turn)
             for side in (wanted, None) if wanted else (None,):
-                try:
+                with tries:
                     found = self._shown(frame, hook, side)
-                except PerceptionFailure as miss:
-                    nothing = miss
-                    continue
-                score = found.confidence + float(side == wanted)
-                if score > 1.0 + CLEAR:
-                    return hook, found
-                if best is None or score > best[0]:
-                    best = score, turn, side
+                    score = found.confidence + float(side == wanted)
+                    if score > 1.0 + self.tuning.clear_confidence:
+                        return hook, found
+                    if best is None or score > best[0]:
+                        best = score, turn, side
         if best is None:
-            assert nothing is not None
-            raise nothing
+            raise tries.last
         hook, frame = yield from self._stand(hook, front + best[1])
         return hook, self._shown(frame, hook, best[2])
 
@@ -110,9 +132,10 @@ class FindCorner(Skill):
         return self.context.senses.shown_corner(frame, hook_in_map=hook.position_in_map, side=side)
 
     def _stand(self, hook: GraspPoint, yaw: float) -> Generator[None, None, tuple[GraspPoint, Frame]]:
-        """Step to where the hook is straight ahead at a heading; the hook and what is seen from there."""
-        goal = np.append(hook.position_in_map[:2] - STAND * np.array((np.cos(yaw), np.sin(yaw))), yaw)
-        if np.linalg.norm(goal - self.world.observe().pose_base_in_map) > NEAR_ENOUGH:
+        """Step to where the hook is straight ahead at heading `yaw` [rad]; the hook, and the frame seen from there."""
+        tuning = self.tuning
+        goal = np.append(hook.position_in_map[:2] - tuning.distance * np.array((np.cos(yaw), np.sin(yaw))), yaw)
+        if np.linalg.norm(goal - self.world.observe().pose_base_in_map) > tuning.tolerance:
             yield from drive_to(self, goal, straight=True)
         frame = self.world.look("head")
         return self.context.senses.hook(frame), frame

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
 
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .control.hands import open_gripper
 from .control.pinch import back_off
@@ -13,23 +16,28 @@ from .core.skill import Skill
 from .motion.errors import MotionError
 
 
+@dataclass(frozen=True, kw_only=True)
+class ReleaseTuning(Quantities):
+    """Numbers of `Release`."""
+
+    distance_shares: tuple[float, ...] = quantity(
+        (1.0, 0.5, 0.25), "1", "shares of `distance` that are tried in turn", "choice: less is better than nothing"
+    )
+
+
 class Release(Skill):
-    """Opens the fingers of one hand, then draws it back along its own approach as far as the arm can.
+    """Opens the fingers of one hand, then draws it back along its own approach as far as the arm can."""
 
-    Inputs: `side`, the hand; `distance` to draw it back at most [m].
-    """
-
-    side = Input(Side)
-    distance = Input(float, default=0.15)
+    hand = Input(Side, doc="the hand that lets go")
+    distance = Input(float, unit="m", doc="by which the hand is drawn back at most", default=0.15)
+    tuning = Input(ReleaseTuning, default=ReleaseTuning(), doc="numbers of this skill")
     reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
 
     def steps(self) -> Iterator[None]:
         """Open, draw back."""
-        self.note(f"the {self.side} hand lets go")
-        yield from open_gripper(self, self.side)
-        for share in (1.0, 0.5, 0.25):
-            try:
-                yield from back_off(self, self.side, share * self.distance)
+        self.note(f"the {self.hand} hand lets go")
+        yield from open_gripper(self, self.hand)
+        for share in self.tuning.distance_shares:
+            with suppress(MotionError):  # too far for this arm: less will do
+                yield from back_off(self, self.hand, share * self.distance)
                 return
-            except MotionError:  # too far for this arm: less will do
-                continue

@@ -1,4 +1,4 @@
-"""Stage A: segment the gown on its rail and take it near the hook."""
+"""Segment the gown on its rail and take it near the hook."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ from .core.skill import Skill
 class SegmentAndGrasp(Skill):
     """Looks with the head, picks a place near the hanging point and closes the fingers of one hand there.
 
-    Inputs: `side`, the hand; `force`, squeezing [N].  Output: `grasp`, the place it took.
-    A miss ends with the hand open and drawn back.
+    It fails where no gown shows, or none is between the fingers in the end; the hand is then open and drawn back.
     """
 
-    side = Input(Side)
-    force = Input(float, default=30.0)
-    grasp = Output(GraspPoint)
+    hand = Input(Side, doc="the hand that takes the gown")
+    force = Input(float, unit="N", doc="of the grip at most", default=30.0)
+    grasp = Output(GraspPoint, unit="m, map", doc="where the gown was taken")
     reasons = (
         Reason.NOTHING_SEEN,
         Reason.PATH_BLOCKED,
@@ -39,12 +38,12 @@ class SegmentAndGrasp(Skill):
         yield from pan_head(self, 0.0)
         point = self.context.senses.hang_point(self.world.look("head"))
         self.note("reaches for the gown")
-        yield from stand_for(self, self.side, point.position_in_map)
-        yield from reach_in(self, self.side, point.position_in_map, point.approach_in_map, point.closing_in_map)
+        yield from stand_for(self, self.hand, point.position_in_map)
+        yield from reach_in(self, self.hand, point.position_in_map, point.approach_in_map, point.closing_in_map)
         try:
-            yield from pinch(self, self.side, force=self.force)
+            yield from pinch(self, self.hand, force=self.force)
         except SkillFailure as miss:
             if miss.reason == Reason.GRASP_MISSED:
-                yield from back_off(self, self.side)
+                yield from back_off(self, self.hand)
             raise
         self.grasp = point

@@ -1,11 +1,13 @@
-"""Stage B: the two hands that hold the shoulders of the gown draw apart until the neckline is taut."""
+"""Draw apart the two hands that hold the ends of the neckline until it is stretched."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..sim.quantity import Quantities, quantity
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, HandTwist
 from .control.hands import cloth_load, hand_now, move_hands
@@ -13,49 +15,73 @@ from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill, SkillFailure
 
-AHEAD, HEIGHT, START = 0.62, 1.36, 0.22  # where the hands begin: before the base, above the floor, half apart [m]
-SPEED = 0.08  # of each hand when it draws [m/s]
-LONGEST = 6.0  # for drawing; the hands are then as far apart as they get [s]
-SLACK_WEIGHT = 0.8  # a hand that carries less has lost the gown [N]
+
+@dataclass(frozen=True, kw_only=True)
+class StretchNecklineTuning(Quantities):
+    """Numbers of `StretchNeckline`."""
+
+    distance: float = quantity(
+        0.62, "m", "from the middle of the base ahead to the hands", "choice: before the chest, with room to draw apart"
+    )
+    height: float = quantity(1.36, "m", "of the hands above the floor", "choice: the gown hangs free")
+    half_width: float = quantity(
+        0.22, "m", "half the distance between the hands at first", "choice: the cloth is slack"
+    )
+    approach_speed: float = quantity(0.35, "m/s", "of the hands until there", "choice: the gown hardly swings")
+    speed: float = quantity(
+        0.08, "m/s", "of each hand while it draws", "choice: slow, so that the load is read in time"
+    )
+    timeout: float = quantity(
+        6.0, "s", "of drawing, after which the width counts as it is", "choice: the hands are as far apart as they get"
+    )
+    min_load: float = quantity(
+        0.8, "N", "on each hand; one that carries less has lost the gown", "choice: less than half of the gown's weight"
+    )
+    min_drawn: float = quantity(
+        0.1, "m", "by which the hands draw apart before a lost gown is noticed", "choice: the gown swings at first"
+    )
+    settle_time: float = quantity(0.5, "s", "of rest in the end", "choice: the gown swings out")
 
 
 class StretchNeckline(Skill):
     """Raises both hands before the chest and draws them apart until the cloth between them pulls back.
 
-    Inputs: `pull`, the horizontal load at which the neckline counts as taut [N]; `widest`, where to stop at the
-    latest [m].  Outputs: `width` between the hands [m].
+    It fails where a hand carries no cloth.
     """
 
-    pull = Input(float, default=1.4)
-    widest = Input(float, default=0.92)
-    width = Output(float)
+    max_load = Input(float, unit="N", doc="horizontal load on a hand at which the neckline is stretched", default=1.4)
+    max_width = Input(float, unit="m", doc="greatest distance between the hands", default=0.92)
+    tuning = Input(StretchNecklineTuning, default=StretchNecklineTuning(), doc="numbers of this skill")
+    width = Output(float, unit="m", doc="distance between the hands in the end")
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)
 
     def steps(self) -> Iterator[None]:
         """Raise, draw, settle."""
+        tuning = self.tuning
         self.note("draws the gown taut")
         base = planar_pose(self.world.observe().pose_base_in_map)
         goals = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
             pose = hand_now(self, side)
-            pose[:3, 3] = (base @ np.array((AHEAD, sign * START, HEIGHT, 1.0)))[:3]
+            pose[:3, 3] = (base @ np.array((tuning.distance, sign * tuning.half_width, tuning.height, 1.0)))[:3]
             goals[side] = pose
-        yield from move_hands(self, goals, speed=0.35, free="any", way="any")
-        end = self.now() + LONGEST
+        yield from move_hands(self, goals, speed=tuning.approach_speed, free="any", way="any")
+        end = self.now() + tuning.timeout
         outwards = {"left": base[:3, 1], "right": -base[:3, 1]}
         while True:
             apart = hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]
             width = float(np.linalg.norm(apart))
             loads = {side: cloth_load(self, side) for side in SIDES}
-            light = [side for side in SIDES if np.linalg.norm(loads[side]) < SLACK_WEIGHT]
-            if light and width > 2 * START + 0.1:
+            light = [side for side in SIDES if np.linalg.norm(loads[side]) < tuning.min_load]
+            if light and width > 2 * tuning.half_width + tuning.min_drawn:
                 raise SkillFailure(Reason.CLOTH_SLIPPED, f"the {light[0]} hand carries nothing")
             pulled = min(-loads[side] @ outwards[side] for side in SIDES)
-            if self.now() > end or width > self.widest or pulled > self.pull:
+            if self.now() > end or width > self.max_width or pulled > self.max_load:
                 break
             for side in SIDES:
-                self.world.send(HandTwist(side=side, twist_in_map=np.append(SPEED * outwards[side], np.zeros(3))))
+                twist = np.append(tuning.speed * outwards[side], np.zeros(3))
+                self.world.send(HandTwist(side=side, twist_in_map=twist))
             yield
         self.world.stop()
-        yield from self.wait(0.5)
+        yield from self.wait(tuning.settle_time)
         self.width = width

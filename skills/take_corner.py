@@ -1,14 +1,15 @@
-"""Stage A: one hand takes one corner of the hung gown's neckline, where the binding ends at the shoulder."""
+"""Pinch a corner of the hung gown's neckline, where the neckline's tape ends at the shoulder."""
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
+from ..sim.quantity import Quantities, quantity
 from ..sim.robot import model
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import GripperOpening, Side
@@ -17,45 +18,88 @@ from .control.pinch import back_off, grasp_poses, reach_in
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
+from .core.tries import Tries
+from .geometry.arm_path import UP
 from .motion.errors import MotionError
 
-TURNS = (30, 45, 15, 60, 0)  # of the approach, from the camera's towards the hand's own side [degrees]
-DEPTH = 0.010  # of the fingertips beyond the corner: what lies behind it is not to be taken too [m]
-SETTLE = 0.3  # until the hand stands where it was sent [s]
-SPEED = 0.5  # of the hand until it is near [m/s]
-CLOSES_IN = 1.8  # from the second look until the fingers have closed [s]
-FRESH = 0.5  # age of a corner that need not be looked for again [s]
-DRIFT = 0.02  # of the corner until then, at most [m]
-CERTAIN = 0.5  # confidence of a corner that was seen, not inferred
-TUG = 0.03  # how far the hand draws what it took, to feel it [m]
-NOISE = 0.08  # of a force reading [N]
-UP = np.array((0.0, 0.0, 1.0))
+
+@dataclass(frozen=True, kw_only=True)
+class TakeCornerTuning(Quantities):
+    """Numbers of `TakeCorner`."""
+
+    approach_angles: tuple[float, ...] = quantity(
+        tuple(float(np.deg2rad(angle)) for angle in (30.0, 45.0, 15.0, 60.0, 0.0)),
+        "rad",
+        "of the approach, from the camera's direction towards the hand's own side, in the order of trying",
+        "choice: a hand reaches in from its own side with most ease",
+    )
+    speed: float = quantity(0.5, "m/s", "of the hand on its way to the corner", "choice: nothing is touched yet")
+    settle_time: float = quantity(
+        0.3, "s", "between arriving and closing the fingers", "choice: the hand comes to rest where it was sent"
+    )
+    max_age: float = quantity(
+        0.5, "s", "of an estimate of the corner that is used without a new look", "choice: the gown sways slowly"
+    )
+    min_interval: float = quantity(
+        0.5, "s", "between two looks from which a drift is extrapolated", "choice: less, and noise would count as drift"
+    )
+    closing_time: float = quantity(
+        1.8,
+        "s",
+        "from the second look until the fingers have closed, over which the drift is extrapolated",
+        "choice: about what the way in and the closing take",
+    )
+    max_drift: float = quantity(
+        0.02, "m", "of the corner over that time", "choice: a larger one is more likely an error of the estimate"
+    )
+    clear_confidence: float = quantity(
+        0.5,
+        "1",
+        "confidence from which a corner was seen, not inferred, and hangs clear of other cloth",
+        "design: perception gives less to all other corners",
+    )
+    tug_distance: float = quantity(0.03, "m", "by which the hand draws what it took, to feel it", "choice: a short way")
+    tug_retraction: float = quantity(
+        0.5,
+        "1",
+        "way back along the approach for each metre that the tug rises",
+        "choice: mostly up, where cloth pulls",
+    )
+    tug_speed: float = quantity(0.15, "m/s", "of the hand while it tugs", "choice: slow, so that cloth is not flung")
+    load_samples: int = quantity(
+        5, "1", "readings of the force sensor whose mean counts", "choice: a third of a second"
+    )
+    load_noise: float = quantity(
+        0.08, "N", "of a force reading, added to `min_load`", "choice: how it was found is not recorded"
+    )
 
 
 class TakeCorner(Skill):
-    """Pinches a corner of the neckline while the gown hangs on its hook, outside to the robot.
+    """Pinches a corner of the neckline while the gown hangs on its hook with its outside towards the robot.
 
-    Takes the first corner where it was `found`.  For the second one, `held` tells how far from the hook the other hand
-    holds the first.
+    The first corner is taken where it was found (`corner`).  The second one is looked for, which is easier when the
+    distance at which the other hand holds the first is known (`held_length`).  A short tug tells whether cloth is held.
 
-    Inputs: `hand`; `sleeve`, the wearer's side; `hook`, where it hangs; `found`, for the first corner, and `held` [m],
-    for the second; `sure`, the least confidence of a corner; `opening` of the fingers on the way in and `depth` of
-    their tips beyond the corner [m]; `force` [N]; `feel`, the least load that a tug of 3 cm must bring [N].
-
-    Outputs: `length` from the hook to the corner [m].
+    It fails where the corner does not show, is out of reach or is not held in the end, and where other cloth has come
+    beside a first corner that hung clear of it.  After a failed grasp the hand is open and has drawn back.
     """
 
-    hand = Input(Side)
-    sleeve = Input(Side)
-    hook = Input(GraspPoint)
-    found = Input(GraspPoint, default=None)
-    held = Input(float, default=None)
-    sure = Input(float, default=0.0)
-    opening = Input(float, default=0.05)
-    depth = Input(float, default=DEPTH)
-    force = Input(float, default=30.0)
-    feel = Input(float, default=0.06)
-    length = Output(float)
+    hand = Input(Side, doc="the robot's hand that takes the corner")
+    sleeve = Input(Side, doc="the wearer's side that the corner belongs to")
+    hook = Input(GraspPoint, unit="m, map", doc="where the gown hangs")
+    corner = Input(GraspPoint, unit="m, map", doc="the corner as it was found, for the first one", default=None)
+    held_length = Input(
+        float, unit="m", doc="of the neckline from the hook to the corner that the other hand holds", default=None
+    )
+    min_confidence = Input(float, unit="1", doc="least confidence of a corner to go for", default=0.0)
+    opening = Input(float, unit="m", doc="between the fingertips on the way in", default=0.05)
+    depth = Input(
+        float, unit="m", doc="of the fingertips beyond the corner; what hangs behind is not to be taken", default=0.010
+    )
+    force = Input(float, unit="N", doc="of the grip at most", default=30.0)
+    min_load = Input(float, unit="N", doc="least load that the tug must bring", default=0.06)
+    tuning = Input(TakeCornerTuning, default=TakeCornerTuning(), doc="numbers of this skill")
+    length = Output(float, unit="m", doc="from the hook to the corner")
     reasons = (
         Reason.NOTHING_SEEN,
         Reason.GRASP_MISSED,
@@ -67,16 +111,16 @@ class TakeCorner(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look, go in, pinch, tug."""
-        hook, seen = self.hook, self.found
-        if seen is None or self.now() - seen.stamp > FRESH:
+        hook, seen = self.hook, self.corner
+        if seen is None or self.now() - seen.stamp > self.tuning.max_age:
             seen = self._look(hook)
         self.note(f"the {self.hand} hand takes the {self.sleeve} corner, confidence {seen.confidence:.2f}")
-        if seen.confidence < self.sure:
+        if seen.confidence < self.min_confidence:
             raise SkillFailure(Reason.NOTHING_SEEN, f"the {self.sleeve} corner is not seen")
         self._check_clear(seen)
         try:
             seen = yield from self._go_in(hook, seen)
-            yield from self.wait(SETTLE)
+            yield from self.wait(self.tuning.settle_time)
             yield from close_gripper(self, self.hand, force=self.force)
             yield from self._tug()
         except (SkillFailure, MotionError) as miss:
@@ -86,20 +130,21 @@ class TakeCorner(Skill):
         self.length = float(np.linalg.norm(seen.position_in_map - hook.position_in_map))
 
     def _look(self, hook: GraspPoint) -> GraspPoint:
-        found = self.found
+        found = self.corner
         return self.context.senses.hung_corner(
             self.world.look("head"),
             side=self.sleeve,
             hook_in_map=hook.position_in_map,
-            other_length=self.held,
+            other_length=self.held_length,
             near_in_map=None if found is None else found.position_in_map,
         )
 
     def _look_again(self, hook: GraspPoint, seen: GraspPoint) -> GraspPoint:
-        """The same corner where it will be when the fingers close: the gown turns and sways slowly.
+        """The same corner where it will be when the fingers close, as the gown turns and sways slowly.
 
-        As it was where it no longer shows.
+        A corner that no longer shows is taken to be where it was seen.
         """
+        tuning = self.tuning
         try:
             now = self.context.senses.hung_corner(
                 self.world.look("head"),
@@ -110,52 +155,50 @@ class TakeCorner(Skill):
         except PerceptionFailure:
             return seen
         passed = now.stamp - seen.stamp
-        if seen.confidence < CERTAIN or passed < 0.5:
+        if seen.confidence < tuning.clear_confidence or passed < tuning.min_interval:
             return now
-        drift = (now.position_in_map - seen.position_in_map) * CLOSES_IN / passed
-        drift *= min(1.0, DRIFT / max(float(np.linalg.norm(drift)), 1e-6))
+        drift = (now.position_in_map - seen.position_in_map) * tuning.closing_time / passed
+        drift *= min(1.0, tuning.max_drift / max(float(np.linalg.norm(drift)), 1e-6))
         return replace(now, position_in_map=now.position_in_map + drift)
 
     def _go_in(self, hook: GraspPoint, seen: GraspPoint) -> Generator[None, None, GraspPoint]:
-        """Wait before the corner with open fingers, look again, go in; from the hand's own side, as far as it can.
+        """Come before the corner with open fingers, look again, go in, by the first approach that the arm can make.
 
         Returns:
             The corner as it was seen last.
 
         Raises:
-            MotionError: from nowhere.
+            MotionError: there is none.
         """
-        failure: MotionError | None = None
-        for degrees in TURNS:
-            turn = planar_pose(np.array((0.0, 0.0, np.deg2rad(degrees if self.hand == "right" else -degrees))))[:3, :3]
+        tries = Tries(MotionError)
+        for angle in self.tuning.approach_angles:
+            turn = planar_pose(np.array((0.0, 0.0, angle if self.hand == "right" else -angle)))[:3, :3]
             approach = turn @ seen.approach_in_map
             closing = np.cross(approach, UP)
-            try:
+            with tries:
                 before, _ = grasp_poses(self, self.hand, seen.position_in_map, approach, closing, depth=self.depth)
                 self.world.send(GripperOpening(side=self.hand, opening=self.opening), retreat=True)
-                yield from move_hands(self, {self.hand: before}, speed=SPEED, way="any")
+                yield from move_hands(self, {self.hand: before}, speed=self.tuning.speed, way="any")
                 now = self._look_again(hook, seen)
                 self._check_clear(now)
                 yield from reach_in(
                     self, self.hand, now.position_in_map, approach, closing, opening=self.opening, depth=self.depth
                 )
                 return now
-            except MotionError as stop:
-                failure = stop
-        assert failure is not None
-        raise failure
+        raise tries.last
 
     def _check_clear(self, now: GraspPoint) -> None:
-        """Do not take a first corner that hung clear of other cloth when it was found and does so no longer.
+        """Refuse a first corner that hung clear of other cloth when it was found, and no longer does.
 
         Raises:
             SkillFailure: MULTI_LAYER.
         """
-        if self.found is not None and now.confidence < CERTAIN <= self.found.confidence:
+        found = self.corner
+        if found is not None and now.confidence < self.tuning.clear_confidence <= found.confidence:
             raise SkillFailure(Reason.MULTI_LAYER, f"other cloth has come beside the {self.sleeve} corner")
 
     def _give_up(self) -> Iterator[None]:
-        """Open, draw back, and out of the camera's sight."""
+        """Open, draw back, and leave the camera's view."""
         yield from open_gripper(self, self.hand)
         for way_back in (back_off(self, self.hand), move_arms(self, model.READY, sides=(self.hand,))):
             try:
@@ -164,19 +207,20 @@ class TakeCorner(Skill):
                 continue
 
     def _tug(self) -> Iterator[None]:
-        """Draw a little, up and back; cloth that is held pulls.
+        """Draw the hand up and back a little, and feel whether cloth pulls.
 
         Raises:
-            SkillFailure: GRASP_MISSED when nothing does.
+            SkillFailure: GRASP_MISSED when nothing pulls.
         """
+        tuning = self.tuning
         pose = hand_now(self, self.hand)
-        pose[:3, 3] += TUG * (UP - 0.5 * pose[:3, 2])
-        yield from move_hands(self, {self.hand: pose}, speed=0.15, free="approach", way="either")
+        pose[:3, 3] += tuning.tug_distance * (UP - tuning.tug_retraction * pose[:3, 2])
+        yield from move_hands(self, {self.hand: pose}, speed=tuning.tug_speed, free="approach", way="either")
         felt = 0.0
-        for _ in range(5):
-            felt += float(np.linalg.norm(cloth_load(self, self.hand))) / 5
+        for _ in range(tuning.load_samples):
+            felt += float(np.linalg.norm(cloth_load(self, self.hand))) / tuning.load_samples
             yield
-        if felt < self.feel + NOISE:  # the hand's camera often sees no cloth so near the fingers
+        if felt < self.min_load + tuning.load_noise:  # the hand's camera often sees no cloth so near the fingers
             raise SkillFailure(Reason.GRASP_MISSED, f"the tug was answered by {felt:.2f} N")
         self.context.guard.declare_grip(self.hand, "cloth")
         self.note(f"holds the {self.sleeve} corner, {felt:.2f} N")

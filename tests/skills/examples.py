@@ -42,8 +42,8 @@ def hook(context):
 
 def pre_grasp_manipulate(context):
     frame = context.world.look("head")
-    views = Views(side="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
-    return PreGraspManipulate("pre-grasp manipulate", context, views=views, weight=-1.0)
+    views = Views(hand="right", frames=(frame,), poses_hand_in_map=(context.world.observe().pose_hand_in_map[1],))
+    return PreGraspManipulate("pre-grasp manipulate", context, views=views, min_load=-1.0)
 
 
 EXAMPLES = {
@@ -63,20 +63,20 @@ EXAMPLES = {
     PreGraspManipulate: pre_grasp_manipulate,
     PresentSleeve: lambda context: PresentSleeve("present sleeve", context, grip=GRIP),
     PullAlongArm: lambda context: PullAlongArm("pull along arm", context, grip=GRIP, upto=1.45),
-    RaiseCorner: lambda context: RaiseCorner("raise corner", context, hand="right", hook=hook(context), weight=-1.0),
-    Release: lambda context: Release("release", context, side="left"),
+    RaiseCorner: lambda context: RaiseCorner("raise corner", context, hand="right", hook=hook(context), min_load=-1.0),
+    Release: lambda context: Release("release", context, hand="left"),
     ReleaseArm: lambda context: ReleaseArm("release arm", context, hand="left", lower=True),
     Retreat: lambda context: Retreat("retreat", context, back=0.3),
     SeatSleeve: lambda context: SeatSleeve("seat sleeve", context, grip=GRIP),
-    SegmentAndGrasp: lambda context: SegmentAndGrasp("segment and grasp", context, side="right"),
+    SegmentAndGrasp: lambda context: SegmentAndGrasp("segment and grasp", context, hand="right"),
     Spread: lambda context: Spread("spread", context, side="left", hand="left"),
-    StretchNeckline: lambda context: StretchNeckline("stretch neckline", context, widest=0.7),
+    StretchNeckline: lambda context: StretchNeckline("stretch neckline", context, max_width=0.7),
     TakeCorner: lambda context: TakeCorner(
-        "take corner", context, hand="right", sleeve="left", hook=hook(context), feel=-1.0
+        "take corner", context, hand="right", sleeve="left", hook=hook(context), min_load=-1.0
     ),
-    TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), weight=-1.0, each=-1.0),
-    Unhook: lambda context: Unhook("unhook", context, side="right", height=0.05),
-    ViewAround: lambda context: ViewAround("view around", context, side="right"),
+    TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), min_load=-1.0, min_load_each=-1.0),
+    Unhook: lambda context: Unhook("unhook", context, hand="right", height=0.05),
+    ViewAround: lambda context: ViewAround("view around", context, hand="right"),
     MoveJoint: lambda context: MoveJoint("move joint", context, side="left", joint="w1", angle=0.3),
     ReturnJoint: lambda context: ReturnJoint("return joint", context, side="left", joint="w1", angle=0.3),
     Hold: lambda context: Hold("hold", context),

@@ -6,7 +6,7 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import CORNER_OF, GraspPoint
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
-from caretree.skills.find_corner import ROUND, STAND, FindCorner
+from caretree.skills.find_corner import FindCorner
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
@@ -14,6 +14,9 @@ from .fake_senses import fake_senses
 
 HOOK = np.array((2.7, 0.4, 1.55))
 NOTHING = PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
+DISTANCE = 1.0  # from the base to the hook [m]
+SECOND_VIEW = np.deg2rad(-30.0)  # about the hook [rad]
+VIEWS = 3  # from one side of the rail
 
 
 def grasp(target, place=HOOK):
@@ -61,12 +64,12 @@ def test_goes_round_until_one_shows():
     room = Room(lambda n, side: NOTHING if n < 2 else grasp(CORNER_OF["right"]))
     found = room.run()
     assert found.status == Status.SUCCESS
-    assert (found.sleeve, found.other, found.hand, found.other_hand) == ("right", "left", "left", "right")
+    assert (found.sleeve, found.other_sleeve, found.hand, found.other_hand) == ("right", "left", "left", "right")
     pose = room.world.observe().pose_base_in_map
     ahead = np.array((np.cos(pose[2]), np.sin(pose[2])))
-    assert pose[:2] + STAND * ahead == pytest.approx(HOOK[:2], abs=0.06)
+    assert pose[:2] + DISTANCE * ahead == pytest.approx(HOOK[:2], abs=0.06)
     turns = [
-        abs((pose[2] - room.world.room.waypoints[name][2] - ROUND[1] + np.pi) % (2 * np.pi) - np.pi)
+        abs((pose[2] - room.world.room.waypoints[name][2] - SECOND_VIEW + np.pi) % (2 * np.pi) - np.pi)
         for name in ("rail", "rail_back")
         if name in room.world.room.waypoints
     ]
@@ -84,7 +87,7 @@ def test_takes_the_same_again_where_the_other_shows_from_nowhere():
     room = Room(lambda n, side: NOTHING if side == "right" else grasp(CORNER_OF["left"]))
     room.run()
     assert room.run().sleeve == "left"
-    assert room.asked == [None, *["right", None] * len(ROUND), None]
+    assert room.asked == [None, *["right", None] * VIEWS, None]
 
 
 def test_fails_where_nothing_shows():

@@ -9,10 +9,10 @@ from caretree.perception.gown.hung_corner import hook, hung_corner, shown_corner
 from caretree.perception.gown.hung_side import hung_side
 from caretree.sim.bullet.grip import cloth_between
 from caretree.sim.bullet.world import BulletWorld
-from caretree.skills.find_corner import ROUND
 from caretree.skills.motion.ik import hand_pose
 
 STAND = 1.0  # of the base before the hook [m]
+VIEWS = np.deg2rad((0.0, -30.0, 30.0))  # about the hook, from where the robot looks for a corner [rad]
 UP = np.array((0.0, 0.0, 1.0))
 
 
@@ -80,7 +80,7 @@ def test_each_corner_where_it_is(hung):
     top = hook(hung.frame(hung.outside)[0]).position_in_map
     assert np.linalg.norm(top - hung.hook) < 0.03
     shown = ahead = turn = None
-    for turn in ROUND:
+    for turn in VIEWS:
         frame, ahead = hung.frame(hung.outside, turn)
         try:
             shown = shown_corner(frame, top)

@@ -25,7 +25,7 @@ def unfold(context: Context) -> Behaviour:
             sequence(
                 "unfold and lay",
                 StretchNeckline("stretch the neckline", context, width=width),
-                FlipSideCheck("outside to the robot", context, sure=0.9),
+                FlipSideCheck("outside to the robot", context, min_confidence=0.9),
                 LayGown("lay it on the person", context, width=width),
             ),
             seconds=120.0,

@@ -34,7 +34,7 @@ def take_down(context: Context) -> Behaviour:
     """The stage `take_down`."""
     find_outside = fallback(
         "find the outside",
-        FlipSideCheck("outside to the front", context, hung=True, sure=0.0),
+        FlipSideCheck("outside to the front", context, hung=True, min_confidence=0.0),
         Navigate("go behind the rail", context, goal="rail_back"),
     )
     by_both_ends = sequence(
@@ -62,7 +62,8 @@ def take_down(context: Context) -> Behaviour:
 def take_ends(context: Context) -> Behaviour:
     """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one."""
     hook, held, lengths = Key("hook"), Key("held"), (Key("strip"), Key("other_strip"))
-    found = {port: Key(f"corner_{port}") for port in ("found", "sleeve", "other", "hand", "other_hand")}
+    ports = ("corner", "sleeve", "other_sleeve", "hand", "other_hand")
+    found = {port: Key(f"found_{port}") for port in ports}
     first, second = found["hand"], found["other_hand"]
 
     def take(name: str, **ports: object) -> TakeCorner:
@@ -72,7 +73,7 @@ def take_ends(context: Context) -> Behaviour:
             hand=first,
             sleeve=found["sleeve"],
             hook=hook,
-            found=found["found"],
+            corner=found["corner"],
             length=lengths[0],
             **ports,
         )
@@ -82,9 +83,9 @@ def take_ends(context: Context) -> Behaviour:
             f"take the other corner {how}",
             context,
             hand=second,
-            sleeve=found["other"],
+            sleeve=found["other_sleeve"],
             hook=hook,
-            held=held,
+            held_length=held,
             length=lengths[1],
             **ports,
         )
@@ -101,14 +102,16 @@ def take_ends(context: Context) -> Behaviour:
             take("take a corner", opening=0.03, depth=EDGE),
             take("take it deeper", opening=0.04, depth=0.006),
         ),
-        RaiseCorner("draw it aside", context, hand=first, hook=hook, held=held),
-        FlipSideCheck("outside still to the front", context, sure=0.3),
+        RaiseCorner("draw it aside", context, hand=first, hook=hook, held_length=held),
+        FlipSideCheck("outside still to the front", context, min_confidence=0.3),
         fallback(
             "the other corner",
-            take_other("as it hangs", sure=SEEN, opening=0.035),
+            take_other("as it hangs", min_confidence=SEEN, opening=0.035),
             sequence(
                 "from farther round",
-                RaiseCorner("draw it farther round", context, hand=first, hook=hook, held=held, away=FARTHER_ROUND),
+                RaiseCorner(
+                    "draw it farther round", context, hand=first, hook=hook, held_length=held, angle=FARTHER_ROUND
+                ),
                 take_other("from farther round"),
             ),
         ),
@@ -122,13 +125,13 @@ def from_one_hand(context: Context) -> Behaviour:
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", context),
-        SegmentAndGrasp("take it near the hook", context, side="right"),
-        Unhook("lift it off with one hand", context, side="right"),
-        ViewAround("look at it from all sides", context, side="right", views=views),
+        SegmentAndGrasp("take it near the hook", context, hand="right"),
+        Unhook("lift it off with one hand", context, hand="right"),
+        ViewAround("look at it from all sides", context, hand="right", views=views),
         PreGraspManipulate("take one corner", context, views=views, holder=holder, former=former),
-        Release("let the place near the hook go", context, side=former),
-        ViewAround("look at it again from all sides", context, side=holder, views=views),
-        PreGraspManipulate("take the other corner", context, views=views, nearest=0.3),
+        Release("let the place near the hook go", context, hand=former),
+        ViewAround("look at it again from all sides", context, hand=holder, views=views),
+        PreGraspManipulate("take the other corner", context, views=views, min_distance=0.3),
     )
 
 
