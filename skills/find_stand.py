@@ -44,7 +44,9 @@ class FindStandTuning(Quantities):
         float(np.deg2rad(60.0)), "rad", "of the strap's grasp below the horizontal", "choice: between flat and steep"
     )
     grasp_height: float = quantity(0.08, "m", "of a hand that waits before the strap", "choice: clear of the cloth")
-    ik_seeds: int = quantity(6, "1", "postures from which the solution is looked for", "choice: more are seldom needed")
+    ik_seeds: int = quantity(
+        6, "1", "postures from which the solution is looked for", "choice: more take longer, for each of many stances"
+    )
     lift: LiftGoal = field(default_factory=LiftGoal)
 
 

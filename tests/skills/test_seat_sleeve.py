@@ -8,6 +8,8 @@ from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.stances import stance
+from caretree.skills.geometry.strap_grip import StrapGrip
+from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.skills.seat_sleeve import SeatSleeve
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
@@ -22,7 +24,9 @@ def heights(load, bed_below):
     world.load["right"] = np.array((0.0, load, 0.0, 0.0, 0.0, 0.0))
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1)
-    skill, seen = SeatSleeve.example(context), []
+    context.offer_senses(ScriptedSenses(context.world))
+    grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
+    skill, seen = SeatSleeve("seat sleeve", context, grip=grip), []
     for _ in range(3000):
         context.lease.advance()
         skill.tick_once()
