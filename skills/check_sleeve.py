@@ -1,38 +1,56 @@
-"""Stages C and D: whether the arm is inside its sleeve, and how far up, now that nothing stands before it."""
+"""Look whether an arm is inside its sleeve, and how far up the sleeve is, while nothing stands before them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import watch_arm
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 
-# The cuff of a sleeve with the arm inside shows at least so far down the upper arm: 0.29 to 0.77 of it in recorded
-# runs, 0.01 and 0.05 where the sleeve had missed the arm and lay in a heap at the shoulder.
-CUFF_AT = 0.15
-# It shows at least so far round the arm: 0.58 to 0.92 in recorded runs, 0.17 and 0.33 where the sleeve lay beside it.
-# Two arms inside showed 0.33: one whose posture was out of date (31), and one on seed 3, not looked into.
-ROUND = 0.4
+
+@dataclass(frozen=True, kw_only=True)
+class CheckSleeveTuning(Quantities):
+    """What shows of the cuff where the arm is inside the sleeve."""
+
+    min_cuff_at: float = quantity(
+        0.15,
+        "1",
+        "share of the upper arm, from the shoulder, where the cuff shows at least",
+        "measured: recorded runs: 0.29 to 0.77, 0.01 and 0.05 where the sleeve lay in a heap at the shoulder",
+    )
+    min_share_round: float = quantity(
+        0.4,
+        "1",
+        "share of the way round the arm that the cuff shows at least",
+        "measured: recorded runs: 0.58 to 0.92, 0.17 and 0.33 where the sleeve lay beside the arm; two arms inside "
+        "showed 0.33: one whose posture was out of date (seed 31), and one on seed 3, not looked into",
+    )
 
 
 class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
-    A sleeve of which too little shows is let pass.
-
-    Inputs: `side` of the person; `upto`, how far from the shoulder the cuff of a sleeve that sits well shows at
-    most, along the upper arm [m].
+    It fails where the cuff is in a heap or beside the arm, and where it is too far down the arm; a sleeve of which too
+    little shows is let pass.
     """
 
     commands = False
-    side = Input(Side)
-    upto = Input(float, default=np.inf)
+    side = Input(Side, doc="arm of the person")
+    max_cuff_distance = Input(
+        float,
+        unit="m",
+        default=np.inf,
+        doc="how far down the upper arm, from the shoulder, the cuff of a sleeve that sits well shows at most",
+    )
+    tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
     reasons = (Reason.SLEEVE_MISSED, Reason.SLEEVE_LOW, Reason.ARM_LOST)
 
     def steps(self) -> Iterator[None]:
@@ -47,16 +65,17 @@ class CheckSleeve(Skill):
             f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
             f"{seen.round_arm:.0%} round it"
         )
-        if seen.cuff_at < CUFF_AT or seen.round_arm < ROUND:
+        if seen.cuff_at < self.tuning.min_cuff_at or seen.round_arm < self.tuning.min_share_round:
             raise SkillFailure(
                 Reason.SLEEVE_MISSED,
                 f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
                 f"{seen.round_arm:.0%} of the way round it",
             )
         away = seen.cuff_at * float(np.linalg.norm(arm[1] - arm[0]))
-        if away > self.upto:
+        if away > self.max_cuff_distance:
             raise SkillFailure(
                 Reason.SLEEVE_LOW,
-                f"the cuff is {away * 100:.0f} cm down the arm, {self.upto * 100:.0f} cm at most are asked for",
+                f"the cuff is {away * 100:.0f} cm down the arm, "
+                f"{self.max_cuff_distance * 100:.0f} cm at most are asked for",
             )
         yield

@@ -1,13 +1,16 @@
-"""Stage C: where to stand so that one hand lifts the arm and the other one takes the sleeve where it lies."""
+"""Choose where to stand so that one hand lifts the arm and the other one takes the sleeve where it lies."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture, SleeveOpening
+from ..sim.quantity import Quantities, quantity
 from ..sim.robot import model
 from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import SIDES, Side
@@ -18,33 +21,47 @@ from .control.hands import collision_checker
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
-from .geometry.arm_path import UP
+from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards, stance
-from .lift_arm import ABOVE, PITCH, SPREAD, lifted
+from .lift_arm import LiftGoal, lifted
 from .motion.errors import Unreachable
 from .motion.ik import hand_pose, solve_ik
 from .motion.path import is_free
 from .motion.trajectory import free_postures
 
-# Steps off the usual stance that are tried, farther from the bed and towards its head [m].
-_OUT, _HEADWARD = (0.0, 0.08, 0.16, 0.24, -0.08), (0.0, 0.1, -0.1, 0.2, -0.2, 0.3)
-_TILT = np.deg2rad(60.0)  # of a grasp below the horizontal
-_STRAP_ABOVE = 0.08  # a hand that waits over the strap [m]
+
+@dataclass(frozen=True, kw_only=True)
+class FindStandTuning(Quantities):
+    """Which stances are tried, and what the hands have to reach from there."""
+
+    steps_outwards: tuple[float, float, float, float, float] = quantity(
+        (0.0, 0.08, 0.16, 0.24, -0.08), "m", "from the usual stance, away from the bed", "choice: a hand's width each"
+    )
+    steps_headward: tuple[float, float, float, float, float, float] = quantity(
+        (0.0, 0.1, -0.1, 0.2, -0.2, 0.3), "m", "from the usual stance, towards the bed's head", "choice: 10 cm each"
+    )
+    grasp_tilt: float = quantity(
+        float(np.deg2rad(60.0)), "rad", "of the strap's grasp below the horizontal", "choice: between flat and steep"
+    )
+    grasp_height: float = quantity(0.08, "m", "of a hand that waits before the strap", "choice: clear of the cloth")
+    ik_seeds: int = quantity(
+        6, "1", "postures from which the solution is looked for", "choice: more take longer, for each of many stances"
+    )
+    lift: LiftGoal = field(default_factory=LiftGoal)
 
 
 class FindStand(Skill):
     """The usual stance where that will do, else the nearest one from which both hands reach what they are for.
 
-    Where the sleeve is not seen, it is the usual stance.
-
-    Inputs: `side` of the person; `lifting` and `pulling` hand.  Output: `stand`, base pose (3,) [m, m, rad].
+    Where the sleeve is not seen, it is the usual stance; it fails where the arm is not known.
     """
 
     commands = False
-    side = Input(Side)
-    lifting = Input(Side)
-    pulling = Input(Side)
-    stand = Output(np.ndarray)
+    side = Input(Side, doc="arm of the person")
+    lifting = Input(Side, doc="hand that will lift the arm")
+    pulling = Input(Side, doc="hand that will take the sleeve")
+    stand = Output(np.ndarray, unit="m, m, rad, map", doc="base pose (3,)")
+    tuning = Input(FindStandTuning, default=FindStandTuning(), doc="numbers of this skill")
     reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST)
 
     def steps(self) -> Iterator[None]:
@@ -55,7 +72,11 @@ class FindStand(Skill):
             sleeve = find_sleeve(self, self.side, posture.points_in_map)
         except PerceptionFailure:
             return
-        steps = [out * outwards(self.side) + head * HEADWARD for out in _OUT for head in _HEADWARD]
+        steps = [
+            out * outwards(self.side) + head * HEADWARD
+            for out in self.tuning.steps_outwards
+            for head in self.tuning.steps_headward
+        ]
         for step in sorted(steps, key=lambda step: float(np.linalg.norm(step))):
             base = usual + (step[0], step[1], 0.0)
             if is_free(self.world.room, base[:2]) and self._reaches(base, posture, sleeve):
@@ -67,13 +88,15 @@ class FindStand(Skill):
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""
         arms = model.READY.copy()
         bed = self.world.room.bed
-        shoulder, elbow = posture.points_in_map[:2]
-        end = over_arm(posture, 1.0, lift=0.0)
-        end[:3, 3] = shoulder + np.linalg.norm(elbow - shoulder) * lifted(posture, self.side, 1.0, PITCH, SPREAD)
-        lifts = [over_arm(posture, 1.0, lift=ABOVE), end]
+        tuning, lift = self.tuning, self.tuning.lift
+        shoulder, held = posture.points_in_map[0], ArmPath.of(posture).point(lift.grip_coordinate)
+        up = lifted(posture, self.side, lift)
+        end = over_arm(posture, lift.grip_coordinate, lift=0.0)
+        end[:3, 3] = shoulder + np.linalg.norm(held - shoulder) * up
+        lifts = [over_arm(posture, lift.grip_coordinate, lift=lift.approach_height), end]
         views = strap_views(sleeve, self.side, self.pulling, bed)
-        approach = -np.cos(_TILT) * outwards(self.side) - np.sin(_TILT) * UP
-        strap = strap_position(sleeve) - _STRAP_ABOVE * approach
+        approach = -np.cos(tuning.grasp_tilt) * outwards(self.side) - np.sin(tuning.grasp_tilt) * UP
+        strap = strap_position(sleeve) - tuning.grasp_height * approach
         grasps = [hand_pose(strap, approach, turn * sleeve.closing_in_map) for turn in (1.0, -1.0)]
         for pose in lifts:
             q = self._posture(self.lifting, [pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))], base, arms)
@@ -87,9 +110,8 @@ class FindStand(Skill):
     ) -> np.ndarray | None:
         """Joint angles (7,) for the first of `poses` that is within reach without touching anything."""
         free = free_postures(collision_checker(self), hand, base, arms)
+        kinematics, start, seeds = default_kinematics(), arms[SIDES.index(hand)], self.tuning.ik_seeds
         for pose in poses:
-            try:
-                return solve_ik(default_kinematics(), hand, pose, base, arms[SIDES.index(hand)], seeds=6, accept=free)
-            except Unreachable:
-                continue
+            with suppress(Unreachable):
+                return solve_ik(kinematics, hand, pose, base, start, seeds=seeds, accept=free)
         return None

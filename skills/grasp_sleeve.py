@@ -1,45 +1,71 @@
-"""Stage C: take hold of a sleeve by the strap of its armhole."""
+"""Take hold of a sleeve by the strap of its armhole."""
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import careful, watch_arm
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
 from .control.compliant_hold import while_holding
 from .control.hands import hand_now, move_hands, open_gripper
-from .control.pinch import back_off, pinch
+from .control.pinch import pinch_or_back_off
 from .core.ports import Input, Output
-from .core.reasons import Reason, SkillFailure
+from .core.reasons import Reason
 from .core.skill import Skill
+from .core.tries import Tries
 from .geometry.arm_path import ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, strap_grip
 from .motion.errors import MotionError
 
-AIMED = 0.05  # a strap that far from the middle of the picture is looked at again [m]
-OPENING = 0.06  # of the fingers around the strap, which is 55 mm wide [m]
+
+@dataclass(frozen=True, kw_only=True)
+class GraspSleeveTuning(Quantities):
+    """Numbers of looking closely at a strap and of taking it."""
+
+    view_speed: float = quantity(0.5, "m/s", "of the hand to where it looks, away from the person", "choice: quick")
+    centring_tolerance: float = quantity(
+        0.05,
+        "m",
+        "between the strap and the middle of the picture, beyond which it is looked at again",
+        "choice: a picture measures best in its middle",
+    )
+    approach_speed: float = quantity(
+        0.3, "m/s", "of the hand to before the strap, away from the person", "choice: slower among cloth"
+    )
+    opening: float = quantity(
+        0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
+    )
+    reach_in_speed: float = quantity(
+        0.12, "m/s", "of the hand in around the strap", "choice: does not push the cloth away"
+    )
 
 
 class GraspSleeve(Skill):
     """Finds the armhole with the head camera, looks at its strap with the hand's camera, and pinches the strap.
 
-    Inputs: `side` of the person; `hand` that grasps; `hold`, the hand that holds the arm meanwhile, or None; `worn`,
-    whether the sleeve is over the person's hand already, so that it need not be brought before the fingertips.
-    Output: `grip`, how the strap lies in the fingers.  A miss ends with the hand open and drawn back.
+    It fails where the sleeve or the arm is not seen, where the strap is out of reach, and where the fingers close on
+    nothing; such a miss ends with the hand open and drawn back.
     """
 
-    side = Input(Side)
-    hand = Input(Side)
-    hold = Input(Hold, default=None)
-    worn = Input(bool, default=False)
-    grip = Output(StrapGrip)
+    side = Input(Side, doc="arm of the person that the sleeve belongs to")
+    hand = Input(Side, doc="hand that grasps")
+    hold = Input(Hold, default=None, doc="the hand that holds the arm meanwhile, or None")
+    worn = Input(
+        bool,
+        default=False,
+        doc="whether the sleeve is over the person's hand already, so that it is pulled on from where it is",
+    )
+    grip = Output(StrapGrip, doc="how the strap lies in the fingers")
+    tuning = Input(GraspSleeveTuning, default=GraspSleeveTuning(), doc="numbers of this skill")
     reasons = (
         Reason.NOTHING_SEEN,
         Reason.ARM_LOST,
@@ -56,23 +82,18 @@ class GraspSleeve(Skill):
 
     def _grasp(self) -> Iterator[None]:
         """Look, reach in, pinch."""
+        tuning = self.tuning
         self.note(f"looks for the {self.side} sleeve")
         strap = yield from self._look()
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
         way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
-        yield from move_hands(self, {self.hand: way.before}, speed=careful(self, 0.3), way="either")
-        yield from open_gripper(self, self.hand, OPENING)
+        yield from move_hands(self, {self.hand: way.before}, speed=careful(self, tuning.approach_speed), way="either")
+        yield from open_gripper(self, self.hand, tuning.opening)
         seen_well(self).pop(self.side, None)
-        yield from move_hands(self, {self.hand: way.inside}, speed=0.12, way="either")
+        yield from move_hands(self, {self.hand: way.inside}, speed=tuning.reach_in_speed, way="either")
         pose = hand_now(self, self.hand)
-        try:
-            yield from pinch(self, self.hand)
-        except SkillFailure as miss:
-            if miss.reason == Reason.GRASP_MISSED:
-                yield from open_gripper(self, self.hand)
-                yield from back_off(self, self.hand)
-            raise
+        yield from pinch_or_back_off(self, self.hand)
         self.grip = strap_grip(self.side, self.hand, strap, pose)
 
     def _look(self) -> Generator[None, None, SleeveOpening]:
@@ -92,7 +113,7 @@ class GraspSleeve(Skill):
         A strap that is not where it was aimed at is looked at again, in the middle of the picture.
         """
         strap = yield from self._strap_from(far)
-        if np.linalg.norm(strap.position_in_map - far.position_in_map) < AIMED:
+        if np.linalg.norm(strap.position_in_map - far.position_in_map) < self.tuning.centring_tolerance:
             return strap
         try:
             return (yield from self._strap_from(strap))
@@ -101,21 +122,16 @@ class GraspSleeve(Skill):
 
     def _strap_from(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """The strap as the hand's camera sees it from the first of the views of `far` in which it shows."""
-        problem: PerceptionFailure | MotionError | None = None
+        unreachable, hidden = Tries(MotionError), Tries(PerceptionFailure)
         for pose in strap_views(far, self.side, self.hand, self.world.room.bed):
-            try:
-                yield from move_hands(self, {self.hand: pose}, way="any", speed=careful(self, 0.5))
-            except MotionError as stop:
-                problem = problem or stop
-                continue
-            yield from self.wait(SLEEVE_SEARCH.settle_time)
-            try:
-                return self.context.senses.sleeve_strap(
-                    self.world.look(f"{self.hand}_hand"),
-                    side=self.side,
-                    near_in_map=far.position_in_map,
-                )
-            except PerceptionFailure as stop:
-                problem = stop
-        assert problem is not None
-        raise problem
+            with unreachable:
+                speed = careful(self, self.tuning.view_speed)
+                yield from move_hands(self, {self.hand: pose}, way="any", speed=speed)
+                yield from self.wait(SLEEVE_SEARCH.settle_time)
+                with hidden:
+                    return self.context.senses.sleeve_strap(
+                        self.world.look(f"{self.hand}_hand"),
+                        side=self.side,
+                        near_in_map=far.position_in_map,
+                    )
+        raise hidden.last if hidden.problems else unreachable.first

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture
 from ..perception.image.cloud import unit
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
@@ -21,18 +23,84 @@ from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
 
-ABOVE = 0.12  # the open hand waits this far above the arm [m]
-DEEPER = 0.005  # the fingertips go this far below the arm's axis [m]
-_GAIN = 1.5  # of the correction towards the arc [1/s]
-_LATE, _LAG = 0.012, 0.05  # behind the arc: it waits for the hand, and it gives up [m]
-_TURN = 0.75  # share of the arm's turn that the hand makes with it
-_HEAVY, _HEAVIEST = 26.0, 29.5  # load from which the lift slows down, and at which it stands still [N]
-PITCH = float(np.deg2rad(35.0))  # of the whole arm in the end
-# How far the upper arm points away from the body in the end, along the bed.  An armhole stops where arm and trunk part:
-# pulled up arms that were spread by 0.5, 0.6, 0.75, 0.9 rad and let go of, it came to rest at 0.68, 0.75, 0.81, 0.82 of
-# the upper arm (four gowns and persons, both sides).
-SPREAD = 0.85
-ENOUGH = 0.8  # share of the lift that will do when time is up
+
+@dataclass(frozen=True, kw_only=True)
+class LiftGoal(Quantities):
+    """Where an arm is taken, and where it is brought."""
+
+    grip_coordinate: float = quantity(
+        1.0,
+        "1",
+        "arm coordinate of the grip: 0 shoulder, 1 elbow",
+        "choice: one hand at the elbow carries forearm and upper arm",
+    )
+    approach_height: float = quantity(
+        0.12, "m", "of the open hand above the arm, before it goes down", "choice: clear of it"
+    )
+    pitch: float = quantity(
+        float(np.deg2rad(35.0)), "rad", "of the whole arm above the horizontal in the end", "choice: clear of the bed"
+    )
+    spread: float = quantity(
+        0.85,
+        "rad",
+        "of the upper arm away from the body in the end, along the bed, if it does not point there already",
+        "measured: an armhole stops where arm and trunk part: pulled up arms spread by 0.5, 0.6, 0.75, 0.9 rad and let "
+        "go of, it came to rest at 0.68, 0.75, 0.81, 0.82 of the upper arm (four gowns and persons, both sides)",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiftArmTuning(Quantities):
+    """How an arm is taken and swung up."""
+
+    goal: LiftGoal = field(default_factory=LiftGoal)
+    approach_speed: float = quantity(
+        0.5, "m/s", "of the hand to above the arm, away from the person", "choice: quick in the open"
+    )
+    grip_depth: float = quantity(
+        0.005, "m", "of the fingertips below the arm's axis", "choice: the pads then reach round the arm's widest part"
+    )
+    descent_speed: float = quantity(0.12, "m/s", "of the hand down around the arm", "choice: slow, towards the person")
+    duration: float = quantity(5.5, "s", "of the swing of an arm that is not heavy", "choice: gentle on the shoulder")
+    timeout_factor: float = quantity(
+        4.0, "1", "greatest duration of the swing, in times of `duration`", "choice: room for a heavy arm"
+    )
+    min_lift: float = quantity(
+        0.8,
+        "1",
+        "share of the swing that will do when time is up",
+        "choice: a few degrees less are no reason to put a heavy arm down again",
+    )
+    start_share: float = quantity(
+        0.2, "1", "share of the full rate at which the swing begins and ends", "choice: no jerk at either end"
+    )
+    ramp: float = quantity(
+        0.1, "rad", "angle over which the rate grows by its full value", "choice: no jerk at either end"
+    )
+    slow_from: float = quantity(
+        26.0, "N", "load from which the swing slows down", "choice: below `stop_at`, to ease off"
+    )
+    stop_at: float = quantity(
+        29.5, "N", "load at which the swing stands still", "choice: below the 30 N that the guard allows on an arm"
+    )
+    full_speed_lag: float = quantity(
+        0.012, "m", "of the hand behind the arc, from which on the arc waits, and at twice that stands", "choice: small"
+    )
+    max_lag: float = quantity(
+        0.05, "m", "of the hand behind the arc, beyond which it gives up", "choice: it is blocked"
+    )
+    lag_gain: float = quantity(
+        1.5, "1/s", "of the correction towards the arc", "choice: stable at the rate of the ticks"
+    )
+    turn_share: float = quantity(
+        0.75,
+        "1",
+        "share of the arm's turn that the hand makes with it",
+        "choice: nearly square to the arm, and its own arm out of the other hand's way",
+    )
+    settle_time: float = quantity(
+        0.3, "s", "waited at the top, before the last look", "choice: the last command runs out"
+    )
 
 
 class LiftArm(Skill):
@@ -41,21 +109,15 @@ class LiftArm(Skill):
     The hand moves on an arc: a straight line would pull the arm out of its joint.  Elbow and wrist of a person who
     cannot move keep forearm and hand nearly in line.
 
-    Inputs: `side` of the person; `hand` that lifts; `pitch`, how far the whole arm points up in the end [rad];
-    `spread`, how far from the body, if it does not already [rad]; `duration` of the lift of an arm that is not heavy
-    [s]; `place` of the grip along the arm (0 shoulder, 1 elbow).
-    Output: `hold`, which hand holds the arm where.
-
-    When it fails after the fingers have closed, the arm is still held: recover with `ReleaseArm`.
+    It fails where the arm is not seen or out of reach, where the fingers close on nothing or lose the arm, and where
+    the swing is blocked or takes too long.  When it fails after the fingers have closed, the arm is still held:
+    recover with `ReleaseArm`.
     """
 
-    side = Input(Side)
-    hand = Input(Side)
-    pitch = Input(float, default=PITCH)
-    spread = Input(float, default=SPREAD)
-    duration = Input(float, default=5.5)
-    place = Input(float, default=1.0)
-    hold = Output(Hold)
+    side = Input(Side, doc="arm of the person")
+    hand = Input(Side, doc="hand that lifts")
+    hold = Output(Hold, doc="which hand holds the arm where")
+    tuning = Input(LiftArmTuning, default=LiftArmTuning(), doc="numbers of this skill")
     reasons = (
         Reason.NOTHING_SEEN,
         Reason.ARM_LOST,
@@ -70,82 +132,86 @@ class LiftArm(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look, go over the arm, down, take it, swing it up and out."""
+        tuning = self.tuning
         self.note(f"takes the {self.side} arm")
         posture = watch_arm(self, self.side, period=0.0)
         yield from open_gripper(self, self.hand)
-        above = over_arm(posture, self.place, lift=ABOVE)
-        place = ArmPath.of(posture).point(self.place)
-        arc = Arc(posture.points_in_map[0], place, lifted(posture, self.side, self.place, self.pitch, self.spread))
+        above = over_arm(posture, tuning.goal.grip_coordinate, lift=tuning.goal.approach_height)
+        place = ArmPath.of(posture).point(tuning.goal.grip_coordinate)
+        arc = Arc(posture.points_in_map[0], place, self._goal(posture))
         above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.whole)[0] - place))
-        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, 0.5))
+        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.approach_speed))
         grip = above.copy()
-        grip[:3, 3] = place - DEEPER * UP
-        yield from move_hands(self, {self.hand: grip}, speed=0.12)
+        grip[:3, 3] = place - tuning.grip_depth * UP
+        yield from move_hands(self, {self.hand: grip}, speed=tuning.descent_speed)
         gap = yield from close_gripper(self, self.hand, force=ARM_GRIP.force)
         if gap < ARM_GRIP.min_gap:
             yield from open_gripper(self, self.hand)
             yield from move_hands(self, {self.hand: above}, retreat=True)
             raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
         self.context.guard.declare_grip(self.hand, "arm")
-        self.hold = Hold(self.hand, self.place)
+        self.hold = Hold(self.hand, tuning.goal.grip_coordinate)
         self.note(f"lifts the {self.side} arm")
         yield from self._swing(posture)
 
+    def _goal(self, posture: ArmPosture) -> np.ndarray:
+        """Unit vector (3,) from the shoulder to where the grip is brought."""
+        return lifted(posture, self.side, self.tuning.goal)
+
     def _swing(self, posture: ArmPosture) -> Iterator[None]:
         """Follow an arc about the tracked shoulder, a little further on every tick, slower under a heavy arm."""
-        n = SIDES.index(self.hand)
-        arc = Arc(
-            posture.points_in_map[0],
-            hand_now(self, self.hand)[:3, 3],
-            lifted(posture, self.side, self.place, self.pitch, self.spread),
-        )
-        end = self.now() + 4.0 * self.duration
+        tuning, n = self.tuning, SIDES.index(self.hand)
+        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3], self._goal(posture))
+        end = self.now() + tuning.timeout_factor * tuning.duration
         last, swung = self.now(), 0.0
         while swung < arc.whole:
             if lost_arm(self, self.hand):
                 raise SkillFailure(Reason.ARM_SLIPPED, f"{swung / arc.whole:.0%} of the way up")
-            if self.now() > end and swung > ENOUGH * arc.whole:
-                return  # a heavy arm: a few degrees less are no reason to put it down again
+            if self.now() > end and swung > tuning.min_lift * arc.whole:
+                return
             if self.now() > end:
                 raise SkillFailure(Reason.TIMEOUT, f"{swung / arc.whole:.0%} of the way up")
             seen = self.world.observe()
             step, last = seen.time - last, seen.time
             load = seen.wrench_hand_in_map[n, :3]
-            ease = float(np.clip((_HEAVIEST - np.linalg.norm(load)) / (_HEAVIEST - _HEAVY), 0.0, 1.0))
+            ease = np.clip((tuning.stop_at - np.linalg.norm(load)) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0)
             wanted, tangent = arc.at(swung)
             behind = wanted + arc.offset - seen.pose_hand_in_map[n, :3, 3]
-            ease *= float(np.clip(2.0 - np.linalg.norm(behind) / _LATE, 0.0, 1.0))
-            rate = arc.whole / self.duration * ease * min(1.0, 0.2 + swung / 0.1, 0.2 + (arc.whole - swung) / 0.1)
+            ease *= np.clip(2.0 - np.linalg.norm(behind) / tuning.full_speed_lag, 0.0, 1.0)
+            rate = arc.whole / tuning.duration * float(ease) * self._ramp(swung, arc.whole)
             swung += rate * step
             give = arc.give_way(load, tangent, step)
-            if np.linalg.norm(behind) > _LAG:
+            if np.linalg.norm(behind) > tuning.max_lag:
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand is {np.linalg.norm(behind):.2f} m behind")
-            linear = rate * arc.radius * tangent + give + _GAIN * behind
-            # turning with the arm keeps the hand nearly square to it, and its own arm out of the way of the other hand
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, _TURN * rate * arc.axis)))
+            linear = rate * arc.radius * tangent + give + tuning.lag_gain * behind
+            twist = np.append(linear, tuning.turn_share * rate * arc.axis)
+            self.world.send(HandTwist(side=self.hand, twist_in_map=twist))
             try:
                 watch_arm(self, self.side, hold=self.hold)
             except PerceptionFailure:
                 self.note(f"lifts the {self.side} arm, which it cannot see")
             yield
-        yield from self.wait(0.3)
+        yield from self.wait(tuning.settle_time)
         watch_arm(self, self.side, hold=self.hold, period=0.0)
         if lost_arm(self, self.hand):
             raise SkillFailure(Reason.ARM_SLIPPED, "at the top")
 
+    def _ramp(self, swung: float, whole: float) -> float:
+        """Share of the full rate after an angle `swung` of a `whole` swing [rad]: little at either end."""
+        start, ramp = self.tuning.start_share, self.tuning.ramp
+        return min(1.0, start + swung / ramp, start + (whole - swung) / ramp)
 
-def lifted(posture: ArmPosture, side: Side, place: float, pitch: float, spread: float) -> np.ndarray:
-    """Unit vector (3,) from the shoulder to a place of an arm that points up and away from the body; no less than now.
+
+def lifted(posture: ArmPosture, side: Side, goal: LiftGoal) -> np.ndarray:
+    """Unit vector (3,) from the shoulder to the grip of an arm that points up and away from the body; no less than now.
 
     Args:
         posture: of the arm now.
         side: of the person.
-        place: along the arm, 1 is the elbow.
-        pitch: of the whole arm above the horizontal [rad].
-        spread: of the upper arm away from the body, along the bed [rad].
+        goal: where the grip is, and how far up and away the arm is brought.
     """
     path = ArmPath.of(posture)
-    now = unit(path.point(place) - path.points[0])
-    up = np.arcsin(now[2]) + max(pitch - path.pitch, 0.0)
-    aside = max(float(np.arctan2(now @ outwards(side), now @ -HEADWARD)), spread)
+    now = unit(path.point(goal.grip_coordinate) - path.points[0])
+    up = np.arcsin(now[2]) + max(goal.pitch - path.pitch, 0.0)
+    aside = max(float(np.arctan2(now @ outwards(side), now @ -HEADWARD)), goal.spread)
     return np.cos(up) * (np.sin(aside) * outwards(side) - np.cos(aside) * HEADWARD) + np.sin(up) * UP

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import see_person, watch_arm
 from .control.hands import pan_head
@@ -13,29 +15,49 @@ from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
 
-_PANS = (0.0, 0.35, -0.35)  # tried one after the other [rad]
-_SETTLED = 0.035  # deviation of every joint at which an arm counts as found [m]
+
+@dataclass(frozen=True, kw_only=True)
+class LookAtPersonTuning(Quantities):
+    """Numbers of the search for an arm."""
+
+    pans: tuple[float, float, float] = quantity(
+        (0.0, 0.35, -0.35),
+        "rad",
+        "angles of the head, tried one after the other",
+        "choice: ahead, then a little to either side",
+    )
+    max_looks: int = quantity(
+        4, "1", "pictures taken at most at each angle", "choice: the joints of an arm in view settle meanwhile"
+    )
+    look_interval: float = quantity(
+        0.1, "s", "between two pictures of an arm that is not known well yet", "choice: short"
+    )
+    max_deviation: float = quantity(
+        0.035,
+        "m",
+        "deviation of any joint, at most, for an arm that counts as found",
+        "choice: well enough to take the arm",
+    )
 
 
 class LookAtPerson(Skill):
     """Looks until the arm on `side` is known well, panning the head when it is not in view.
 
-    Inputs: `side` of the person; `looks`, pictures taken at most at each angle of the head.
-    Output: `posture` of that arm.
+    An arm that is covered now is taken to lie where it was seen before; it fails where it was not seen well then.
     """
 
-    side = Input(Side)
-    looks = Input(int, default=4)
-    posture = Output(ArmPosture)
+    side = Input(Side, doc="arm of the person")
+    posture = Output(ArmPosture, unit="m, map", doc="joints of that arm")
+    tuning = Input(LookAtPersonTuning, default=LookAtPersonTuning(), doc="numbers of this skill")
     reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Look, pan, look again."""
         self.note(f"looks for the person's {self.side} arm")
         lost = PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
-        for pan in _PANS:
+        for pan in self.tuning.pans:
             yield from pan_head(self, pan)
-            for _ in range(self.looks):
+            for _ in range(self.tuning.max_looks):
                 try:
                     see_person(self)
                     posture = watch_arm(self, self.side, patience=0.0)
@@ -43,10 +65,10 @@ class LookAtPerson(Skill):
                     lost = stop
                     yield
                     continue
-                if float(posture.deviation.max()) <= _SETTLED:
+                if float(posture.deviation.max()) <= self.tuning.max_deviation:
                     self.posture = posture
                     return
-                yield from self.wait(0.1)
+                yield from self.wait(self.tuning.look_interval)
         posture = self._remembered(lost)
         self.note(f"takes the {self.side} arm, which is covered, to lie where it was")
         self.posture = posture
@@ -57,6 +79,6 @@ class LookAtPerson(Skill):
             posture = watch_arm(self, self.side)
         except PerceptionFailure:
             raise lost from None
-        if float(posture.deviation.max()) > _SETTLED:
+        if float(posture.deviation.max()) > self.tuning.max_deviation:
             raise lost
         return posture

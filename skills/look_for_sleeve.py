@@ -1,10 +1,12 @@
-"""Stage C: look for a sleeve while nothing stands before it yet."""
+"""Look for a sleeve while nothing stands before it yet."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ..perception.errors import PerceptionFailure
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import careful
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve
@@ -15,16 +17,24 @@ from .core.skill import Skill
 from .motion.errors import MotionError
 
 
+@dataclass(frozen=True, kw_only=True)
+class LookForSleeveTuning(Quantities):
+    """Numbers of the look from above."""
+
+    return_speed: float = quantity(
+        0.5, "m/s", "of the hand on its way back, away from the person", "choice: quick in the open"
+    )
+
+
 class LookForSleeve(Skill):
     """Looks until the sleeve shows well, from the head and with the hand's camera, so that it is known after the lift.
 
-    A sleeve that shows badly from everywhere is no failure.
-
-    Inputs: `side` of the person; `hand` whose camera may look from above.
+    A sleeve that shows badly from everywhere is no failure; it fails where the arm is lost, or a hand does not move.
     """
 
-    side = Input(Side)
-    hand = Input(Side)
+    side = Input(Side, doc="arm of the person that the sleeve belongs to")
+    hand = Input(Side, doc="hand whose camera may look from above")
+    tuning = Input(LookForSleeveTuning, default=LookForSleeveTuning(), doc="numbers of this skill")
     reasons = (Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
@@ -39,6 +49,7 @@ class LookForSleeve(Skill):
             shows = "shows well" if seen.confidence > SLEEVE_SEARCH.clear_confidence else "shows badly"
             self.note(f"the {self.side} sleeve {shows}, {seen.confidence:.2f}")
         try:
-            yield from move_hands(self, {self.hand: start}, way="any", speed=careful(self, 0.5))
+            speed = careful(self, self.tuning.return_speed)
+            yield from move_hands(self, {self.hand: start}, way="any", speed=speed)
         except MotionError:
             return  # the next motion begins from here

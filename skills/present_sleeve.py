@@ -1,14 +1,16 @@
-"""Stage C: bring the sleeve from where it lay to the fingertips, its armhole hanging open towards the hand."""
+"""Bring the sleeve from where it lay to the fingertips, its armhole hanging open towards the hand."""
 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from ..perception.image.cloud import unit
+from ..sim.quantity import Quantities, quantity
 from .belief.person_tracking import careful, watch_arm
 from .belief.strap_grasp import STRAP_GRASP, presenting_position
 from .control.compliant_hold import while_holding
@@ -16,20 +18,61 @@ from .control.hands import cloth_load, hand_now, look_towards, move_hands, until
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
+from .core.tries import Tries
 from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import outwards
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.errors import MotionError
 
-RAISE, ASIDE = 0.14, 0.06  # off the bed before anything else [m]
-_SHARES = (1.0, 0.6, 0.3)  # of that, as far as is within reach
-SPEED = 0.30  # [m/s]
-BEFORE, CLEARANCE = 0.10, 0.09  # in the end the strap is this far before and above the fingertips [m]
-LOOK = 2.6  # place of the arm that the head looks at: from there the shoulder and a sleeve beyond the hand are in view
-HARDER = 1.2  # how much harder a sleeve that does not open is drawn out the second time
-HELD = 0.2  # a sleeve in the air pulls at least this hard [N]
-CAUGHT = 6.5  # the gown hangs on something: more stretches a hundredth of its threads by a quarter [N]
+
+@dataclass(frozen=True, kw_only=True)
+class PresentSleeveTuning(Quantities):
+    """Numbers of bringing a sleeve before the hand."""
+
+    raise_height: float = quantity(
+        0.14, "m", "off the bed, before anything else", "choice: clear of the arm that lies there"
+    )
+    raise_outwards: float = quantity(
+        0.06, "m", "from the body, on that way", "choice: clear of the arm that lies there"
+    )
+    raise_shares: tuple[float, float, float] = quantity(
+        (1.0, 0.6, 0.3), "1", "of that way, tried one after the other", "choice: as far as the robot's arm reaches"
+    )
+    speed: float = quantity(0.30, "m/s", "of the hand away from the person", "choice: the sleeve hardly swings")
+    settle_time: float = quantity(
+        0.3, "s", "waited for a sleeve to stop swinging", "choice: it hardly moves after that"
+    )
+    before_fingertips: float = quantity(
+        0.10, "m", "from the fingertips to the strap in the end, along the hand", "choice: room to centre the armhole"
+    )
+    clearance: float = quantity(
+        0.09, "m", "of the strap above the hand's axis in the end", "choice: half a hoop, which hangs below the strap"
+    )
+    look_coordinate: float = quantity(
+        2.6,
+        "1",
+        "arm coordinate that the head looks at",
+        "choice: from there the shoulder and a sleeve beyond the hand are in view",
+    )
+    hand_coordinate: float = quantity(
+        2.5, "1", "arm coordinate whose direction counts as that of the hand", "design: the middle of the hand"
+    )
+    second_load: float = quantity(
+        1.2,
+        "1",
+        "greatest load the second time, in times of `max_load`, for a sleeve that did not open",
+        "choice: carried in from farther out, the cuff trails behind",
+    )
+    min_load: float = quantity(
+        0.2, "N", "load below which no sleeve hangs from the hand", "choice: a sleeve in the air pulls harder"
+    )
+    caught_load: float = quantity(
+        6.5,
+        "N",
+        "load from which the gown hangs on something",
+        "measured: on simulated gowns, more stretches a hundredth of the threads by a quarter",
+    )
 
 
 class PresentSleeve(Skill):
@@ -38,15 +81,25 @@ class PresentSleeve(Skill):
     Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.  A sleeve that does
     not open is carried out once more, farther.
 
-    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None; `taut`, the load at which it
-    is carried no farther, lest the gown be drawn off the other arm [N]; `opens`, how far beyond the armhole the cuff
-    has to show in the end, along the hand, -inf for anything [m].
+    It fails where the sleeve still does not open, where the gown is caught on something, where the strap or the arm
+    slips out of the fingers, and where a place is out of reach.
     """
 
-    grip = Input(StrapGrip)
-    hold = Input(Hold, default=None)
-    taut = Input(float, default=np.inf)
-    opens = Input(float, default=-np.inf)
+    grip = Input(StrapGrip, doc="how the strap is held")
+    hold = Input(Hold, default=None, doc="the hand that holds the arm, or None")
+    max_load = Input(
+        float,
+        unit="N",
+        default=np.inf,
+        doc="load at which the sleeve is carried no farther, lest the gown be drawn off the other arm",
+    )
+    min_cuff_distance = Input(
+        float,
+        unit="m",
+        default=-np.inf,
+        doc="how far beyond the armhole, along the hand, the cuff has to show in the end; -inf to let anything pass",
+    )
+    tuning = Input(PresentSleeveTuning, default=PresentSleeveTuning(), doc="numbers of this skill")
     reasons = (
         Reason.UNREACHABLE,
         Reason.MOTION_BLOCKED,
@@ -65,15 +118,15 @@ class PresentSleeve(Skill):
         self.note(f"brings the {arm} sleeve to the fingertips")
         self.context.guard.declare_grip(hand, "cloth")
         yield from while_holding(self, self.hold, self._raise())
-        if np.linalg.norm(cloth_load(self, hand)) < HELD:
+        if np.linalg.norm(cloth_load(self, hand)) < self.tuning.min_load:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
-        yield from while_holding(self, self.hold, look_towards(self, path.point(LOOK)))
-        yield from self._bring(path, self.taut)
-        if (folded := (yield from self._folded(path))) is not None and np.isfinite(self.taut):
+        yield from while_holding(self, self.hold, look_towards(self, path.point(self.tuning.look_coordinate)))
+        yield from self._bring(path, self.max_load)
+        if (folded := (yield from self._folded(path))) is not None and np.isfinite(self.max_load):
             self.note(f"brings the {arm} sleeve from farther out")  # on its way back the cuff trails behind
             try:
-                yield from self._bring(path, HARDER * self.taut)
+                yield from self._bring(path, self.tuning.second_load * self.max_load)
             except MotionError:
                 raise folded from None
             folded = yield from self._folded(path)
@@ -82,31 +135,30 @@ class PresentSleeve(Skill):
 
     def _raise(self) -> Iterator[None]:
         """Off the bed and aside; where that is out of reach, as far as is not."""
-        hand, start = self.grip.hand, hand_now(self, self.grip.hand)
-        for share in _SHARES:
+        tuning, hand, start = self.tuning, self.grip.hand, hand_now(self, self.grip.hand)
+        tries = Tries(MotionError)
+        for share in tuning.raise_shares:
             raised = start.copy()
-            raised[:3, 3] += share * (RAISE * UP + ASIDE * outwards(self.grip.arm))
-            try:
-                yield from move_hands(self, {hand: raised}, speed=careful(self, SPEED), way="either")
+            raised[:3, 3] += share * (tuning.raise_height * UP + tuning.raise_outwards * outwards(self.grip.arm))
+            with tries:
+                yield from move_hands(self, {hand: raised}, speed=careful(self, tuning.speed), way="either")
                 return
-            except MotionError:
-                if share == _SHARES[-1]:
-                    raise
+        raise tries.last
 
-    def _bring(self, path: ArmPath, taut: float) -> Iterator[None]:
+    def _bring(self, path: ArmPath, max_load: float) -> Iterator[None]:
         """Out beyond the fingertips, then back before them."""
-        hand = self.grip.hand
-        yield from while_holding(self, self.hold, self._carry_out(path, taut))
-        yield from while_holding(self, self.hold, self.wait(0.3))  # the sleeve stops swinging
-        if np.linalg.norm(cloth_load(self, hand)) < HELD:
+        tuning, hand = self.tuning, self.grip.hand
+        yield from while_holding(self, self.hold, self._carry_out(path, max_load))
+        yield from while_holding(self, self.hold, self.wait(tuning.settle_time))  # the sleeve stops swinging
+        if np.linalg.norm(cloth_load(self, hand)) < tuning.min_load:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"nothing pulls at the {hand} hand")
         path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
-        place = path.moved(3.0, BEFORE)
-        start = path.point(place) + CLEARANCE * path.frame(place)[:, 2]
-        goal = presenting(self.grip, path.direction(2.5), start)
-        motion = move_hands(self, {hand: goal}, speed=careful(self, SPEED), way="either")
-        yield from while_holding(self, self.hold, until_load(self, hand, CAUGHT, motion))
-        if (load := float(np.linalg.norm(cloth_load(self, hand)))) > CAUGHT:
+        place = path.moved(3.0, tuning.before_fingertips)
+        start = path.point(place) + tuning.clearance * path.frame(place)[:, 2]
+        goal = presenting(self.grip, path.direction(tuning.hand_coordinate), start)
+        motion = move_hands(self, {hand: goal}, speed=careful(self, tuning.speed), way="either")
+        yield from while_holding(self, self.hold, until_load(self, hand, tuning.caught_load, motion))
+        if (load := float(np.linalg.norm(cloth_load(self, hand)))) > tuning.caught_load:
             raise SkillFailure(Reason.SLEEVE_CAUGHT, f"the gown pulls with {load:.1f} N")
 
     def _folded(self, path: ArmPath) -> Generator[None, None, SkillFailure | None]:
@@ -114,9 +166,9 @@ class PresentSleeve(Skill):
 
         One that hides behind its panel cannot be centred on the hand either.
         """
-        if not np.isfinite(self.opens):
+        if not np.isfinite(self.min_cuff_distance):
             return None
-        yield from while_holding(self, self.hold, self.wait(0.3))
+        yield from while_holding(self, self.hold, self.wait(self.tuning.settle_time))
         try:
             seen = self._heading()
         except PerceptionFailure:  # beside the picture, or truly hidden
@@ -125,12 +177,14 @@ class PresentSleeve(Skill):
                 seen = self._heading()
             except PerceptionFailure as hidden:
                 return SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}")
-        beyond = float(seen.cuff_from_armhole_in_map @ unit(path.direction(2.5) * (1.0, 1.0, 0.0)))
-        if beyond >= self.opens:
+        heading = unit(path.direction(self.tuning.hand_coordinate) * (1.0, 1.0, 0.0))
+        beyond = float(seen.cuff_from_armhole_in_map @ heading)
+        if beyond >= self.min_cuff_distance:
             return None
         return SkillFailure(
             Reason.SLEEVE_FOLDED,
-            f"the cuff is {beyond * 100:.0f} cm beyond the armhole, {self.opens * 100:.0f} cm are asked for",
+            f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
+            f"{self.min_cuff_distance * 100:.0f} cm are asked for",
         )
 
     def _heading(self) -> SleeveHeading:
@@ -142,16 +196,13 @@ class PresentSleeve(Skill):
         )
         return seen
 
-    def _carry_out(self, path: ArmPath, taut: float) -> Iterator[None]:
+    def _carry_out(self, path: ArmPath, max_load: float) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
-        problem: MotionError | None = None
+        tuning, hand, tries = self.tuning, self.grip.hand, Tries(MotionError)
         for beyond in STRAP_GRASP.presenting_distances:
-            goal = presenting(self.grip, path.direction(2.5), presenting_position(path, beyond))
-            try:
-                motion = move_hands(self, {self.grip.hand: goal}, speed=careful(self, SPEED), way="either")
-                yield from until_load(self, self.grip.hand, taut, motion)
+            goal = presenting(self.grip, path.direction(tuning.hand_coordinate), presenting_position(path, beyond))
+            with tries:
+                motion = move_hands(self, {hand: goal}, speed=careful(self, tuning.speed), way="either")
+                yield from until_load(self, hand, max_load, motion)
                 return
-            except MotionError as stop:
-                problem = stop
-        assert problem is not None
-        raise problem
+        raise tries.last

@@ -1,17 +1,20 @@
-"""Stage C: pull a sleeve along the arm, first keeping the force low, then following the arm as it is tracked."""
+"""Pull a sleeve up the arm, keeping the force low first of all, and along the arm as it is tracked."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_tracking import watch_arm
 from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now, look_towards
+from .control.load_easing import LoadEasing
 from .control.pull_law import PullLaw
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
@@ -21,38 +24,115 @@ from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
 
-SPEED = 0.08  # along the arm; the guard lets the base come along with what is left of a hand's speed [m/s]
-BASE_SPEED = 0.10  # of the base at most [m/s]
-_WAIT = 1.0  # how long a hand that cannot go on lets the base come along alone [s]
-CAUGHT = 5.0  # a sleeve that pulls harder than this and does not come on is caught [N]
-STUCK_FOR = 1.6  # ... for this long [s]
-EASING, SLOWEST = 2.0, 0.3  # slower over the last newtons before it is taut [N], but not below this share of the speed
-ADVANCE = 0.01  # the way that counts as coming on [m]
-LOST = 0.2  # a sleeve that pulls less than this is no longer held [N]
-_BEFORE, _THROUGH, _SURE = 3.15, 2.0, 2.5  # places: of the grip before the hand, past it, and where a miss shows
-_LAST = 0.6  # place of the grip from which on the armhole may be at the shoulder
-_ON = -0.1  # a grip beyond this place that stands or pulls hard has the sleeve on
-_LAGGING, _FARTHER = 0.10, 0.08  # a ring seen that far from its place lets the grip go that much farther
-_PATIENCE = 6.0  # how long the armhole may take to be centred before the hand [s]
+
+@dataclass(frozen=True, kw_only=True)
+class PullAlongArmTuning(Quantities):
+    """Numbers of the pull.  Arm coordinates are 0 at the shoulder, 1 elbow, 2 wrist, 3 fingertip."""
+
+    speed: float = quantity(
+        0.08,
+        "m/s",
+        "of the grip along the arm",
+        "choice: the guard lets the base come along with what is left of a hand's speed",
+    )
+    base_speed: float = quantity(0.10, "m/s", "of the base at most", "choice: the hand keeps up with it")
+    base_turn_share: float = quantity(
+        0.3,
+        "1",
+        "of the yaw rate that its path asks for",
+        "choice: a turn of the base moves the hand farther than its way",
+    )
+    base_alone_time: float = quantity(
+        1.0, "s", "for which a hand that cannot go on lets the base come along alone", "choice: 10 cm of the base's way"
+    )
+    caught_load: float = quantity(
+        5.0,
+        "N",
+        "mean load from which a sleeve that does not come on counts as caught",
+        "choice: a sleeve that slides pulls with 1 to 3 N",
+    )
+    lost_load: float = quantity(
+        0.2,
+        "N",
+        "load below which the sleeve is no longer held",
+        "choice: a sleeve that hangs from the hand weighs more",
+    )
+    stall_time: float = quantity(
+        1.6, "s", "over which the hand's advance is judged", "choice: cloth that sticks for a moment is not caught"
+    )
+    stall_record: float = quantity(
+        0.9, "1", "share of that time that must be on record for a judgement", "choice: ticks do not divide it evenly"
+    )
+    min_advance: float = quantity(
+        0.01, "m", "within the stall time, for a hand that comes on", "choice: far less than at full speed"
+    )
+    easing: LoadEasing = field(default_factory=LoadEasing)
+    entry: float = quantity(
+        3.15, "1", "arm coordinate up to which the grip comes while the armhole is centred", "choice: before the hand"
+    )
+    approach_slowing: float = quantity(
+        0.8,
+        "1",
+        "share of the speed along the arm that is taken away beyond `entry` while the armhole is centred",
+        "choice: the hand must not enter an armhole beside it",
+    )
+    centring_timeout: float = quantity(
+        6.0, "s", "for which the armhole may be centred before the hand", "choice: looks and steps enough to get there"
+    )
+    centring_end: float = quantity(
+        2.0, "1", "arm coordinate of the grip up to which the armhole is centred", "design: the wrist is then inside"
+    )
+    miss_check: float = quantity(
+        2.5, "1", "arm coordinate of the grip where a bare hand is a miss", "design: the middle of the hand"
+    )
+    armhole_watch: float = quantity(
+        0.6,
+        "1",
+        "arm coordinate of the grip from which on the armhole may be at the shoulder",
+        "choice: the armhole lags behind the grip",
+    )
+    armhole_lag: float = quantity(
+        0.10, "1", "of the armhole behind its goal, beyond which the grip goes farther", "choice: less will do"
+    )
+    extra_way: float = quantity(
+        0.08, "1", "by which the grip then goes farther, in upper arms", "choice: bounded, as what is seen may be wrong"
+    )
+    seated: float = quantity(
+        -0.1,
+        "1",
+        "arm coordinate of the grip beyond which a pull that stands, or pulls hard, has the sleeve on",
+        "choice: past the shoulder",
+    )
+    law: PullLaw = field(default_factory=PullLaw)
 
 
 class PullAlongArm(Skill):
-    """Leads the strap above the arm's axis towards the shoulder until it is at `upto`.
+    """Leads the strap above the arm's axis towards the shoulder until its grip, or the armhole, is at its goal.
 
-    Inputs: `grip`, how the strap is held; `upto`, place along the arm to reach (3 fingertip, 2 wrist, 1 elbow,
-    0 shoulder, below 0 past it towards the neck); `seat`, place where the armhole itself should end up, which as far as
-    it is seen ends the pull before or a little after `upto`; `hold`, the hand that holds the arm,
-    or None; `stand`, base pose (3,) to drift to on the way [m, m, rad], or None to stand still; `taut`, the load that
-    ends a pull beyond the shoulder [N]; `law`, constants of the pull.
+    It fails where the sleeve is caught or lost, where it goes beside the hand or the arm, where the hand or the base
+    cannot go on, and where the arm is lost or slips out of the hand that holds it.
     """
 
-    grip = Input(StrapGrip)
-    upto = Input(float)
-    seat = Input(float, default=-np.inf)
-    hold = Input(Hold, default=None)
-    stand = Input(np.ndarray, default=None)
-    taut = Input(float, default=3.7)
-    law = Input(PullLaw, default=PullLaw())
+    grip = Input(StrapGrip, doc="how the strap is held")
+    grip_goal = Input(
+        float,
+        unit="1",
+        doc="arm coordinate at which the grip ends the pull: 3 fingertip, 2 wrist, 1 elbow, 0 shoulder, "
+        "below 0 past it towards the neck",
+    )
+    armhole_goal = Input(
+        float,
+        unit="1",
+        default=-np.inf,
+        doc="arm coordinate at which the armhole, as far as it is seen, ends the pull before or a little after "
+        "`grip_goal`; -inf to leave the armhole out",
+    )
+    hold = Input(Hold, default=None, doc="the hand that holds the arm, or None")
+    stand = Input(
+        np.ndarray, unit="m, m, rad, map", default=None, doc="base pose (3,) to drift to, or None to stand still"
+    )
+    max_load = Input(float, unit="N", default=3.7, doc="load that ends a pull beyond the shoulder")
+    tuning = Input(PullAlongArmTuning, default=PullAlongArmTuning(), doc="numbers of this skill")
     reasons = (
         Reason.SLEEVE_CAUGHT,
         Reason.CLOTH_SLIPPED,
@@ -67,94 +147,191 @@ class PullAlongArm(Skill):
     def steps(self) -> Iterator[None]:
         """Steer anew on every tick."""
         self.note(f"pulls the {self.grip.arm} sleeve up")
-        n = SIDES.index(self.grip.hand)
         arm = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
-        ahead = 0.5 * (arm.coordinate_of(hand_now(self, self.grip.hand)[:3, 3]) + self.upto)
+        ahead = 0.5 * (arm.coordinate_of(hand_now(self, self.grip.hand)[:3, 3]) + self.grip_goal)
         yield from while_holding(self, self.hold, look_towards(self, arm.point(ahead)))
         follower = None if self.stand is None else self._drift()
-        window: deque[tuple[float, float, float]] = deque()  # time, way along the arm, load
-        place: float | None = None
-        waits_until = -np.inf
-        ring, travelled, begun = ArmholeWatch(self, self.grip.arm, self.grip.hand), 0.0, self.now()
+        pull = _Pull(follower=follower, ring=ArmholeWatch(self, self.grip.arm, self.grip.hand), begun=self.now())
         while True:
-            path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
-            seen = self.world.observe()
-            hand, load = seen.pose_hand_in_map[n], seen.wrench_hand_in_map[n, :3]
-            before, place = place, path.coordinate_of(hand[:3, 3], place)
-            if before is not None:
-                travelled += np.sign(before - place) * path.distance(before, place)
-            if place < _LAST and np.isfinite(self.seat):
-                ring.locate(path, hand[:3, 3])
-            if self._there(ring.coordinate, place) or (place < _ON and np.linalg.norm(load) > self.taut):
-                if self.upto > 1.0 and ring.arm_is_beside(path):
-                    raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} arm shows beside the cuff")
+            now = self._observe(pull)
+            if self._at_goal(pull, now) or self._stands_seated(pull, now):
                 break
-            window.append((seen.time, travelled, float(np.linalg.norm(load))))
-            while window[0][0] < seen.time - STUCK_FOR:
-                window.popleft()
-            if place < _ON and self._stands(window):
-                break  # as far as the arm, or the cloth, goes
-            if follower is not None and not follower.done(seen.pose_base_in_map) and self._stands(window):
-                window.clear()
-                waits_until = seen.time + _WAIT  # its arm is at its end, and the base still comes
-            else:
-                self._judge(window)
-            if follower is not None and seen.time < waits_until:
+            if self._waits_for_base(pull, now):
                 ease_hold(self, self.hold)
-                self._drive(follower, seen)
+                self._drive(pull, now.seen)
                 yield
                 continue
-            if place > _THROUGH:
-                ring.centre(path, place, hand[:3, 3])
-            if before is not None and before > _SURE >= place and ring.hand_is_bare(path):
-                raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
+            self._look_at_armhole(pull, now)
             ease_hold(self, self.hold)
-            linear = self.law.velocity(path, place, hand[:3, 3], ring.offset, SPEED, load)
-            if place > 3.0 and abs(ring.error) > ARMHOLE_WATCH.tolerance and seen.time < begun + _PATIENCE:
-                along = path.direction(place)  # centre the armhole before the hand enters it
-                linear = linear - (1.0 if place < _BEFORE else 0.8) * (linear @ along) * along
-                window.clear()  # it waits on purpose
-            if place < _ON:  # a hand that is told to stop goes on for centimetres
-                linear = linear * np.clip((self.taut - np.linalg.norm(load)) / EASING, SLOWEST, 1.0)
-            wanted = presenting(self.grip, path.direction(place), hand[:3, 3])
-            twist = np.concatenate((linear, self.law.turn(wanted, hand)))
+            linear = self._velocity(pull, now)
+            wanted = presenting(self.grip, now.path.direction(now.coordinate), now.hand[:3, 3])
+            twist = np.concatenate((linear, self.tuning.law.turn(wanted, now.hand)))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
-            if follower is not None:
-                self._drive(follower, seen)
-            self.note(f"pulls the {self.grip.arm} sleeve: at {place:.2f}, {np.linalg.norm(load):.1f} N")
+            self._drive(pull, now.seen)
+            self.note(f"pulls the {self.grip.arm} sleeve: at {now.coordinate:.2f}, {now.size:.1f} N")
             yield
 
-    def _there(self, ring: float | None, grip: float) -> bool:
-        """The armhole lags behind the grip, more or less: as far as it is seen, it decides where the pull ends."""
-        if ring is None or not np.isfinite(self.seat):
-            return grip <= self.upto
-        return ring <= self.seat or grip <= self.upto - (_FARTHER if ring > self.seat + _LAGGING else 0.0)
+    def _observe(self, pull: _Pull) -> _Now:
+        """Arm, hand and load of this tick; counts the way that the hand has come."""
+        path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
+        seen, n = self.world.observe(), SIDES.index(self.grip.hand)
+        hand, load = seen.pose_hand_in_map[n], seen.wrench_hand_in_map[n, :3]
+        before, pull.coordinate = pull.coordinate, path.coordinate_of(hand[:3, 3], pull.coordinate)
+        if before is not None:
+            pull.travelled += np.sign(before - pull.coordinate) * path.distance(before, pull.coordinate)
+        return _Now(
+            path=path,
+            seen=seen,
+            hand=hand,
+            load=load,
+            size=float(np.linalg.norm(load)),
+            coordinate=pull.coordinate,
+            before=before,
+        )
+
+    def _at_goal(self, pull: _Pull, now: _Now) -> bool:
+        """Whether grip, armhole or load end the pull here.
+
+        Raises:
+            SkillFailure: SLEEVE_MISSED when they do on the forearm, and the arm shows beside the cuff.
+        """
+        if now.coordinate < self.tuning.armhole_watch and np.isfinite(self.armhole_goal):
+            pull.ring.locate(now.path, now.hand[:3, 3])
+        hard = now.coordinate < self.tuning.seated and now.size > self.max_load
+        if not self.arrived(pull.ring.coordinate, now.coordinate) and not hard:
+            return False
+        if self.grip_goal > 1.0 and pull.ring.arm_is_beside(now.path):
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} arm shows beside the cuff")
+        return True
+
+    def arrived(self, armhole: float | None, grip: float) -> bool:
+        """Whether the pull is at its goal.  The armhole lags behind the grip, and decides as far as it is seen.
+
+        Args:
+            armhole: its arm coordinate, None where it is not seen.
+            grip: arm coordinate of the grip.
+        """
+        if armhole is None or not np.isfinite(self.armhole_goal):
+            return grip <= self.grip_goal
+        lags = armhole > self.armhole_goal + self.tuning.armhole_lag
+        return armhole <= self.armhole_goal or grip <= self.grip_goal - (self.tuning.extra_way if lags else 0.0)
+
+    def _stands_seated(self, pull: _Pull, now: _Now) -> bool:
+        """Put this tick on record; whether the hand stands past the shoulder, as far as the arm, or the cloth, goes."""
+        pull.window.append((now.seen.time, pull.travelled, now.size))
+        while pull.window[0][0] < now.seen.time - self.tuning.stall_time:
+            pull.window.popleft()
+        return now.coordinate < self.tuning.seated and self._stands(pull.window)
+
+    def _waits_for_base(self, pull: _Pull, now: _Now) -> bool:
+        """Whether the base comes along alone now; where the hand stands although the base has arrived, it fails."""
+        follower = pull.follower
+        if follower is not None and not follower.done(now.seen.pose_base_in_map) and self._stands(pull.window):
+            pull.window.clear()
+            pull.waits_until = now.seen.time + self.tuning.base_alone_time  # the robot's arm is at its end
+        else:
+            self._judge(pull.window)
+        return follower is not None and now.seen.time < pull.waits_until
+
+    def _look_at_armhole(self, pull: _Pull, now: _Now) -> None:
+        """Centre the armhole until the wrist is inside.
+
+        Raises:
+            SkillFailure: SLEEVE_MISSED when the hand shows beside the sleeve.
+        """
+        if now.coordinate > self.tuning.centring_end:
+            pull.ring.centre(now.path, now.coordinate, now.hand[:3, 3])
+        crossed = now.before is not None and now.before > self.tuning.miss_check >= now.coordinate
+        if crossed and pull.ring.hand_is_bare(now.path):
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
+
+    def _velocity(self, pull: _Pull, now: _Now) -> np.ndarray:
+        """Velocity (3,) of the grip: slower while the armhole is centred, and near the greatest load [m/s]."""
+        tuning, place = self.tuning, now.coordinate
+        linear = tuning.law.velocity(now.path, place, now.hand[:3, 3], pull.ring.offset, tuning.speed, now.load)
+        beside = abs(pull.ring.error) > ARMHOLE_WATCH.tolerance
+        if place > 3.0 and beside and now.seen.time < pull.begun + tuning.centring_timeout:  # before the fingertip
+            along = now.path.direction(place)
+            linear = linear - (1.0 if place < tuning.entry else tuning.approach_slowing) * (linear @ along) * along
+            pull.window.clear()  # it waits on purpose
+        if place < tuning.seated:
+            linear = linear * tuning.easing.share(now.load, self.max_load)
+        return linear
 
     def _stands(self, window: deque[tuple[float, float, float]]) -> bool:
-        """The hand has not come on for a while."""
-        if not window or window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
+        """Whether the hand has not come on for the stall time."""
+        return self._on_record(window) and window[-1][1] - window[0][1] < self.tuning.min_advance
+
+    def _on_record(self, window: deque[tuple[float, float, float]]) -> bool:
+        """Whether enough of the stall time is on record for a judgement."""
+        if not window:
             return False
-        return window[-1][1] - window[0][1] < ADVANCE
+        return window[-1][0] - window[0][0] >= self.tuning.stall_record * self.tuning.stall_time
 
     def _judge(self, window: deque[tuple[float, float, float]]) -> None:
-        """Tell a sleeve that is caught, one that is lost, and a hand that does not come on."""
-        if not window or window[-1][0] - window[0][0] < 0.9 * STUCK_FOR:
+        """Tell a sleeve that is caught, one that is lost, and a hand that does not come on.
+
+        Raises:
+            SkillFailure: SLEEVE_CAUGHT, CLOTH_SLIPPED or MOTION_BLOCKED.
+        """
+        if not self._on_record(window):
             return
         _, way, load = np.array(window).T
-        moved = float(way[-1] - way[0])
-        if self._stands(window) and load.mean() > CAUGHT:
-            raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{load.mean():.1f} N and {moved * 100:.1f} cm in {STUCK_FOR} s")
+        advance = f"{float(way[-1] - way[0]) * 100:.1f} cm in {self.tuning.stall_time} s"
+        if self._stands(window) and load.mean() > self.tuning.caught_load:
+            raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{load.mean():.1f} N and {advance}")
         if self._stands(window):
-            raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand came on {moved * 100:.1f} cm in {STUCK_FOR} s")
-        if load.max() < LOST:
+            raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand came on {advance}")
+        if load.max() < self.tuning.lost_load:
             raise SkillFailure(Reason.CLOTH_SLIPPED, f"at most {load.max():.2f} N on the {self.grip.hand} hand")
 
     def _drift(self) -> PathFollower:
         here = self.world.observe().pose_base_in_map
-        return PathFollower(np.stack((here[:2], self.stand[:2])), float(self.stand[2]), speed=BASE_SPEED)
+        way = np.stack((here[:2], self.stand[:2]))
+        return PathFollower(way, float(self.stand[2]), speed=self.tuning.base_speed)
 
-    def _drive(self, follower: PathFollower, seen: Observation) -> None:
-        if not follower.done(seen.pose_base_in_map):
-            command = follower.command(seen.pose_base_in_map)
-            velocity = command.velocity * (1.0, 1.0, 0.3)
+    def _drive(self, pull: _Pull, seen: Observation) -> None:
+        """Let the base come along, where it has a stand to go to and is not there."""
+        if pull.follower is not None and not pull.follower.done(seen.pose_base_in_map):
+            command = pull.follower.command(seen.pose_base_in_map)
+            velocity = command.velocity * (1.0, 1.0, self.tuning.base_turn_share)
             self.world.send(BaseVelocity(velocity=velocity, duration=command.duration))
+
+
+@dataclass
+class _Pull:
+    """What a pull remembers from tick to tick.
+
+    Attributes:
+        follower: of the base's way, None where the base stands still.
+        ring: what is seen of the armhole.
+        begun: when the pull began [s].
+        coordinate: of the grip along the arm at the last tick.
+        travelled: way along the arm so far [m].
+        waits_until: when the base no longer comes along alone [s].
+        window: time [s], way along the arm [m] and load [N] over the stall time.
+    """
+
+    follower: PathFollower | None
+    ring: ArmholeWatch
+    begun: float
+    coordinate: float | None = None
+    travelled: float = 0.0
+    waits_until: float = -np.inf
+    window: deque[tuple[float, float, float]] = field(default_factory=deque)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Now:
+    """One tick: the arm, the pose (4, 4) of the hand, the load (3,) and its size [N], and where along the arm that is.
+
+    `before` is the arm coordinate of the tick before, None on the first one.
+    """
+
+    path: ArmPath
+    seen: Observation
+    hand: np.ndarray
+    load: np.ndarray
+    size: float
+    coordinate: float
+    before: float | None

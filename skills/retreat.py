@@ -3,66 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
+from ..sim.quantity import Quantities, quantity
 from ..sim.robot import model
-from ..sim.world import SIDES, HandTwist, Side
+from ..sim.world import SIDES, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
-from .control.hands import hand_now, move_arms, open_gripper
+from .control.hands import move_arms, open_gripper
+from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
-from .geometry.arm_path import UP
 
 Hands = Literal["left", "right", "both"]
-_SPEED = 0.12  # of the hands on their way back [m/s]
-_BASE_SPEED = 0.3  # [m/s]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RetreatTuning(Quantities):
+    """Numbers of the way back."""
+
+    withdraw: WithdrawTuning = field(default_factory=WithdrawTuning)
+    base_speed: float = quantity(0.3, "m/s", "of the base as it backs off", "choice: slow beside the bed")
+    ready_speed: float = quantity(
+        0.5, "m/s", "of the hands on their way to the ready posture, away from the person", "choice: quick in the open"
+    )
 
 
 class Retreat(Skill):
     """Opens the hands, draws them back the way they point, backs off, and brings the arms into the ready posture.
 
     Safe from any state: opening comes first, and drawing back needs no plan.
-
-    Inputs: `hands` to open; `clear`, how far they are drawn back [m]; `back`, how far the base then backs off [m];
-    `ready`, whether the arms go to the ready posture in the end.
+    It fails where a command is lost, or where something is in the way of the base or of the ready posture.
     """
 
-    hands = Input(Hands, default="both")
-    clear = Input(float, default=0.15)
-    back = Input(float, default=0.0)
-    ready = Input(bool, default=True)
+    hands = Input(Hands, default="both", doc="hands that are opened and drawn back")
+    hand_distance = Input(float, unit="m", default=0.15, doc="how far the hands are drawn back")
+    base_distance = Input(float, unit="m", default=0.0, doc="how far the base then backs off")
+    ready = Input(bool, default=True, doc="whether the arms go to the ready posture in the end")
+    tuning = Input(RetreatTuning, default=RetreatTuning(), doc="numbers of this skill")
     reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED, Reason.TIMEOUT)
 
     def steps(self) -> Iterator[None]:
         """Open, draw back, back off, ready."""
+        tuning = self.tuning
         sides: list[Side] = [side for side in SIDES if self.hands in (side, "both")]
         self.note("lets go and draws back")
         for side in sides:
             yield from open_gripper(self, side)
-        if self.clear > 0.0:
-            yield from withdraw(self, sides, self.clear)
-        if self.back > 0.0:
+        if self.hand_distance > 0.0:
+            yield from withdraw(self, sides, self.hand_distance, tuning.withdraw)
+        if self.base_distance > 0.0:
             x, y, yaw = self.world.observe().pose_base_in_map
-            goal = np.array((x - self.back * np.cos(yaw), y - self.back * np.sin(yaw), yaw))
-            yield from drive_to(self, goal, straight=True, speed=_BASE_SPEED, retreat=True)
+            goal = np.array((x - self.base_distance * np.cos(yaw), y - self.base_distance * np.sin(yaw), yaw))
+            yield from drive_to(self, goal, straight=True, speed=tuning.base_speed, retreat=True)
         if self.ready:
-            yield from move_arms(self, model.READY, sides=tuple(sides), speed=careful(self, 0.5), retreat=True)
-
-
-def withdraw(skill: Skill, sides: list[Side], distance: float) -> Iterator[None]:
-    """Draw hands back by `distance` [m] against the way they point, or straight up where that is not upwards."""
-    directions = {}
-    for side in sides:
-        back = -hand_now(skill, side)[:3, 2]
-        directions[side] = back if back[2] > 0.3 else UP
-    end = skill.now() + distance / _SPEED
-    while skill.now() < end:
-        for side, back in directions.items():
-            twist = np.append(_SPEED * back, np.zeros(3))
-            skill.world.send(HandTwist(side=side, twist_in_map=twist), retreat=True)
-        yield
-    yield from skill.wait(0.3)
+            speed = careful(self, tuning.ready_speed)
+            yield from move_arms(self, model.READY, sides=tuple(sides), speed=speed, retreat=True)

@@ -1,32 +1,71 @@
-"""Stage C: once the strap is over the shoulder, draw it headward, tuck it down behind the shoulder, and slacken it."""
+"""Once the strap is over the shoulder, draw it headward, tuck it down behind the shoulder, and slacken it."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.image.cloud import unit
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist
 from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load
+from .control.load_easing import LoadEasing
 from .control.pull_law import PullLaw
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.stances import HEADWARD
 from .geometry.strap_grip import StrapGrip
-from .pull_along_arm import EASING, SLOWEST
 
-FARTHEST = 0.08  # the strap is drawn at most this far [m]
-SPEED = 0.11  # [m/s]
-WINDOW, STANDS = 1.6, 0.01  # a hand that comes on less than that [m] in this time [s] stands
-ABOVE_BED, TUCKED = 0.04, 5.5  # where a tucked strap is at the lowest [m], and how hard it may pull there [N]
-DOWN, TUCKING = 0.06, 3.0  # [m/s], for so long at most [s]
-SLACK, GIVING, SLACKENING = 0.8, 0.04, 4.0  # a slack strap's load [N], on the way there [m/s], for so long at most [s]
-SINKING, RESTS = 10.0, 0.015  # a loose arm sinks at most so long [s]; less than this in WINDOW is rest [m]
+
+@dataclass(frozen=True, kw_only=True)
+class SeatSleeveTuning(Quantities):
+    """Numbers of drawing a strap headward, of tucking it down, and of slackening it."""
+
+    max_draw: float = quantity(
+        0.08, "m", "by which the strap is drawn headward at most", "choice: armhole's lag behind it"
+    )
+    draw_speed: float = quantity(0.11, "m/s", "of the hand headward", "choice: below the guard's limit near the person")
+    stall_time: float = quantity(
+        1.6,
+        "s",
+        "over which the hand's way and the arm's rest are judged",
+        "choice: longer than cloth sticks for a moment",
+    )
+    stall_record: float = quantity(
+        0.9, "1", "share of that time that must be on record for a judgement", "choice: ticks do not divide it evenly"
+    )
+    min_advance: float = quantity(
+        0.01, "m", "within the stall time, for a hand that comes on", "choice: far less than at full speed"
+    )
+    easing: LoadEasing = field(default_factory=LoadEasing)
+    rest_timeout: float = quantity(
+        10.0, "s", "for which the arm may sink before the strap is tucked", "choice: it sinks in less"
+    )
+    rest_motion: float = quantity(
+        0.015, "m", "of any joint within the stall time, below which the arm rests", "choice: above the tracker's noise"
+    )
+    tuck_speed: float = quantity(0.06, "m/s", "of the hand down beside the shoulder", "choice: slow, beside the person")
+    tuck_timeout: float = quantity(
+        3.0, "s", "for which the strap is tucked down at most", "choice: ends above the mattress"
+    )
+    tuck_clearance: float = quantity(
+        0.04, "m", "of the hand above the mattress at the lowest", "choice: no contact with it"
+    )
+    tuck_max_load: float = quantity(
+        5.5, "N", "load from which the strap is tucked no further", "choice: harder, it would draw at the other sleeve"
+    )
+    slack_load: float = quantity(
+        0.8, "N", "load below which the strap is slack", "choice: less than a sleeve that slides"
+    )
+    slacken_speed: float = quantity(0.04, "m/s", "of the hand along the cloth's pull", "choice: the load is met slowly")
+    slacken_timeout: float = quantity(4.0, "s", "for which the strap is slackened at most", "choice: 16 cm of way")
+    law: PullLaw = field(default_factory=PullLaw)
 
 
 class SeatSleeve(Skill):
@@ -35,13 +74,12 @@ class SeatSleeve(Skill):
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
     over it, one that is let go of behind it stays.  It ends with the hand still closed.
-
-    Inputs: `grip`, how the strap is held; `taut`, how hard it is drawn at most [N]; `law`, constants of the pull.
+    It fails where the guard stops a load that is too high; an arm that was never found is no reason to wait for it.
     """
 
-    grip = Input(StrapGrip)
-    taut = Input(float, default=4.5)
-    law = Input(PullLaw, default=PullLaw())
+    grip = Input(StrapGrip, doc="how the strap is held")
+    max_load = Input(float, unit="N", default=4.5, doc="load at which the strap is drawn no farther")
+    tuning = Input(SeatSleeveTuning, default=SeatSleeveTuning(), doc="numbers of this skill")
     reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
 
     def steps(self) -> Iterator[None]:
@@ -55,58 +93,63 @@ class SeatSleeve(Skill):
         yield from self._slacken()
 
     def _draw(self) -> Iterator[None]:
-        """Headward until far enough, taut, or standing."""
+        """Headward until far enough, at the greatest load, or standing."""
+        tuning = self.tuning
         n, window = SIDES.index(self.grip.hand), deque[tuple[float, float]]()
         start = self.world.observe().pose_hand_in_map[n, :3, 3]
         while True:
             seen, load = self.world.observe(), cloth_load(self, self.grip.hand)
             gone = float((seen.pose_hand_in_map[n, :3, 3] - start) @ HEADWARD)
             window.append((seen.time, gone))
-            while window[0][0] < seen.time - WINDOW:
+            while window[0][0] < seen.time - tuning.stall_time:
                 window.popleft()
-            stands = seen.time - window[0][0] > 0.9 * WINDOW and gone - window[0][1] < STANDS
-            if gone > FARTHEST or np.linalg.norm(load) > self.taut or stands:
+            recorded = seen.time - window[0][0]
+            stands = recorded > tuning.stall_record * tuning.stall_time and gone - window[0][1] < tuning.min_advance
+            if gone > tuning.max_draw or np.linalg.norm(load) > self.max_load or stands:
                 return
             self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
-            ease = float(np.clip((self.taut - np.linalg.norm(load)) / EASING, SLOWEST, 1.0)) * self.law.ease(load)
-            linear = SPEED * ease * HEADWARD
+            ease = tuning.easing.share(load, self.max_load) * tuning.law.ease(load)
+            linear = tuning.draw_speed * ease * HEADWARD
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
 
     def _hold(self) -> Iterator[None]:
         """Wait for the arm to come to rest, as far as it is seen."""
-        window: deque[tuple[float, np.ndarray]] = deque()
-        end = self.now() + SINKING
+        tuning, window = self.tuning, deque[tuple[float, np.ndarray]]()
+        end = self.now() + tuning.rest_timeout
         while self.now() < end:
             try:
                 window.append((self.now(), watch_arm(self, self.grip.arm).points_in_map))
             except PerceptionFailure:
                 return
-            while window[0][0] < self.now() - WINDOW:
+            while window[0][0] < self.now() - tuning.stall_time:
                 window.popleft()
             sunk = float(np.linalg.norm(window[-1][1] - window[0][1], axis=1).max())
-            if self.now() - window[0][0] > 0.9 * WINDOW and sunk < RESTS:
+            if self.now() - window[0][0] > tuning.stall_record * tuning.stall_time and sunk < tuning.rest_motion:
                 return
             yield
 
     def _tuck(self) -> Iterator[None]:
         """Down beside the shoulder, almost to the mattress, until it pulls too hard or nothing gives."""
-        n, end = SIDES.index(self.grip.hand), self.now() + TUCKING
-        floor = float(self.world.room.bed[1, 2]) + ABOVE_BED
+        tuning, n = self.tuning, SIDES.index(self.grip.hand)
+        end = self.now() + tuning.tuck_timeout
+        floor = float(self.world.room.bed[1, 2]) + tuning.tuck_clearance
         while self.now() < end:
             height = float(self.world.observe().pose_hand_in_map[n, 2, 3])
-            if height < floor or np.linalg.norm(cloth_load(self, self.grip.hand)) > TUCKED:
+            if height < floor or np.linalg.norm(cloth_load(self, self.grip.hand)) > tuning.tuck_max_load:
                 return
-            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.array((0.0, 0.0, -DOWN, 0.0, 0.0, 0.0))))
+            twist = np.array((0.0, 0.0, -tuning.tuck_speed, 0.0, 0.0, 0.0))
+            self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
             yield
 
     def _slacken(self) -> Iterator[None]:
-        """Follow the cloth's pull until it hardly pulls: let go taut, it snaps back too far."""
-        end = self.now() + SLACKENING
+        """Follow the cloth's pull until it hardly pulls: let go of under load, it snaps back too far."""
+        tuning = self.tuning
+        end = self.now() + tuning.slacken_timeout
         while self.now() < end:
             load = cloth_load(self, self.grip.hand)
-            if np.linalg.norm(load) < SLACK:
+            if np.linalg.norm(load) < tuning.slack_load:
                 return
-            twist = np.append(GIVING * unit(load), np.zeros(3))
+            twist = np.append(tuning.slacken_speed * unit(load), np.zeros(3))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
             yield

@@ -15,13 +15,13 @@ from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
 from .control.pinch import pinch, reach_in
 from .control.pull_law import PullLaw
+from .control.withdraw import withdraw
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards
 from .motion.errors import MotionError
-from .retreat import withdraw
 
 TUGS = 2  # cloth that is stuck under the arm follows a little each time
 LIFT = 0.05  # the collar is lifted this far off the body before it is drawn [m]

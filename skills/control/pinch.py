@@ -150,6 +150,21 @@ def pinch(skill: Skill, side: Side, *, force: float = HANDS.grip_force, tuning: 
     skill.context.guard.declare_grip(side, "cloth")
 
 
+def pinch_or_back_off(skill: Skill, side: Side) -> Iterator[None]:
+    """`pinch`; where nothing is between the fingers, they open and the hand draws back before that is told.
+
+    Raises:
+        SkillFailure: as `pinch` does.
+    """
+    try:
+        yield from pinch(skill, side)
+    except SkillFailure as miss:
+        if miss.reason == Reason.GRASP_MISSED:
+            yield from open_gripper(skill, side)
+            yield from back_off(skill, side)
+        raise
+
+
 def holds_cloth(skill: Skill, side: Side) -> float:
     """Confidence, 0 to 1, of the hand's camera that the fingers hold cloth."""
     frame = skill.world.look(f"{side}_hand")

@@ -36,7 +36,7 @@ def ran(seen, **options):
 
 
 @pytest.mark.parametrize(
-    ("seen", "upto", "status", "reason"),
+    ("seen", "max_cuff_distance", "status", "reason"),
     [
         (worn(), None, Status.SUCCESS, None),
         (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
@@ -48,7 +48,9 @@ def ran(seen, **options):
         (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.60 * UPPER_ARM, Status.SUCCESS, None),
     ],
 )
-def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_a_cuff_far_down_is_low(seen, upto, status, reason):
-    skill = ran(seen, **({} if upto is None else {"upto": upto}))
+def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_a_cuff_far_down_is_low(
+    seen, max_cuff_distance, status, reason
+):
+    skill = ran(seen, **({} if max_cuff_distance is None else {"max_cuff_distance": max_cuff_distance}))
     assert skill.status == status
     assert (skill.failure and skill.failure.reason) == reason

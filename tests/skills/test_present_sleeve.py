@@ -10,7 +10,7 @@ from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance
 from caretree.skills.geometry.strap_grip import StrapGrip
-from caretree.skills.present_sleeve import CAUGHT, PresentSleeve
+from caretree.skills.present_sleeve import PresentSleeve
 from caretree.skills.scripted.scripted_person import LYING, lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
@@ -44,7 +44,7 @@ def ran(seen, load=1.0):
         senses=fake_senses(arm=arm, relocalised_arm=arm, sleeve_heading=answer),
     )
     grip = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
-    skill = PresentSleeve("present", context, grip=grip, taut=4.0, opens=0.05)
+    skill = PresentSleeve("present", context, grip=grip, max_load=4.0, min_cuff_distance=0.05)
     for _ in range(3000):
         context.lease.advance()
         skill.tick_once()
@@ -70,5 +70,5 @@ def test_it_is_brought_twice_at_most(seen, reason, asked):
 
 
 def test_a_gown_that_is_caught_is_not_torn_off():
-    skill, _ = ran([heading(0.09)], load=CAUGHT + 0.5)
+    skill, _ = ran([heading(0.09)], load=7.0)  # [N]
     assert skill.failure.reason == Reason.SLEEVE_CAUGHT

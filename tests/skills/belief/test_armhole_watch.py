@@ -105,5 +105,5 @@ def test_the_armhole_is_followed_and_forgotten_when_hidden():
 def test_the_armhole_decides_where_the_pull_ends(ring, grip, there):
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    pull = PullAlongArm("pull", Context(world=guard, guard=guard), grip=GRIP, upto=-0.22, seat=0.05)
-    assert pull._there(ring, grip) is there
+    pull = PullAlongArm("pull", Context(world=guard, guard=guard), grip=GRIP, grip_goal=-0.22, armhole_goal=0.05)
+    assert pull.arrived(ring, grip) is there

@@ -24,9 +24,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import Condition, Retry, Stage, Timeout
 from .dress_arm import back_off, dress_arm
 from .settle_sleeve import settle_sleeve
-
-SHOULDERS_ON_BED = np.array((0.0, -0.55, 0.10))  # of an adult, from the middle of the mattress [m]
-COVERED = 0.75  # share of the trunk under cloth that counts as covered, as far as a camera can tell
+from .tuning import DRESSING, FIRST_SLEEVE, SECOND_SLEEVE
 
 
 def dress(context: Context) -> Behaviour:
@@ -44,14 +42,14 @@ def dress(context: Context) -> Behaviour:
             "C in time",
             sequence(
                 "dress both arms",
-                Retreat("bring the arms back", context, clear=0.05),
+                Retreat("bring the arms back", context, hand_distance=DRESSING.arms_back),
                 Navigate("go to the right side", context, goal="bed_right"),
-                dress_arm(context, "right"),
+                dress_arm(context, "right", FIRST_SLEEVE),
                 bring_across,
                 go_round,
-                dress_arm(context, "left"),
+                dress_arm(context, "left", SECOND_SLEEVE),
             ),
-            seconds=400.0,
+            seconds=DRESSING.dress_timeout,
         ),
     )
 
@@ -77,9 +75,9 @@ def spread(context: Context) -> Behaviour:
                 ),
                 attempts=2,
             ),
-            Retreat(f"leave the {side} shoulder", context, back=0.3),
+            Retreat(f"leave the {side} shoulder", context, base_distance=DRESSING.shoulder_back_off),
         )
-        as_it_is = Retreat(f"leave the {side} shoulder as it is", context, back=0.3)
+        as_it_is = Retreat(f"leave the {side} shoulder as it is", context, base_distance=DRESSING.shoulder_back_off)
         sides.append(fallback(f"the {side} shoulder, as far as it goes", draw, as_it_is))
 
     def covered(name: str) -> Behaviour:
@@ -99,7 +97,7 @@ def spread(context: Context) -> Behaviour:
                 ),
                 *(settle_sleeve(context, arm) for arm in ("left", "right")),
             ),
-            seconds=400.0,
+            seconds=DRESSING.spread_timeout,
         ),
     )
 
@@ -116,13 +114,13 @@ def make_safe(context: Context) -> Behaviour:
             )
             for side in SIDES
         ),
-        Retreat("safe: let go and back off", context, back=0.2, ready=False),
+        Retreat("safe: let go and back off", context, base_distance=DRESSING.safe_back_off, ready=False),
     )
 
 
 def _chest_covered(context: Context) -> bool:
     """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
     bed = context.world.room.bed
-    shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + SHOULDERS_ON_BED
+    shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + DRESSING.shoulders_on_bed
     cover = context.senses.chest_cover(context.world.look("head"), shoulders_in_map=shoulders)
-    return cover.share > COVERED
+    return cover.share > DRESSING.covered_share

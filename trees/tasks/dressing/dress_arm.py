@@ -34,17 +34,8 @@ from ....skills.retreat import Retreat
 from ....skills.seat_sleeve import SeatSleeve
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import RecoverBy
+from .tuning import DRESSING, SleeveTuning
 
-# Where a pull ends, beyond the shoulder [share of the upper arm]: the grip at the latest, the armhole where it is seen.
-HEAD_END, SEAT = -0.45, -0.25
-# How hard a sleeve is drawn on its way to the hand, and beyond the shoulder: enough to bring along the armhole's lower
-# half; the second must not draw the first off its arm [N].
-TAUT: dict[Side, float] = {"right": 4.0, "left": 2.0}
-TAUT_ON: dict[Side, float] = {"right": 4.2, "left": 3.8}
-# How far beyond the armhole the cuff shows at least, before a hand that came through.  In whole runs on seeds 0-8,
-# sleeves that missed the hand showed -0.06 to 0.02, the others 0.09 to 0.12 on the right, 0.05 to 0.10 on the left [m].
-OPENS: dict[Side, float] = {"right": 0.05, "left": 0.03}
-PAST_WRIST = 1.5  # where the lifting hand may let go: the grip is half way up the forearm
 MISSES = (
     Reason.SLEEVE_CAUGHT,
     Reason.CLOTH_SLIPPED,
@@ -62,8 +53,8 @@ MISSES = (
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
 
 
-def dress_arm(context: Context, arm: Side) -> Behaviour:
-    """One arm into its sleeve, from beside the bed."""
+def dress_arm(context: Context, arm: Side, sleeve: SleeveTuning) -> Behaviour:
+    """One arm into its `sleeve`, from beside the bed."""
 
     def look(name: str) -> Behaviour:
         return LookAtPerson(f"{name} the {arm} arm", context, side=arm, posture=Key(f"{arm}_posture"))
@@ -97,20 +88,20 @@ def dress_arm(context: Context, arm: Side) -> Behaviour:
 
     once = sequence(
         f"dress the {arm} arm once",
-        over_hand(context, arm, look),
+        over_hand(context, arm, sleeve, look),
         RecoverBy(
             f"up to the {arm} shoulder",
-            up_arm(context, arm),
+            up_arm(context, arm, sleeve.pull_load),
             dict.fromkeys(STUCK, take_on) | {Reason.ARM_LOST: lambda: look("look again at")},
             attempts=2,
         ),
-        back_off(context, f"back off from the {arm} arm", 0.25),
+        back_off(context, f"back off from the {arm} arm", DRESSING.back_off_distance),
         CheckSleeve(f"the {arm} arm is inside", context, side=arm),
     )
     return RecoverBy(f"dress the {arm} arm", once, dict.fromkeys(MISSES, let_go), attempts=3)
 
 
-def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> Behaviour:
+def over_hand(context: Context, arm: Side, sleeve: SleeveTuning, look: Callable[[str], Behaviour]) -> Behaviour:
     """Until the sleeve is past the wrist and the arm is let go."""
     lifting, pulling = LIFTING[arm], PULLING[arm]
     hold, grip, stand = Key(f"{arm}_hold"), Key(f"{arm}_grip"), Key(f"{arm}_stand")
@@ -127,13 +118,22 @@ def over_hand(context: Context, arm: Side, look: Callable[[str], Behaviour]) -> 
 
     def again() -> Behaviour:
         return PresentSleeve(
-            f"bring the {arm} sleeve before the hand again", context, grip=grip, hold=hold, taut=TAUT[arm]
+            f"bring the {arm} sleeve before the hand again",
+            context,
+            grip=grip,
+            hold=hold,
+            max_load=sleeve.carry_load,
         )
 
     present = PresentSleeve(
-        f"bring the {arm} sleeve before the hand", context, grip=grip, hold=hold, taut=TAUT[arm], opens=OPENS[arm]
+        f"bring the {arm} sleeve before the hand",
+        context,
+        grip=grip,
+        hold=hold,
+        max_load=sleeve.carry_load,
+        min_cuff_distance=sleeve.min_cuff_distance,
     )
-    pull = PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, upto=PAST_WRIST)
+    pull = PullAlongArm(f"pull over the {arm} hand", context, grip=grip, hold=hold, grip_goal=DRESSING.past_wrist)
     return sequence(
         f"over the {arm} hand",
         Navigate(f"come to the {arm} arm", context, goal=stance(arm, "lift")),
@@ -178,9 +178,8 @@ def grasp_worn(context: Context, arm: Side, name: str) -> GraspSleeve:
     return GraspSleeve(name, context, side=arm, hand=PULLING[arm], worn=True, grip=Key(f"{arm}_grip"))
 
 
-def up_arm(context: Context, arm: Side, again: str = "", taut: float | None = None) -> Behaviour:
-    """To the shoulder, drawn as hard as `taut` [N], `TAUT_ON` if not given; names of the nodes begin with `again`."""
-    taut = TAUT_ON[arm] if taut is None else taut
+def up_arm(context: Context, arm: Side, max_load: float, again: str = "") -> Behaviour:
+    """To the shoulder, drawn as hard as `max_load` [N]; names of the nodes begin with `again`."""
     grip = Key(f"{arm}_grip")
     return sequence(
         f"{again}pull up and seat, {arm}",
@@ -188,12 +187,12 @@ def up_arm(context: Context, arm: Side, again: str = "", taut: float | None = No
             f"{again}pull up to the {arm} shoulder",
             context,
             grip=grip,
-            upto=HEAD_END,
-            seat=SEAT,
+            grip_goal=DRESSING.grip_goal,
+            armhole_goal=DRESSING.armhole_goal,
             stand=stance(arm, "shoulder"),
-            taut=taut,
+            max_load=max_load,
         ),
-        SeatSleeve(f"{again}seat the {arm} sleeve", context, grip=grip, taut=0.9 * taut),
+        SeatSleeve(f"{again}seat the {arm} sleeve", context, grip=grip, max_load=DRESSING.seat_load_share * max_load),
     )
 
 
@@ -201,6 +200,6 @@ def back_off(context: Context, name: str, distance: float) -> Behaviour:
     """Let go, draw back by `distance` [m], arms ready; or as they are, where no way to the ready posture is found."""
     return fallback(
         name,
-        Retreat(f"{name}, arms ready", context, back=distance),
-        Retreat(f"{name}, arms as they are", context, back=distance, ready=False),
+        Retreat(f"{name}, arms ready", context, base_distance=distance),
+        Retreat(f"{name}, arms as they are", context, base_distance=distance, ready=False),
     )

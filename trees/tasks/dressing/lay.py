@@ -12,6 +12,7 @@ from ....skills.lay_gown import LayGown
 from ....skills.stretch_neckline import StretchNeckline
 from ...nodes.composers import sequence
 from ...nodes.decorators import Stage, Timeout
+from .tuning import DRESSING
 
 
 def unfold(context: Context) -> Behaviour:
@@ -25,14 +26,14 @@ def unfold(context: Context) -> Behaviour:
             sequence(
                 "unfold and lay",
                 StretchNeckline("stretch the neckline", context, width=width),
-                FlipSideCheck("outside to the robot", context, min_confidence=0.9),
+                FlipSideCheck("outside to the robot", context, min_confidence=DRESSING.laid_inside_confidence),
                 LayGown("lay it on the person", context, width=width),
             ),
-            seconds=120.0,
+            seconds=DRESSING.unfold_timeout,
         ),
     )
 
 
 def _holds_gown(context: Context) -> bool:
     """Both hands together carry what a gown weighs [N]."""
-    return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > 2.5)
+    return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > DRESSING.gown_weight)

@@ -22,12 +22,7 @@ from ....skills.unhook import Unhook
 from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import Condition, Retry, Stage, Timeout
-
-NECKLINE = (0.70, 0.98)  # both strips of a hung gown's neckline together: less, and one was not held by its end [m]
-FARTHER_ROUND = float(np.deg2rad(60.0))  # behind the rail, where the fold that hides a corner opens to the robot [rad]
-OPEN = 0.02  # of fingers that hold nothing [m]
-EDGE = -0.002  # of the fingertips beyond a corner: of 30 gowns one has another sheet a centimetre behind it [m]
-SEEN = 0.45  # confidence of a corner that is seen, not inferred
+from .tuning import DRESSING
 
 
 def take_down(context: Context) -> Behaviour:
@@ -54,7 +49,7 @@ def take_down(context: Context) -> Behaviour:
                 find_outside,
                 fallback("take it", Retry("the other end first", by_both_ends, attempts=3), from_one_hand(context)),
             ),
-            seconds=260.0,
+            seconds=DRESSING.take_down_timeout,
         ),
     )
 
@@ -92,25 +87,31 @@ def take_ends(context: Context) -> Behaviour:
 
     def complete(context: Context) -> bool:
         """Both strips together are as long as a neckline."""
-        return NECKLINE[0] < sum(context.board.get(key.name) for key in lengths) < NECKLINE[1]
+        shortest, longest = DRESSING.neckline
+        return shortest < sum(context.board.get(key.name) for key in lengths) < longest
 
     return sequence(
         "take both ends",
         FindCorner("look for a corner", context, hook=hook, **found),
         fallback(
             "a corner",
-            take("take a corner", opening=0.03, depth=EDGE),
-            take("take it deeper", opening=0.04, depth=0.006),
+            take("take a corner", opening=DRESSING.corner_opening, depth=DRESSING.corner_depth),
+            take("take it deeper", opening=DRESSING.deeper_opening, depth=DRESSING.deeper_depth),
         ),
         RaiseCorner("draw it aside", context, hand=first, hook=hook, held_length=held),
-        FlipSideCheck("outside still to the front", context, min_confidence=0.3),
+        FlipSideCheck("outside still to the front", context, min_confidence=DRESSING.inside_confidence),
         fallback(
             "the other corner",
-            take_other("as it hangs", min_confidence=SEEN, opening=0.035),
+            take_other("as it hangs", min_confidence=DRESSING.seen_confidence, opening=DRESSING.other_opening),
             sequence(
                 "from farther round",
                 RaiseCorner(
-                    "draw it farther round", context, hand=first, hook=hook, held_length=held, angle=FARTHER_ROUND
+                    "draw it farther round",
+                    context,
+                    hand=first,
+                    hook=hook,
+                    held_length=held,
+                    angle=DRESSING.farther_round,
                 ),
                 take_other("from farther round"),
             ),
@@ -131,10 +132,10 @@ def from_one_hand(context: Context) -> Behaviour:
         PreGraspManipulate("take one corner", context, views=views, holder=holder, former=former),
         Release("let the place near the hook go", context, hand=former),
         ViewAround("look at it again from all sides", context, hand=holder, views=views),
-        PreGraspManipulate("take the other corner", context, views=views, min_distance=0.3),
+        PreGraspManipulate("take the other corner", context, views=views, min_distance=DRESSING.nearest_corner),
     )
 
 
 def _hands_open(context: Context) -> bool:
     """Both grippers stand open [m]."""
-    return bool(np.all(context.world.observe().gripper_opening > OPEN))
+    return bool(np.all(context.world.observe().gripper_opening > DRESSING.empty_opening))
