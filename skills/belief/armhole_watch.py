@@ -1,4 +1,4 @@
-"""Watching the armhole of a sleeve on its way: is it centred on the arm, is the hand inside, is it at the shoulder?"""
+"""Watch the armhole of a sleeve that is pulled: is it centred on the arm, is the hand inside, is it at the shoulder?"""
 
 from __future__ import annotations
 

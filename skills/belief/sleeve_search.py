@@ -1,7 +1,6 @@
-"""Where a sleeve is seen from afar, and from where the hand's camera then looks at its strap.
+"""Find a sleeve from afar, and choose from where the hand's camera then looks at its strap.
 
-The lifted arm stands before the sleeve and the robot's own hands hang over it, so a sleeve that was seen well is
-remembered until somebody takes hold of it.
+The lifted arm and the robot's own hands hide the sleeve, so one that was seen well is remembered until a hand takes it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From where to take a strap: the way in that the arm can make, and from which it can then present the sleeve."""
+"""Choose how to take a strap: by an approach that the arm can make, and after which it can present the sleeve."""
 
 from __future__ import annotations
 

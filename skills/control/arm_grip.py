@@ -1,4 +1,4 @@
-"""How a hand takes a person's arm: from above, fingers across it, softly; and how it knows that it has it."""
+"""How a hand takes a person's arm, softly from above with the fingers across it, and knows that it has it."""
 
 from __future__ import annotations
 
