@@ -25,7 +25,7 @@ from ..geometry.arm_path import UP
 from ..geometry.hold import Hold
 from ..geometry.stances import HEADWARD, outwards
 from ..motion.errors import MotionError
-from ..motion.ik import hand_pose
+from ..motion.ik import half_turned, hand_pose
 from .person_tracking import careful, watch_arm
 
 _ELBOW, _FINGERTIP = 1, 3  # rows of the arm's points
@@ -220,7 +220,7 @@ def strap_views(
         towards_robot = np.cos(turn) * outwards(side) + np.sin(turn) * side_on
         pose = hand_pose(np.zeros(3), -np.cos(tilt) * towards_robot - np.sin(tilt) * UP, to_strap)
         if (pose[:3, :3] @ camera[:3, 2]) @ towards_robot > pose[:3, 2] @ towards_robot:
-            pose = pose @ np.diag((-1.0, -1.0, 1.0, 1.0))  # the camera's side of the hand towards the robot
+            pose = half_turned(pose)  # the camera's side of the hand towards the robot
         pose[:3, 3] = far.position_in_map + to_strap - pose[:3, :3] @ (camera[:3, 3] + distance * camera[:3, 2])
         yield pose
 
