@@ -15,7 +15,8 @@ from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
 from .control.arm_grip import ARM_GRIP, lost_arm, over_arm, top_down_reachable
-from .control.hands import close_gripper, hand_now, move_hands, open_gripper
+from .control.fingers import close_gripper, open_gripper
+from .control.hands import hand_now, move_hands
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill

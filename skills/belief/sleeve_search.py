@@ -18,7 +18,8 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
-from ..control.hands import look_towards, move_hands
+from ..control.hands import move_hands
+from ..control.head import look_towards
 from ..core.skill import Skill
 from ..core.tries import Tries
 from ..geometry.arm_path import UP

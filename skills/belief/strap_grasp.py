@@ -194,7 +194,7 @@ def _room_to_pull(
             continue
         q = reached
         room = min(room, limits.margin(q))
-    return min(room, 1.0) - lost
+    return min(room, 1.0) - lost  # one more that is reached counts more than any room
 
 
 def _presented(

@@ -3,7 +3,7 @@ import pytest
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.skills.control.arm_grip import lost_arm, over_arm, top_down_reachable
-from caretree.skills.control.hands import close_gripper
+from caretree.skills.control.fingers import close_gripper
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.stances import stance

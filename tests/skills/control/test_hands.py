@@ -1,16 +1,8 @@
 import numpy as np
 import pytest
 from caretree.sim.robot import model
-from caretree.sim.world import SIDES, GripperOpening
-from caretree.skills.control.hands import (
-    close_gripper,
-    hand_now,
-    look_towards,
-    move_arms,
-    move_hands,
-    open_gripper,
-    until_load,
-)
+from caretree.sim.world import SIDES
+from caretree.skills.control.hands import hand_now, move_arms, move_hands, until_load
 from caretree.skills.core.reasons import Reason
 
 from ..moving import carry_out, idle, robot
@@ -74,30 +66,3 @@ def test_a_motion_ends_where_the_cloth_pulls_too_hard():
     assert skill.failure is None
     assert hand_now(skill, "right")[2, 3] - start[2, 3] == pytest.approx(0.1, abs=0.03), "4 N at 40 N/m"
     assert np.abs(world.observe().arm_velocities).max() < 0.02, "it stands, for the guard"
-
-
-def test_closing_tells_what_is_between_the_fingers():
-    world, context = robot()
-    world.between_fingers["left"] = 0.05
-    assert carry_out(world, context, lambda skill: close_gripper(skill, "left")).result == pytest.approx(0.05, abs=1e-3)
-    skill = carry_out(world, context, lambda skill: close_gripper(skill, "right"))
-    assert skill.result == pytest.approx(0.0, abs=1e-3)
-    skill = carry_out(world, context, lambda skill: open_gripper(skill, "right", 0.06))
-    assert skill.failure is None
-    assert world.observe().gripper_opening[1] == pytest.approx(0.06, abs=0.005)
-
-
-@pytest.mark.parametrize("motion", [close_gripper, open_gripper])
-def test_fingers_that_do_not_obey_are_told(motion):
-    world, context = robot(deaf_to=GripperOpening)
-    world._opening[:] = world._opening_goal[:] = 0.04
-    assert carry_out(world, context, lambda skill: motion(skill, "left")).failure.reason == Reason.COMMAND_LOST
-
-
-@pytest.mark.parametrize("bearing", [-0.6, 0.4])
-def test_the_head_turns_to_a_point(bearing):
-    world, context = robot(base=(2.5, -2.5, 1.0))
-    far = np.array((2.5, -2.5)) + 50.0 * np.array((np.cos(1.0 + bearing), np.sin(1.0 + bearing)))
-    skill = carry_out(world, context, lambda skill: look_towards(skill, far))
-    assert skill.failure is None
-    assert world.observe().head_pan == pytest.approx(bearing, abs=0.01)
