@@ -25,7 +25,7 @@ from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards, stance
 from .lift_arm import LiftGoal, lifted
 from .motion.errors import Unreachable
-from .motion.ik import hand_pose, solve_ik
+from .motion.ik import half_turned, hand_pose, solve_ik
 from .motion.path import is_free
 from .motion.trajectory import free_postures
 
@@ -99,7 +99,7 @@ class FindStand(Skill):
         strap = strap_position(sleeve) - tuning.grasp_height * approach
         grasps = [hand_pose(strap, approach, turn * sleeve.closing_in_map) for turn in (1.0, -1.0)]
         for pose in lifts:
-            q = self._posture(self.lifting, [pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))], base, arms)
+            q = self._posture(self.lifting, [pose, half_turned(pose)], base, arms)
             if q is None:
                 return False
             arms[SIDES.index(self.lifting)] = q

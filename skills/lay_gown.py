@@ -12,7 +12,9 @@ from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .control.base import drive_to
-from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import cloth_load, hand_now, move_hands
+from .control.head import look_towards
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill

@@ -10,7 +10,8 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from .belief.person_tracking import careful
 from .control.compliant_hold import while_holding
-from .control.hands import hand_now, move_hands, open_gripper, until_load
+from .control.fingers import open_gripper
+from .control.hands import hand_now, move_hands, until_load
 from .control.pinch import back_off
 from .core.ports import Input
 from .core.reasons import Reason

@@ -15,7 +15,8 @@ from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
 from .control.arm_grip import ARM_GRIP, lost_arm, over_arm, top_down_reachable
-from .control.hands import close_gripper, hand_now, move_hands, open_gripper
+from .control.fingers import close_gripper, open_gripper
+from .control.hands import hand_now, move_hands
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -164,13 +165,13 @@ class LiftArm(Skill):
         arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3], self._goal(posture))
         end = self.now() + tuning.timeout_factor * tuning.duration
         last, swung = self.now(), 0.0
-        while swung < arc.whole:
+        while swung < arc.angle:
             if lost_arm(self, self.hand):
                 raise SkillFailure(Reason.ARM_SLIPPED, f"{swung / arc.whole:.0%} of the way up")
             if self.now() > end and swung > tuning.min_lift * arc.whole:
                 return
             if self.now() > end:
-                raise SkillFailure(Reason.TIMEOUT, f"{swung / arc.whole:.0%} of the way up")
+                raise SkillFailure(Reason.TIMEOUT, f"{swung / arc.angle:.0%} of the way up")
             seen = self.world.observe()
             step, last = seen.time - last, seen.time
             load = seen.wrench_hand_in_map[n, :3]

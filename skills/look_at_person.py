@@ -10,7 +10,7 @@ from ..perception.estimates import ArmPosture
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import see_person, watch_arm
-from .control.hands import pan_head
+from .control.head import pan_head
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill

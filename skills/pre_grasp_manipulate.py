@@ -14,7 +14,8 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, Side
-from .control.hands import cloth_load, hand_now, move_hands, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import cloth_load, hand_now, move_hands
 from .control.hold_up import HOLD_UP, present
 from .control.pinch import back_off, grasp_poses, pinch, reach_in
 from .core.ports import Input, Output

@@ -14,7 +14,8 @@ from ..sim.quantity import Quantities, quantity
 from .belief.person_tracking import careful, watch_arm
 from .belief.strap_grasp import STRAP_GRASP, presenting_position
 from .control.compliant_hold import while_holding
-from .control.hands import cloth_load, hand_now, look_towards, move_hands, until_load
+from .control.hands import cloth_load, hand_now, move_hands, until_load
+from .control.head import look_towards
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
-from .control.hands import open_gripper
+from .control.fingers import open_gripper
 from .control.pinch import back_off
 from .core.ports import Input
 from .core.reasons import Reason

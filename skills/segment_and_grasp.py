@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ..perception.estimates import GraspPoint
 from ..sim.world import Side
 from .control.base import stand_for
-from .control.hands import pan_head
+from .control.head import pan_head
 from .control.pinch import back_off, pinch, reach_in
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure

@@ -14,7 +14,8 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.armhole_watch import ArmholeWatch
 from .belief.person_tracking import watch_arm
-from .control.hands import cloth_load, hand_now, move_hands, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import cloth_load, hand_now, move_hands
 from .control.pinch import pinch, reach_in
 from .control.withdraw import withdraw
 from .core.ports import Input, Output

@@ -13,7 +13,8 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.robot import model
 from ..sim.robot.kinematics import planar_pose
 from ..sim.world import GripperOpening, Side
-from .control.hands import close_gripper, cloth_load, hand_now, move_arms, move_hands, open_gripper
+from .control.fingers import close_gripper, open_gripper
+from .control.hands import cloth_load, hand_now, move_arms, move_hands
 from .control.pinch import back_off, grasp_poses, reach_in
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure

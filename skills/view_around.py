@@ -9,7 +9,8 @@ import numpy as np
 
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Frame, Side
-from .control.hands import hand_now, look_towards
+from .control.hands import hand_now
+from .control.head import look_towards
 from .control.hold_up import plan_turn, present, turned_by
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure

@@ -33,6 +33,10 @@ class ArmLimits:
         """Nearest allowed angles (7,) [rad]."""
         return np.clip(q, self.lower, self.upper)
 
+    def margin(self, q: np.ndarray) -> float:
+        """Least distance of an angle of `q` (7,) to its limit [rad]; below zero beyond it."""
+        return float(np.min(np.minimum(q - self.lower, self.upper - q)))
+
 
 def planar_pose(pose_base_in_map: np.ndarray) -> np.ndarray:
     """Transform (4, 4) of a base pose (x [m], y [m], yaw [rad])."""

@@ -1,4 +1,4 @@
-"""Watching the armhole of a sleeve on its way: is it centred on the arm, is the hand inside, is it at the shoulder?"""
+"""Watch the armhole of a sleeve that is pulled: is it centred on the arm, is the hand inside, is it at the shoulder?"""
 
 from __future__ import annotations
 
@@ -100,12 +100,12 @@ class ArmholeWatch:
         edges = []
         for camera in ("head", f"{self._hand}_hand"):
             try:
-                ring = self._skill.context.senses.held_armhole(
+                armhole = self._skill.context.senses.held_armhole(
                     self._skill.world.look(camera), side=self._arm, near_in_map=grip_in_map
                 )
             except PerceptionFailure:
                 continue
-            outwards_of_axis = (ring.ring_points_in_map - path.point(coordinate)) @ (side * across)
+            outwards_of_axis = (armhole.ring_points_in_map - path.point(coordinate)) @ (side * across)
             edges.append(np.percentile(outwards_of_axis, self._tuning.edge_percentile))
         if not edges:
             return
@@ -127,14 +127,14 @@ class ArmholeWatch:
             return
         self._looked = now
         try:
-            ring = self._skill.context.senses.held_armhole(
+            armhole = self._skill.context.senses.held_armhole(
                 self._skill.world.look("head"), side=self._arm, near_in_map=grip_in_map
             )
         except PerceptionFailure:
             if now - self._located > self._tuning.memory:
                 self.coordinate = None
             return
-        some = ring.ring_points_in_map[:: max(1, len(ring.ring_points_in_map) // self._tuning.max_points)]
+        some = armhole.ring_points_in_map[:: max(1, len(armhole.ring_points_in_map) // self._tuning.max_points)]
         self.coordinate, self._located = float(np.median([path.coordinate_of(point) for point in some])), now
 
     def hand_is_bare(self, path: ArmPath) -> bool:

@@ -124,7 +124,7 @@ def watch_arm(
         watch.looked = now
         frame = skill.world.look("head")
         if hold is not None and side in watch.arms:
-            # looked for where it was, a moving arm has something in front of it, and is never found again
+            # it has moved with the hand: where it was, it would count as hidden and be lost
             points = turned_about_shoulder(watch.arms[side].points_in_map, hold.coordinate, _held_at(skill, hold))
             watch.arms[side] = replace(watch.arms[side], points_in_map=points)
         try:

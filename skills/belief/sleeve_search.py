@@ -1,7 +1,6 @@
-"""Where a sleeve is seen from afar, and from where the hand's camera then looks at its strap.
+"""Find a sleeve from afar, and choose from where the hand's camera then looks at its strap.
 
-The lifted arm stands before the sleeve and the robot's own hands hang over it, so a sleeve that was seen well is
-remembered until somebody takes hold of it.
+The lifted arm and the robot's own hands hide the sleeve, so one that was seen well is remembered until a hand takes it.
 """
 
 from __future__ import annotations
@@ -19,14 +18,15 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
-from ..control.hands import look_towards, move_hands
+from ..control.hands import move_hands
+from ..control.head import look_towards
 from ..core.skill import Skill
 from ..core.tries import Tries
 from ..geometry.arm_path import UP
 from ..geometry.hold import Hold
 from ..geometry.stances import HEADWARD, outwards
 from ..motion.errors import MotionError
-from ..motion.ik import hand_pose
+from ..motion.ik import half_turned, hand_pose
 from .person_tracking import careful, watch_arm
 
 _ELBOW, _FINGERTIP = 1, 3  # rows of the arm's points
@@ -221,7 +221,7 @@ def strap_views(
         towards_robot = np.cos(turn) * outwards(side) + np.sin(turn) * side_on
         pose = hand_pose(np.zeros(3), -np.cos(tilt) * towards_robot - np.sin(tilt) * UP, to_strap)
         if (pose[:3, :3] @ camera[:3, 2]) @ towards_robot > pose[:3, 2] @ towards_robot:
-            pose = pose @ np.diag((-1.0, -1.0, 1.0, 1.0))  # the camera's side of the hand towards the robot
+            pose = half_turned(pose)  # the camera's side of the hand towards the robot
         pose[:3, 3] = far.position_in_map + to_strap - pose[:3, :3] @ (camera[:3, 3] + distance * camera[:3, 2])
         yield pose
 

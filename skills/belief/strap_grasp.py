@@ -1,4 +1,4 @@
-"""From where to take a strap: the way in that the arm can make, and from which it can then present the sleeve."""
+"""Choose how to take a strap: by an approach that the arm can make, and after which it can present the sleeve."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def way_in(
                 q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=tuning.seeds, accept=accept)
                 q1 = solve_ik(kinematics, hand, inside, base, q0, seeds=tuning.seeds_onwards, accept=accept)
                 q2 = q1 if worn else _presented(kinematics, grip, path, base, q1, accept, tuning)
-                room = min(float(np.min(np.minimum(q - limits.lower, limits.upper - q))) for q in (q0, q1, q2))
+                room = min(limits.margin(q) for q in (q0, q1, q2))
                 score = min(room, tuning.max_room) - tuning.turn_cost * float(np.abs(q2 - q1).max())
                 found.append((score, WayIn(before=before, inside=inside), grip, q2))
     if not found:
@@ -193,8 +193,8 @@ def _room_to_pull(
             lost += 1
             continue
         q = reached
-        room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
-    return min(room, 1.0) - lost
+        room = min(room, limits.margin(q))
+    return min(room, 1.0) - lost  # one more that is reached counts more than any room
 
 
 def _presented(

@@ -1,4 +1,4 @@
-"""The arc on which a held arm is swung about its shoulder, and how the hand finds the true circle by yielding."""
+"""The arc on which a hand swings an arm about its shoulder; by giving way, the hand finds the true circle."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Arc:
     """The great circle about the shoulder from where the hand holds the arm to where the arm is to point.
 
     The arm turns about its own shoulder, which is a few centimetres from where it was seen.  So a pull across the
-    arc is not the weight of the arm but the hand on a wrong circle, and the hand gives way to it.
+    arc does not come from the arm's weight: the hand is on a wrong circle, and gives way.
 
     Args:
         shoulder: (3,) centre as it was seen [m].
@@ -44,7 +44,7 @@ class Arc:
 
     Attributes:
         radius: of the circle [m].
-        whole: angle from start to goal [rad].
+        angle: from start to goal [rad].
         axis: (3,) unit vector about which the arm turns.
         offset: (3,) how far the hand has given way so far [m].
     """
@@ -55,7 +55,7 @@ class Arc:
         arm = np.asarray(start, float) - self._shoulder
         self.radius = float(np.linalg.norm(arm))
         self._first = arm / self.radius
-        self.whole = float(np.arccos(np.clip(self._first @ goal, -1.0, 1.0)))
+        self.angle = float(np.arccos(np.clip(self._first @ goal, -1.0, 1.0)))
         across = np.cross(self._first, goal)
         self.axis = unit(across if np.linalg.norm(across) > 1e-9 else np.cross(self._first, UP))
         self.offset = np.zeros(3)

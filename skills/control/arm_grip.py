@@ -1,4 +1,4 @@
-"""How a hand takes a person's arm: from above, fingers across it, softly; and how it knows that it has it."""
+"""How a hand takes a person's arm, softly from above with the fingers across it, and knows that it has it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..core.skill import Skill
 from ..core.tries import Tries
 from ..geometry.arm_path import UP, ArmPath
 from ..motion.errors import Unreachable
-from ..motion.ik import hand_pose, solve_ik
+from ..motion.ik import half_turned, hand_pose, solve_ik
 from ..motion.trajectory import free_postures
 from .hands import collision_checker
 
@@ -72,14 +72,14 @@ def top_down_reachable(
     accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
     best: tuple[float, np.ndarray] | None = None
     tries = Tries(Unreachable)
-    for turned in (pose, pose @ np.diag((-1.0, -1.0, 1.0, 1.0))):
+    for turned in (pose, half_turned(pose)):
         with tries:
             room, q = np.inf, seen.arm_positions[n]
             for way in then:
                 there = turned.copy()
                 there[:3, 3] += way
                 q = solve_ik(kinematics, side, there, seen.pose_base_in_map, q, accept=accept)
-                room = min(room, float(np.min(np.minimum(q - limits.lower, limits.upper - q))))
+                room = min(room, limits.margin(q))
             if best is None or room > best[0] + tuning.min_gain:
                 best = (room, turned)
     if best is None:

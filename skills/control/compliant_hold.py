@@ -53,7 +53,7 @@ def while_holding(
 
 
 def ease_hold(skill: Skill, hold: Hold | None, *, tuning: CompliantHoldTuning = COMPLIANT_HOLD) -> None:
-    """Give way to what the held arm pulls at the hand; a held arm is stiff, so millimetres are many newtons.
+    """Give way to the pull of the held arm, which is stiff: millimetres make many newtons.
 
     Args:
         skill: that moves.

@@ -1,4 +1,4 @@
-"""Sends a trajectory and sees it through: shared by skills that move the arms along one."""
+"""Send a trajectory and wait until the joints have followed it."""
 
 from __future__ import annotations
 

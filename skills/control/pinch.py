@@ -26,7 +26,8 @@ from ..core.tries import Tries
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
 from ..motion.trajectory import free_postures
-from .hands import HANDS, close_gripper, collision_checker, hand_now, move_hands, open_gripper
+from .fingers import FINGERS, close_gripper, open_gripper
+from .hands import HANDS, collision_checker, hand_now, move_hands
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,8 @@ class PinchTuning(Quantities):
         "about the approach, tried in turn",
         "choice: the wanted one first, and each beside the one turned by half a turn, as the fingers are alike",
     )
+    seeds: int = quantity(5, "1", "starting points of inverse kinematics for each roll", "choice: many rolls are tried")
+    seeds_onwards: int = quantity(2, "1", "starting points for the straight way in", "choice: it begins nearby")
 
 
 PINCH = PinchTuning()
@@ -119,8 +122,8 @@ def grasp_poses(
         Unreachable: with no roll.
     """
     seen, n = skill.world.observe(), SIDES.index(side)
-    kinematics = default_kinematics()
-    accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
+    kinematics, base = default_kinematics(), seen.pose_base_in_map
+    accept = free_postures(collision_checker(skill), side, base, seen.arm_positions)
     across = np.cross(approach, closing)
     tries = Tries(Unreachable)
     for roll in tuning.rolls:
@@ -128,17 +131,27 @@ def grasp_poses(
         before = hand_pose(position - standoff * approach, approach, turned)
         inside = hand_pose(position + depth * approach, approach, turned)
         with tries:
-            q = solve_ik(kinematics, side, before, seen.pose_base_in_map, seen.arm_positions[n], seeds=5, accept=accept)
-            q = solve_ik(kinematics, side, inside, seen.pose_base_in_map, q, seeds=2, accept=accept)
+            q = solve_ik(
+                kinematics,
+                side,
+                before,
+                base,
+                seen.arm_positions[n],
+                seeds=tuning.seeds,
+                accept=accept,
+            )
+            q = solve_ik(kinematics, side, inside, base, q, seeds=tuning.seeds_onwards, accept=accept)
             if np.any(sweep):
                 swept = inside.copy()
                 swept[:3, 3] += sweep
-                solve_ik(kinematics, side, swept, seen.pose_base_in_map, q, seeds=2, accept=accept)
+                solve_ik(kinematics, side, swept, base, q, seeds=tuning.seeds_onwards, accept=accept)
             return before, inside
     raise tries.last
 
 
-def pinch(skill: Skill, side: Side, *, force: float = HANDS.grip_force, tuning: PinchTuning = PINCH) -> Iterator[None]:
+def pinch(
+    skill: Skill, side: Side, *, force: float = FINGERS.grip_force, tuning: PinchTuning = PINCH
+) -> Iterator[None]:
     """Close the fingers and look whether cloth is between them.
 
     Raises:

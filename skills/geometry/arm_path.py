@@ -33,6 +33,9 @@ class ArmPathTuning(Quantities):
     search_to: float = quantity(
         4.6, "1", "arm coordinate up to which it is looked for", "choice: beyond where a sleeve is presented"
     )
+    search_window: float = quantity(
+        0.6, "1", "arm coordinates to either side of a known one in which it is looked for", "choice: half a forearm"
+    )
     search_step: float = quantity(
         0.01, "1", "spacing of the arm coordinates that are tried", "choice: 2 to 3 mm of an arm"
     )
@@ -94,12 +97,14 @@ class ArmPath:
         across = unit(np.cross(along, UP))
         return np.column_stack((across, along, np.cross(across, along)))
 
-    def coordinate_of(self, point_in_map: np.ndarray, near: float | None = None, window: float = 0.6) -> float:
-        """The arm coordinate nearest to a point (3,), looked for within `window` of `near` when given."""
-        low, high = (
-            (self._tuning.search_from, self._tuning.search_to) if near is None else (near - window, near + window)
-        )
-        coordinates = np.linspace(low, high, int((high - low) / self._tuning.search_step) + 1)
+    def coordinate_of(self, point_in_map: np.ndarray, near: float | None = None) -> float:
+        """The arm coordinate nearest to a point (3,) [m], looked for only around `near` where that is given."""
+        tuning = self._tuning
+        if near is None:
+            low, high = tuning.search_from, tuning.search_to
+        else:
+            low, high = near - tuning.search_window, near + tuning.search_window
+        coordinates = np.linspace(low, high, int((high - low) / tuning.search_step) + 1)
         points = np.array([self.point(float(coordinate)) for coordinate in coordinates])
         return float(coordinates[int(np.argmin(np.linalg.norm(points - point_in_map, axis=1)))])
 

@@ -148,6 +148,11 @@ def hand_pose(position: np.ndarray, approach: np.ndarray, closing: np.ndarray | 
     return pose
 
 
+def half_turned(pose: np.ndarray) -> np.ndarray:
+    """A hand pose (4, 4) after half a turn about its approach: it grasps the same, as the fingers are alike."""
+    return pose @ np.diag((-1.0, -1.0, 1.0, 1.0))
+
+
 def _starts(
     kinematics: Kinematics, side: Side, q_seed: np.ndarray, count: int, tuning: IkTuning
 ) -> Iterator[np.ndarray]:

@@ -14,7 +14,7 @@ from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked, Unreachable
 from .ik import FreeAxis, solve_ik
 from .rrt import connect, segment_free
-from .trajectory import HandSpeed, free_postures, plan_joint_motion, standing_contacts
+from .trajectory import HandSpeed, free_postures, plan_joint_motion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,15 +183,7 @@ def plan_arms(
 
     if checker is None:
         return timed(np.stack((start, goal)))
-    arms = np.array(arm_positions, float)
-    given = standing_contacts(checker, moving, pose_base_in_map, arms)
-
-    def free(q: np.ndarray) -> bool:
-        arms[index] = q.reshape(-1, 7)
-        if given:
-            return given.issuperset(checker.collisions(pose_base_in_map, arms))
-        return checker.free(pose_base_in_map, arms)
-
+    free = free_postures(checker, moving, pose_base_in_map, arm_positions)
     if segment_free(start, goal, free):
         return timed(np.stack((start, goal)))
     limits = [kinematics.limits[side] for side in moving]

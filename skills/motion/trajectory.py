@@ -140,7 +140,14 @@ def check_motion(
 def standing_contacts(
     checker: CollisionChecker, moving: list[Side], pose_base_in_map: np.ndarray, arms: np.ndarray
 ) -> set[tuple[str, str]]:
-    """What an arm that stays where it is touches already, which is no reason for the other one not to move."""
+    """Contacts, as pairs of names, of the arm that does not move; they do not forbid the other one to move.
+
+    Args:
+        checker: of the arms against the robot and what stands around it.
+        moving: sides that move.
+        pose_base_in_map: (3,) where the base stands.
+        arms: (2, 7) joint angles of both arms [rad].
+    """
     if len(moving) == len(SIDES):
         return set()
     return {
@@ -151,14 +158,22 @@ def standing_contacts(
 
 
 def free_postures(
-    checker: CollisionChecker, side: Side, pose_base_in_map: np.ndarray, arms: np.ndarray
+    checker: CollisionChecker, moving: Side | list[Side], pose_base_in_map: np.ndarray, arms: np.ndarray
 ) -> Callable[[np.ndarray], bool]:
-    """Test of postures (7,) of one arm while the other one of `arms` (2, 7) stays: they touch nothing anew."""
-    n, given = SIDES.index(side), standing_contacts(checker, [side], pose_base_in_map, arms)
+    """A test of postures, (7,) of one arm or (14,) of both [rad]: whether they make no new contact.
+
+    Args:
+        checker: of the arms against the robot and what stands around it.
+        moving: side or sides of the arms that move.
+        pose_base_in_map: (3,) where the base stands.
+        arms: (2, 7) joint angles of both arms, of which those that do not move stay [rad].
+    """
+    sides: list[Side] = moving if isinstance(moving, list) else [moving]
+    rows, given = [SIDES.index(side) for side in sides], standing_contacts(checker, sides, pose_base_in_map, arms)
 
     def accept(q: np.ndarray) -> bool:
         trial = np.array(arms, float)
-        trial[n] = q
+        trial[rows] = q.reshape(-1, 7)
         if given:
             return given.issuperset(checker.collisions(pose_base_in_map, trial))
         return checker.free(pose_base_in_map, trial)

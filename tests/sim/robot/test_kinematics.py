@@ -101,3 +101,12 @@ def test_unknown_camera_is_told_what_there_is(kinematics):
 
 def test_planar_pose_turns_left_for_positive_yaw():
     np.testing.assert_allclose(planar_pose(np.array((1.0, 2.0, np.pi / 2)))[:3, :3] @ (1, 0, 0), (0, 1, 0), atol=1e-12)
+
+
+def test_the_margin_is_that_of_the_joint_nearest_to_its_limit(kinematics):
+    limits = kinematics.limits["right"]
+    q = 0.5 * (limits.lower + limits.upper)
+    q[3] = limits.upper[3] - 0.12
+    assert limits.margin(q) == pytest.approx(0.12)
+    q[5] = limits.lower[5] - 0.01
+    assert limits.margin(q) == pytest.approx(-0.01)

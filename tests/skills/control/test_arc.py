@@ -10,13 +10,13 @@ def test_the_hand_stays_at_the_arm_s_length_and_rises():
     arc = Arc(SHOULDER, ELBOW, GOAL)
     np.testing.assert_allclose(arc.at(0.0)[0], ELBOW, atol=1e-12)
     heights = []
-    for raised in np.linspace(0.0, arc.whole, 9):
+    for raised in np.linspace(0.0, arc.angle, 9):
         point, tangent = arc.at(raised)
         assert np.linalg.norm(point - SHOULDER) == pytest.approx(arc.radius)
         assert tangent @ (point - SHOULDER) == pytest.approx(0.0, abs=1e-12)
         heights.append(point[2])
     assert (np.diff(heights) > 0).all()
-    np.testing.assert_allclose(arc.at(arc.whole)[0], SHOULDER + arc.radius * GOAL, atol=1e-12)
+    np.testing.assert_allclose(arc.at(arc.angle)[0], SHOULDER + arc.radius * GOAL, atol=1e-12)
     # turning the arm about the axis is the same motion
     turned = np.cross(arc.axis, ELBOW - SHOULDER)
     assert turned @ arc.at(0.0)[1] > 0

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-from caretree.skills.belief.strap_grasp import presenting_position
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.strap_grip import presenting, strap_grip
 from caretree.skills.motion.ik import hand_pose
@@ -25,10 +24,3 @@ def test_the_strap_comes_to_lie_across_the_arm_however_it_was_taken(side, turned
         assert across @ -heading == pytest.approx(np.cos(lean), abs=1e-9), "the upper edge points to the shoulder"
         assert pose[2, 2] == pytest.approx(-np.cos(lean), abs=1e-9), "the hand comes from above"
         assert pose[:3, 2] @ heading <= 1e-9, "and leans away from the person"
-
-
-def test_the_sleeve_is_presented_straight_before_the_fingertips():
-    path = ArmPath.of(lying_posture("right"))
-    place = presenting_position(path, 0.4)
-    assert np.linalg.norm(place - path.points[3]) == pytest.approx(0.4)
-    assert place[2] == pytest.approx(path.points[3, 2])

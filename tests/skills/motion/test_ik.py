@@ -4,7 +4,7 @@ from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import Kinematics
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import Unreachable
-from caretree.skills.motion.ik import hand_pose, solve_ik
+from caretree.skills.motion.ik import half_turned, hand_pose, solve_ik
 
 BASE = np.array((1.0, -0.2, np.pi))
 
@@ -111,3 +111,11 @@ def test_hand_pose_is_a_rotation_that_points_and_closes_as_asked():
 def test_an_unknown_free_axis_is_told_the_choices(kinematics):
     with pytest.raises(ValueError, match="closing"):
         solve_ik(kinematics, "left", np.eye(4), BASE, model.READY[0], free="roll")
+
+
+def test_half_a_turn_exchanges_the_fingers():
+    pose = hand_pose((1, 2, 3), (0, 1, -2), (1, 0, 0.5))
+    turned = half_turned(pose)
+    np.testing.assert_allclose(turned[:3, 2:], pose[:3, 2:])
+    np.testing.assert_allclose(turned[:3, 1], -pose[:3, 1])
+    assert np.linalg.det(turned) == pytest.approx(1.0)

@@ -2,11 +2,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from caretree.sim.robot.kinematics import Kinematics
-from caretree.sim.robot.model import READY
-from caretree.sim.robot.servo import Servo
 from caretree.sim.world import RoomMap
-from caretree.skills.motion.drive import PathFollower
 from caretree.skills.motion.errors import PathBlocked
 from caretree.skills.motion.path import is_free, path_length, plan_path
 
@@ -61,32 +57,3 @@ def test_impossible_goals_are_told_in_one_sentence(start, goal, message):
 def test_walled_off_means_no_way():
     with pytest.raises(PathBlocked, match="no free way"):
         plan_path(room(wall=True), np.array((1.2, 0.0)), np.array((-1.2, 0.0)))
-
-
-@pytest.mark.parametrize("tick", [0.05, 0.1])
-def test_the_follower_arrives_within_two_centimetres_and_two_degrees(tick):
-    path = plan_path(room(), np.array((1.5, -1.0)), np.array((-1.2, 0.3)))
-    servo = Servo(Kinematics(), np.array((1.5, -1.0, np.pi)), READY)
-    follower = PathFollower(path, 0.0)
-    now, last = 0.0, np.inf
-    for _ in range(round(60 / tick)):
-        if follower.done(servo.pose_base_in_map):
-            break
-        servo.command(follower.command(servo.pose_base_in_map))
-        now += tick
-        servo.advance(now)
-        assert is_free(room(), servo.pose_base_in_map[:2])
-    assert now < path_length(path) / 0.5 + 6.0
-    for n in range(50):  # the last command runs out: it must not carry the base past its goal
-        servo.advance(now + 0.01 * n)
-    last = np.linalg.norm(servo.pose_base_in_map[:2] - (-1.2, 0.3))
-    assert last < 0.025
-    assert abs((servo.pose_base_in_map[2] + np.pi) % (2 * np.pi) - np.pi) < np.deg2rad(2.5)
-
-
-def test_the_follower_is_done_only_with_the_right_heading():
-    follower = PathFollower(np.array(((0.0, 0.0), (1.0, 0.0))), np.pi)
-    assert not follower.done(np.array((1.0, 0.0, 0.0)))
-    assert follower.done(np.array((0.99, 0.01, -np.pi + 0.01)))
-    turning = follower.command(np.array((1.0, 0.0, 0.0)))
-    assert abs(turning.velocity[2]) > 0.3

@@ -1,0 +1,107 @@
+"""Fingers in motion: generators that skills use with `yield from`.
+
+gap = yield from close_gripper(self, "right", force=30.0)   # what is left between the fingertips [m]
+yield from open_gripper(self, "right")
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+
+from ...sim.quantity import Quantities, quantity
+from ...sim.robot.gripper import GRIPPER
+from ...sim.world import SIDES, GripperOpening, Side
+from ..core.reasons import Reason, SkillFailure
+from ..core.skill import Skill
+
+
+@dataclass(frozen=True, kw_only=True)
+class FingersTuning(Quantities):
+    """Numbers of moving fingers."""
+
+    open_tolerance: float = quantity(
+        0.004, "m", "short of the opening that was asked for at which the fingers are open", "choice: half a finger"
+    )
+    grip_force: float = quantity(30.0, "N", "of squeezing cloth, at most", "choice: thin cloth is held without a slip")
+    timeout: float = quantity(3.0, "s", "for the fingers to open or close", "choice: five times what they take")
+    min_closing: float = quantity(0.002, "m", "of the fingers that counts as motion", "choice: above the noise")
+    rest_change: float = quantity(
+        0.0005, "m", "from tick to tick below which the fingers rest", "choice: a few per cent of their speed"
+    )
+    rest_ticks: int = quantity(2, "1", "ticks in a row in which the fingers must rest", "choice: one may be chance")
+
+
+FINGERS = FingersTuning()
+
+
+def open_gripper(
+    skill: Skill,
+    side: Side,
+    opening: float = GRIPPER.stroke,
+    *,
+    timeout: float = FINGERS.timeout,
+    tuning: FingersTuning = FINGERS,
+) -> Iterator[None]:
+    """Open the fingers and wait for it; the hand then holds nothing.
+
+    Args:
+        skill: that opens them.
+        side: which hand.
+        opening: between the fingertips [m].
+        timeout: when to give up [s].
+        tuning: how far they may be from it.
+
+    Raises:
+        SkillFailure: COMMAND_LOST when they are not open in time.
+    """
+    n = SIDES.index(side)
+    skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
+    yield from skill.until(
+        lambda: skill.world.observe().gripper_opening[n] > opening - tuning.open_tolerance,
+        timeout=timeout,
+        reason=Reason.COMMAND_LOST,
+    )
+    skill.context.guard.declare_grip(side, "nothing")
+
+
+def close_gripper(
+    skill: Skill,
+    side: Side,
+    *,
+    opening: float = 0.0,
+    force: float = FINGERS.grip_force,
+    timeout: float = FINGERS.timeout,
+    tuning: FingersTuning = FINGERS,
+) -> Generator[None, None, float]:
+    """Close the fingers until they rest on what is between them, or on each other.
+
+    Args:
+        skill: that grasps.
+        side: which hand.
+        opening: where to stop at the latest [m].
+        force: greatest squeezing force [N].
+        timeout: when to give up [s].
+        tuning: when the fingers move, and when they rest.
+
+    Returns:
+        What is left between the fingertips [m]; the caller says by `declare_grip` what that is.
+
+    Raises:
+        SkillFailure: COMMAND_LOST when the fingers never moved, GRASP_MISSED when they never rest.
+    """
+    n = SIDES.index(side)
+    before = start = float(skill.world.observe().gripper_opening[n])
+    skill.world.send(GripperOpening(side=side, opening=opening, force_limit=force))
+    end, calm, moved = skill.now() + timeout, 0, False
+    while calm < tuning.rest_ticks:
+        if skill.now() >= end:
+            if moved:
+                raise SkillFailure(Reason.GRASP_MISSED, f"the {side} fingers do not come to rest")
+            raise SkillFailure(Reason.COMMAND_LOST, f"the {side} fingers do not close")
+        yield
+        gap = float(skill.world.observe().gripper_opening[n])
+        moved = moved or gap < start - tuning.min_closing or start <= opening + tuning.min_closing
+        calm = calm + 1 if abs(gap - before) < tuning.rest_change and moved else 0
+        before = gap
+    return before

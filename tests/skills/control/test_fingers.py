@@ -1,0 +1,24 @@
+import pytest
+from caretree.sim.world import GripperOpening
+from caretree.skills.control.fingers import close_gripper, open_gripper
+from caretree.skills.core.reasons import Reason
+
+from ..moving import carry_out, robot
+
+
+def test_closing_tells_what_is_between_the_fingers():
+    world, context = robot()
+    world.between_fingers["left"] = 0.05
+    assert carry_out(world, context, lambda skill: close_gripper(skill, "left")).result == pytest.approx(0.05, abs=1e-3)
+    skill = carry_out(world, context, lambda skill: close_gripper(skill, "right"))
+    assert skill.result == pytest.approx(0.0, abs=1e-3)
+    skill = carry_out(world, context, lambda skill: open_gripper(skill, "right", 0.06))
+    assert skill.failure is None
+    assert world.observe().gripper_opening[1] == pytest.approx(0.06, abs=0.005)
+
+
+@pytest.mark.parametrize("motion", [close_gripper, open_gripper])
+def test_fingers_that_do_not_obey_are_told(motion):
+    world, context = robot(deaf_to=GripperOpening)
+    world._opening[:] = world._opening_goal[:] = 0.04
+    assert carry_out(world, context, lambda skill: motion(skill, "left")).failure.reason == Reason.COMMAND_LOST

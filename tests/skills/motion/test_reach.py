@@ -1,0 +1,83 @@
+import numpy as np
+import pytest
+from caretree.sim.robot import model
+from caretree.sim.robot.collision import CollisionChecker
+from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.world import SIDES
+from caretree.skills.motion.errors import MotionBlocked, Unreachable
+from caretree.skills.motion.ik import hand_pose
+from caretree.skills.motion.reach import plan_arms, plan_hand_line, plan_reach
+
+BASE = np.array((0.95, -0.2, np.pi))
+BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
+
+
+@pytest.fixture(scope="module")
+def kinematics():
+    return Kinematics()
+
+
+def hand_path(kinematics, trajectory, side):
+    n = trajectory.joints.index(f"{side}_s0")
+    return np.array([kinematics.pose_hand_in_map(side, q[n : n + 7], BASE)[:3, 3] for q in trajectory.positions])
+
+
+def test_a_line_is_straight_and_keeps_both_hands_together(kinematics):
+    goals = {}
+    for n, side in enumerate(SIDES):
+        pose = kinematics.pose_hand_in_map(side, model.READY[n], BASE)
+        pose[:3, 3] += (-0.15, 0.05, 0.2)
+        goals[side] = pose
+    trajectory = plan_hand_line(kinematics, goals, model.READY, BASE, hand_speed=0.2)
+    for side in SIDES:
+        path = hand_path(kinematics, trajectory, side)
+        along = (path[-1] - path[0]) / np.linalg.norm(path[-1] - path[0])
+        off = (path - path[0]) - np.outer((path - path[0]) @ along, along)
+        assert np.abs(off).max() < 1e-3
+        np.testing.assert_allclose(path[-1], goals[side][:3, 3], atol=1e-3)
+    apart = hand_path(kinematics, trajectory, "left") - hand_path(kinematics, trajectory, "right")
+    assert np.ptp(apart, axis=0).max() < 1e-3
+
+
+def test_a_line_out_of_reach_or_through_the_bed_is_refused(kinematics):
+    pose = kinematics.pose_hand_in_map("left", model.READY[0], BASE)
+    pose[:3, 3] += (-1.2, 0.0, 0.0)
+    with pytest.raises(Unreachable):
+        plan_hand_line(kinematics, {"left": pose}, model.READY, BASE)
+    low = kinematics.pose_hand_in_map("left", model.READY[0], BASE)
+    low[:3, 3] += (0.0, 0.0, -0.3)
+    with pytest.raises(MotionBlocked, match="box 0"):
+        plan_hand_line(
+            kinematics, {"left": low}, model.READY, BASE, free="approach", checker=CollisionChecker(kinematics, BED)
+        )
+
+
+def test_reaching_goes_round_what_is_in_the_way(kinematics):
+    board = np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),))
+    checker = CollisionChecker(kinematics, board)
+    arms = model.READY.copy()
+    before, beyond = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (-0.75, -0.28))
+    arms[0] = plan_reach(kinematics, {"left": before}, arms, BASE, free="approach", checker=checker).positions[-1]
+    straight = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach")
+    assert not all(checker.free(BASE, np.stack((q, arms[1]))) for q in straight.positions)
+    round_it = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
+    assert all(checker.free(BASE, np.stack((q, arms[1]))) for q in round_it.positions[::3])
+    hand = kinematics.pose_hand_in_map("left", round_it.positions[-1], BASE)
+    np.testing.assert_allclose(hand[:3, 3], beyond[:3, 3], atol=1e-3)
+    again = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
+    np.testing.assert_array_equal(again.positions, round_it.positions)
+
+
+def test_an_arm_moves_while_the_other_one_touches_something(kinematics):
+    hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
+    at_the_other = CollisionChecker(kinematics, np.array(((hand - 0.05, hand + 0.05),)))
+    assert not at_the_other.free(BASE, model.READY)
+    motion = plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, sides=("right",), checker=at_the_other)
+    np.testing.assert_allclose(motion.positions[-1], 0.9 * model.READY[1], atol=1e-6)
+
+
+def test_no_way_out_of_a_box_is_told(kinematics):
+    hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
+    inside = CollisionChecker(kinematics, np.array(((hand - 0.3, hand + 0.3),)))
+    with pytest.raises(MotionBlocked, match="already touch"):
+        plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, checker=inside)
