@@ -1,12 +1,14 @@
-"""Stage C: whether arm and sleeve lie so that a try to dress the arm can begin, after one that failed."""
+"""Check, after a failed attempt to dress an arm, whether arm and sleeve lie ready for the next one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import PERSON_TRACKING, visible_share, watch_arm
 from .belief.sleeve_search import find_sleeve
@@ -14,19 +16,25 @@ from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 
-AT_HAND = 0.36  # how far from the fingertips, along the bed, a sleeve lies at most that is taken from there [m]
+
+@dataclass(frozen=True, kw_only=True)
+class CheckLaidOutTuning(Quantities):
+    """Numbers of `CheckLaidOut`."""
+
+    max_distance: float = quantity(
+        0.36, "m", "from the fingertips to the sleeve, in the plane of the bed", "choice: it is taken from there"
+    )
 
 
 class CheckLaidOut(Skill):
     """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
 
-    A sleeve that does not show is let pass.
-
-    Inputs: `side` of the person.
+    It fails where the arm is covered or the sleeve lies elsewhere; a sleeve that does not show is no failure.
     """
 
     commands = False
-    side = Input(Side)
+    side = Input(Side, doc="the person's side")
+    tuning = Input(CheckLaidOutTuning, default=CheckLaidOutTuning(), doc="numbers of this skill")
     reasons = (Reason.ARM_LOST, Reason.ARM_COVERED, Reason.SLEEVE_MISSED)
 
     def steps(self) -> Iterator[None]:
@@ -41,6 +49,6 @@ class CheckLaidOut(Skill):
         except PerceptionFailure:
             return
         away = float(np.linalg.norm((sleeve.position_in_map - posture.points_in_map[3])[:2]))
-        if away > AT_HAND:
+        if away > self.tuning.max_distance:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")
         yield

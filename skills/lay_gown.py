@@ -1,13 +1,15 @@
-"""Stage B: lay the unfolded gown on the person, outside up, neckline just beyond the fingertips of the resting arms."""
+"""Lay the unfolded gown on the person, outside up, the neckline just beyond the fingertips of the resting arms."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
+from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .control.base import drive_to
 from .control.hands import cloth_load, hand_now, look_towards, move_hands, open_gripper
@@ -17,97 +19,167 @@ from .core.skill import Skill
 from .geometry.stances import STANCES
 from .motion.errors import MotionError
 
-BEGIN = 1.25  # y of the neckline when the hem begins to touch the legs [m]
-# y and z of the neckline on its way down: the hem trails towards the feet, so that the outside ends up on top
-PATH = ((0.80, 1.15), (0.40, 0.98), (0.16, 0.87))
-CENTRE, NEAREST = 0.0, 0.35  # x of the middle of the neckline, and of the near hand at least [m]
-DRIVE, LOWER = 0.35, 0.25  # [m/s]
-# The far armhole hides behind its hand, but both together are wider than the hands are apart: by 0.04 m in the median
-# of nine gowns, by -0.03 to 0.11.  What shows of the near one is that much nearer to the middle of the bed than all of
-# it.  The gown follows the hands half way [m].
-NEAR: Side = "left"
-OVER_NEAR: Side = "right"  # the wearer's side that it holds
-BEYOND, HIDDEN, FOLLOWS = 0.04, 0.02, 2.0
-STRAIGHT, FARTHEST = 0.03, 0.12  # askew by less is let pass; the hands go no farther to the side [m]
-SLACK, BY, NARROWER = 0.5, 0.03, 5  # pull of a slack neckline [N]; the hands come together by so much [m], so often
+# The robot slides along the person's right side, facing the head of the bed.
+NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
+NEAR_SLEEVE: Side = "right"  # the wearer's side of the sleeve that this hand holds
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayGownTuning(Quantities):
+    """Numbers of `LayGown`.  Places are in the map, whose origin is the middle of the bed: y is towards the feet."""
+
+    start_y: float = quantity(1.25, "m", "of the neckline at first", "choice: the hem begins to touch the legs")
+    start_height: float = quantity(1.28, "m", "of the neckline at first", "choice: the hem is just above the bed")
+    start_shares: tuple[float, float, float] = quantity(
+        (0.25, 0.5, 0.75),
+        "1",
+        "shares of the hands' way to the start at which they come between",
+        "choice: the hands cross before the chest one behind the other",
+    )
+    descent: tuple[tuple[float, float], tuple[float, float], tuple[float, float]] = quantity(
+        ((0.80, 1.15), (0.40, 0.98), (0.16, 0.87)),
+        "m",
+        "y and height of the neckline on its way down",
+        "choice: the hem trails towards the feet, so that the outside ends up on top",
+    )
+    middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
+    min_near_x: float = quantity(
+        0.35,
+        "m",
+        "of the near hand, at least",
+        "choice: how it was found is not recorded; nearer, the hand is beside the base",
+    )
+    approach_speed: float = quantity(0.4, "m/s", "of the base on its way to the bed", "choice: the gown hardly swings")
+    base_speed: float = quantity(0.35, "m/s", "of the base along the bed", "choice: the gown is drawn, not dropped")
+    speed: float = quantity(0.25, "m/s", "of each hand", "choice: the gown hardly swings")
+    overhang: float = quantity(
+        0.04,
+        "m",
+        "by which the armholes' outer edges are farther apart than the hands",
+        "measured: median of nine gowns, from -0.03 to 0.11",
+    )
+    hidden_offset: float = quantity(
+        0.02,
+        "m",
+        "from the middle of what shows of the near armhole outwards to its whole",
+        "choice: how it was found is not recorded; the rest of the near armhole is hidden",
+    )
+    min_askew: float = quantity(
+        0.03,
+        "m",
+        "by which the far side is longer before the gown is drawn across",
+        "choice: less is within the error of what is seen",
+    )
+    shift_factor: float = quantity(
+        2.0, "1", "way of the hands for each metre that the gown is to go", "choice: the gown follows them half way"
+    )
+    max_shift: float = quantity(0.12, "m", "of the hands towards the near side", "choice: within the arms' reach")
+    slack_load: float = quantity(
+        0.5, "N", "pull of the neckline on a hand below which it is slack", "choice: above the noise"
+    )
+    narrowing: float = quantity(
+        0.03,
+        "m",
+        "by which the hands come together at once to slacken the neckline",
+        "choice: small, so that it hangs through no more than needed",
+    )
+    max_narrowings: int = quantity(
+        5, "1", "times that they do so", "choice: a gown that still pulls then is let go of as it is"
+    )
+    withdrawal: tuple[float, float, float] = quantity(
+        (0.0, 0.06, 0.22), "m", "of the open hands in the map", "choice: up and off the cloth, towards the feet"
+    )
+    withdrawal_speed: float = quantity(0.3, "m/s", "of the open hands", "choice: they hold nothing")
+    final_y: float = quantity(1.6, "m", "of the base in the end", "choice: the arms are clear of the bed")
 
 
 class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
-    Inputs: `width` between the two hands [m].  Expects the gown between both hands, outside facing the robot.
+    The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
+    far side, is drawn across to the near side before it is let go of.
     """
 
-    width = Input(float)
+    width = Input(float, unit="m", doc="distance between the hands")
+    tuning = Input(LayGownTuning, default=LayGownTuning(), doc="numbers of this skill")
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.PATH_BLOCKED, Reason.TIMEOUT)
 
     def steps(self) -> Iterator[None]:
         """Drive and lower in turn; then open, rise, drive back."""
+        tuning = self.tuning
         self.note("lays the gown on the person")
-        self._apart, self._middle = self.width, CENTRE
-        yield from drive_to(self, np.array((STANCES.lane, BEGIN + STANCES.ahead, STANCES.heading)), speed=0.4)
-        for share in (0.25, 0.5, 0.75):  # over the bed in steps: the hands cross before the chest one behind the other
-            try:
-                yield from self._hands_to(BEGIN, 1.28, share)
-            except MotionError:
-                continue  # the next step may have a way
-        yield from self._hands_to(BEGIN, 1.28)
-        before = BEGIN
-        for y, z in PATH:  # down first: what then touches is drawn after the neckline, and nothing gets ahead of it
+        self._apart, self._middle = self.width, tuning.middle_x
+        yield from drive_to(self, self._base_for(tuning.start_y), speed=tuning.approach_speed)
+        for share in tuning.start_shares:
+            with suppress(MotionError):  # the next step may have a way
+                yield from self._hands_to(tuning.start_y, tuning.start_height, share)
+        yield from self._hands_to(tuning.start_y, tuning.start_height)
+        before = tuning.start_y
+        for (
+            y,
+            z,
+        ) in tuning.descent:  # down first: what then touches is drawn after the neckline, and nothing gets ahead of it
             yield from self._hands_to(before, z)
-            yield from drive_to(
-                self, np.array((STANCES.lane, y + STANCES.ahead, STANCES.heading)), speed=DRIVE, straight=True
-            )
+            yield from drive_to(self, self._base_for(y), speed=tuning.base_speed, straight=True)
             before = y
-        yield from self._hands_to(*PATH[-1])
+        yield from self._hands_to(*tuning.descent[-1])
         yield from self._centre()
         for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
             yield from open_gripper(self, side)
         self.note("withdraws")
         up: dict[Side, np.ndarray] = {side: hand_now(self, side) for side in SIDES}
         for pose in up.values():
-            pose[:3, 3] += (0.0, 0.06, 0.22)
-        yield from move_hands(self, up, speed=0.3, free="any", retreat=True)
-        yield from drive_to(self, np.array((STANCES.lane, 1.6, STANCES.heading)), straight=True, retreat=True)
+            pose[:3, 3] += tuning.withdrawal
+        yield from move_hands(self, up, speed=tuning.withdrawal_speed, free="any", retreat=True)
+        away = np.array((STANCES.lane, tuning.final_y, STANCES.heading))
+        yield from drive_to(self, away, straight=True, retreat=True)
+
+    def _base_for(self, y: float) -> np.ndarray:
+        """Base pose (3,) in the map from which the hands hold the neckline at `y` [m, m, rad]."""
+        return np.array((STANCES.lane, y + STANCES.ahead, STANCES.heading))
 
     def _centre(self) -> Iterator[None]:
-        """Draw a gown that was taken askew, longer on the far side, towards the near side.
+        """Draw a gown that was taken askew, with more of it on the far side, towards the near side.
 
-        The far side would fall over the edge of the bed, draw the gown after it, and catch on the hand there.
+        The far side would fall over the edge of the bed, draw the gown after it, and catch on the person's hand there.
+        The far armhole hides behind the hand that holds it, so what is askew is told by the near one alone.
         """
-        near = hand_now(self, NEAR)[:3, 3]
+        tuning = self.tuning
+        near = hand_now(self, NEAR_HAND)[:3, 3]
         yield from look_towards(self, near)
         try:
-            seen = self.context.senses.sleeve_opening(self.world.look("head"), side=OVER_NEAR, near_in_map=near)
+            seen = self.context.senses.sleeve_opening(self.world.look("head"), side=NEAR_SLEEVE, near_in_map=near)
         except PerceptionFailure:
             return  # it stays as it was taken
-        askew = float(np.median(seen.ring_points_in_map[:, 0])) + HIDDEN - (self.width + BEYOND) / 2
-        if askew < -STRAIGHT:
-            self._middle = CENTRE + min(-FOLLOWS * askew, FARTHEST)
+        shown = float(np.median(seen.ring_points_in_map[:, 0]))
+        askew = shown + tuning.hidden_offset - (self.width + tuning.overhang) / 2
+        if askew < -tuning.min_askew:
+            self._middle = tuning.middle_x + min(-tuning.shift_factor * askew, tuning.max_shift)
             with suppress(MotionError):  # then it stays where it is
-                yield from self._hands_to(*PATH[-1])
+                yield from self._hands_to(*tuning.descent[-1])
                 yield from self._slacken()
 
     def _slacken(self) -> Iterator[None]:
         """Bring the hands together until the neckline between them is slack.
 
-        Let go of at one end while it is taut, it draws the gown to the other side again.  Only a gown that was askew is
-        slackened: sleeves that do not hang over the edges of the bed may fold inwards.
+        A stretched neckline that is let go of at one end draws the gown to the other side again.  Only a gown that was
+        askew is slackened: sleeves that do not hang over the edges of the bed may fold inwards.
         """
-        for _ in range(NARROWER):
+        tuning = self.tuning
+        for _ in range(tuning.max_narrowings):
             near, far = (float(cloth_load(self, side)[0]) for side in SIDES)
-            if (far - near) / 2 < SLACK:
+            if (far - near) / 2 < tuning.slack_load:
                 return
-            self._apart -= BY
-            yield from self._hands_to(*PATH[-1])
+            self._apart -= tuning.narrowing
+            yield from self._hands_to(*tuning.descent[-1])
 
     def _hands_to(self, y: float, z: float, share: float = 1.0) -> Iterator[None]:
-        """Both hands to the ends of a neckline at (y, z), or a `share` of the way there, however they turn."""
+        """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the way there, turned anyhow."""
         half = self._apart / 2
         goals: dict[Side, np.ndarray] = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
             pose = hand_now(self, side)
-            there = np.array((max(self._middle, NEAREST - half) + sign * half, y, z))
+            there = np.array((max(self._middle, self.tuning.min_near_x - half) + sign * half, y, z))
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
-        yield from move_hands(self, goals, speed=LOWER, free="any", way="either")
+        yield from move_hands(self, goals, speed=self.tuning.speed, free="any", way="either")

@@ -1,11 +1,13 @@
-"""Stage C: put a sleeve that hangs wrong back on the bed, so that its back panel comes to lie outwards of it."""
+"""Put a held sleeve back on the bed, so that its back panel comes to lie outwards of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..sim.quantity import Quantities, quantity
 from .belief.person_tracking import careful
 from .control.compliant_hold import while_holding
 from .control.hands import hand_now, move_hands, open_gripper, until_load
@@ -19,22 +21,43 @@ from .geometry.stances import HEADWARD, outwards
 from .geometry.strap_grip import StrapGrip
 from .motion.errors import MotionError
 
-LAID = np.array((0.36, 0.14, 0.06))  # of the strap: outwards of and feetward from the bed's middle, above it [m]
-ABOVE, ASIDE, BEFORE = 0.30, 0.16, 0.12  # where the way down begins: higher, farther out, farther towards the feet [m]
-SPEED = 0.25  # [m/s]
-TAUT = 3.5  # load from which the sleeve goes no farther: the other one may be on its arm already [N]
+
+@dataclass(frozen=True, kw_only=True)
+class LaySleeveTuning(Quantities):
+    """Numbers of `LaySleeve`."""
+
+    laid_outwards: float = quantity(
+        0.36, "m", "from the bed's middle line to the laid strap", "choice: beside the resting arm, on the bed"
+    )
+    laid_feetward: float = quantity(
+        0.14, "m", "from the bed's middle towards the feet to the laid strap", "choice: beyond the resting hand"
+    )
+    laid_height: float = quantity(0.06, "m", "of the laid strap above the mattress", "choice: the fingers stay clear")
+    start_height: float = quantity(
+        0.30, "m", "of the start of the way down above its end", "choice: what hangs below the strap is off the bed"
+    )
+    start_outwards: float = quantity(
+        0.16, "m", "from the end of the way down outwards to its start", "choice: the back panel touches down outwards"
+    )
+    start_feetward: float = quantity(
+        0.12, "m", "from the end of the way down towards the feet to its start", "choice: the sleeve trails feetward"
+    )
+    speed: float = quantity(0.25, "m/s", "of the hand", "choice: slow beside the person")
+    max_load: float = quantity(
+        3.5, "N", "of the sleeve, at which the hand goes no farther", "choice: the other sleeve may be on its arm"
+    )
 
 
 class LaySleeve(Skill):
     """Hangs the sleeve out over the edge of the bed, then lowers it inwards and headward, and lets go.
 
-    What hangs below the strap touches the bed first, outwards of where the strap then comes to lie.
-
-    Inputs: `grip`, how the strap is held; `hold`, the hand that holds the arm, or None.
+    What hangs below the strap touches the bed first, outwards of where the strap then comes to lie.  A hand that cannot
+    draw back after opening is no failure.
     """
 
-    grip = Input(StrapGrip)
-    hold = Input(Hold, default=None)
+    grip = Input(StrapGrip, doc="how the strap is held")
+    hold = Input(Hold, doc="the hand that holds the arm, or None", default=None)
+    tuning = Input(LaySleeveTuning, default=LaySleeveTuning(), doc="numbers of this skill")
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
 
     def steps(self) -> Iterator[None]:
@@ -43,14 +66,16 @@ class LaySleeve(Skill):
         yield from while_holding(self, self.hold, self._lay())
 
     def _lay(self) -> Iterator[None]:
+        tuning = self.tuning
         hand, out, bed = self.grip.hand, outwards(self.grip.arm), self.world.room.bed
         middle = np.array((*bed[:, :2].mean(axis=0), bed[1, 2]))
-        laid = middle + LAID[0] * out - LAID[1] * HEADWARD + LAID[2] * UP
-        for place in (laid + ABOVE * UP + ASIDE * out - BEFORE * HEADWARD, laid):
+        laid = middle + tuning.laid_outwards * out - tuning.laid_feetward * HEADWARD + tuning.laid_height * UP
+        above = laid + tuning.start_height * UP + tuning.start_outwards * out - tuning.start_feetward * HEADWARD
+        for place in (above, laid):
             pose = hand_now(self, hand)
             pose[:3, 3] = place
-            motion = move_hands(self, {hand: pose}, speed=careful(self, SPEED), free="any", way="either")
-            yield from until_load(self, hand, TAUT, motion)
+            motion = move_hands(self, {hand: pose}, speed=careful(self, tuning.speed), free="any", way="either")
+            yield from until_load(self, hand, tuning.max_load, motion)
         yield from open_gripper(self, hand)
         try:
             yield from back_off(self, hand)

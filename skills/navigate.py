@@ -18,46 +18,40 @@ from .motion.reach import plan_arms
 
 
 class Navigate(Skill):
-    """Plans a path on the occupancy map and follows it with the holonomic base.
+    """Plans a path on the occupancy map and follows it with the holonomic base; what the hands hold is carried along.
 
-    Inputs: `goal`, a waypoint's name or a pose (3,) in the map [m, m, rad]; `speed` of the base [m/s]; `arms`,
-    joint angles (2, 7) to bring the arms to on the way [rad], or None to keep them; `hand_speed` of that motion,
-    relative to the base [m/s].  What the hands hold is carried along.
+    It fails where there is no free path, or no way for the arms.
     """
 
-    goal = Input(str | np.ndarray)
-    speed = Input(float, default=BASE.speed)
-    arms = Input(np.ndarray, default=None)
-    hand_speed = Input(float, default=0.5)
+    goal = Input(str | np.ndarray, unit="m, m, rad, map", doc="name of a waypoint, or pose (3,) of the base")
+    speed = Input(float, unit="m/s", doc="of the base", default=BASE.speed)
+    arms = Input(
+        np.ndarray, unit="rad", doc="joint angles (2, 7) to bring the arms to on the way, or None", default=None
+    )
+    hand_speed = Input(float, unit="m/s", doc="of the hands on that way, relative to the base", default=0.5)
     reasons = (Reason.PATH_BLOCKED, Reason.COMMAND_LOST, Reason.TIMEOUT, Reason.MOTION_BLOCKED)
 
     def steps(self) -> Iterator[None]:
         """Send the arms off, drive, then see that both have arrived."""
         self.note(f"drives to {self.goal}" if isinstance(self.goal, str) else "drives")
-        arms, arrives = None, self.now()
+        arrives = self.now()
         if self.arms is not None:
-            seen = self.world.observe()
-            arms = plan_arms(
-                default_kinematics(),
-                self.arms,
-                seen.arm_positions,
-                seen.pose_base_in_map,
-                hand_speed=self.hand_speed,
-                checker=collision_checker(self),
-            )
-            sent = self.world.send(arms)
+            sent = self.world.send(self._arm_motion())
             assert isinstance(sent, JointTrajectory)
             arrives = self.now() + float(sent.times[-1])
         yield from drive_to(self, self.goal, speed=self.speed)
-        if arms is not None:
+        if self.arms is not None:
             yield from self.wait(arrives - self.now())
-            seen = self.world.observe()
-            last = plan_arms(
-                default_kinematics(),
-                self.arms,
-                seen.arm_positions,
-                seen.pose_base_in_map,
-                hand_speed=self.hand_speed,
-                checker=collision_checker(self),
-            )
-            yield from follow(self, last)
+            yield from follow(self, self._arm_motion())
+
+    def _arm_motion(self) -> JointTrajectory:
+        """From where the arms are now to where they should be."""
+        seen = self.world.observe()
+        return plan_arms(
+            default_kinematics(),
+            self.arms,
+            seen.arm_positions,
+            seen.pose_base_in_map,
+            hand_speed=self.hand_speed,
+            checker=collision_checker(self),
+        )

@@ -1,29 +1,47 @@
 """A dressing without physics: fingers meet cloth, or an arm where one lies; the gown follows as light cloth does.
 
-What is seen comes from a script too (`scripted_senses`).  Every grasp succeeds, so that a whole task
-can be rehearsed, and every recovery and safe branch reached by injecting faults; how cloth behaves is not shown.
+What is seen comes from a script too (`scripted_senses`).  Every grasp succeeds, so that a whole task can be rehearsed,
+and every recovery and safe branch reached by injecting faults; how cloth behaves is not shown.
 """
 
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import room_map
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import SIDES, Command, GripperOpening, Observation, Side
-from .scripted_person import LYING, mirrored
+from .scripted_person import lying_arm
 from .scripted_senses import ScriptedSenses
 
-CLOSING = 0.03  # a hand sent to less than this takes hold [m]
-NEAR_ARM = 0.10  # of an arm's axis: fingers that close within it hold the arm [m]
-ARM, CLOTH = 0.07, 0.002  # what the fingers then have between them [m]
-WEIGHT = 1.4  # of what hangs on a hand [N]
-SPRING, DRAG = 100.0, 1.1  # a hand that draws is held back by so much per way [N/m], and never by more [N]
+
+@dataclass(frozen=True, kw_only=True)
+class RehearsalTuning(Quantities):
+    """What hands meet in a rehearsal."""
+
+    closing_opening: float = quantity(
+        0.03, "m", "between the fingertips, below which a hand takes hold", "choice: no skill goes in with less"
+    )
+    arm_radius: float = quantity(
+        0.10, "m", "about an arm's axis, within which closing fingers hold the arm", "choice: the fingers' length more"
+    )
+    arm_width: float = quantity(0.07, "m", "of an arm between the fingers", "choice: a forearm")
+    cloth_width: float = quantity(0.002, "m", "of cloth between the fingers", "choice: two layers and a hem")
+    hanging_load: float = quantity(1.4, "N", "of what hangs on a hand", "choice: two hands carry a light gown")
+    stiffness: float = quantity(100.0, "N/m", "with which cloth holds a hand back", "choice: felt within centimetres")
+    max_drag: float = quantity(
+        1.1, "N", "with which cloth holds a hand back at most", "choice: below the loads at which skills stop"
+    )
+
+
+REHEARSAL = RehearsalTuning()
 
 
 class RehearsalWorld(ScriptedWorld):
@@ -31,6 +49,7 @@ class RehearsalWorld(ScriptedWorld):
 
     Args:
         seed: of the sensor noise.
+        tuning: what the hands meet.
 
     Attributes:
         initial_states: names of the states in which a run may begin.
@@ -38,8 +57,9 @@ class RehearsalWorld(ScriptedWorld):
 
     initial_states = tuple(InitialState)
 
-    def __init__(self, seed: int = 0) -> None:
+    def __init__(self, seed: int = 0, *, tuning: RehearsalTuning = REHEARSAL) -> None:
         super().__init__(seed=seed, room=room_map(), kinematics=default_kinematics(), arm_positions=model.READY)
+        self._tuning = tuning
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
 
     def set_initial_state(self, name: str) -> None:
@@ -49,31 +69,33 @@ class RehearsalWorld(ScriptedWorld):
             WorldError: there is no such state.
         """
         if InitialState.named(name) == InitialState.GOWN_IN_HANDS:
-            self._opening[:] = CLOTH
+            self._opening[:] = self._tuning.cloth_width
             for side in SIDES:
                 self.send(GripperOpening(side=side, opening=0.0))
 
     def send(self, command: Command) -> Command:
         """Start a command; a closing hand finds something, an opening one loses it."""
         if isinstance(command, GripperOpening):
-            if command.opening >= CLOSING:
+            if command.opening >= self._tuning.closing_opening:
                 self._taken.pop(command.side, None)
                 self.between_fingers[command.side] = 0.0
             elif command.side not in self._taken:
                 hand = self._taken[command.side] = self._hand(command.side)
-                arms = [mirrored(LYING, side) for side in SIDES]
+                arms = [lying_arm(side) for side in SIDES]
                 away = min(_distance(hand, *limb) for arm in arms for limb in itertools.pairwise(arm))
-                self.between_fingers[command.side] = ARM if away < NEAR_ARM else CLOTH
+                met = self._tuning.arm_width if away < self._tuning.arm_radius else self._tuning.cloth_width
+                self.between_fingers[command.side] = met
         return super().send(command)
 
     def observe(self) -> Observation:
         """The scripted world's senses, with the load of what the hands hold."""
+        tuning = self._tuning
         for side in SIDES:
             self.load[side] = np.zeros(6)
             if side in self._taken and self.between_fingers[side] > 0.0:
-                drag = SPRING * (self._taken[side] - self._hand(side))
-                self.load[side][:3] = drag * min(1.0, DRAG / max(float(np.linalg.norm(drag)), 1e-9))
-                self.load[side][2] -= WEIGHT
+                drag = tuning.stiffness * (self._taken[side] - self._hand(side))
+                self.load[side][:3] = drag * min(1.0, tuning.max_drag / max(float(np.linalg.norm(drag)), 1e-9))
+                self.load[side][2] -= tuning.hanging_load
         return super().observe()
 
     def _hand(self, side: Side) -> np.ndarray:

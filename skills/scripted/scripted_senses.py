@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -24,12 +25,27 @@ from ...perception.estimates import (
     WornSleeve,
 )
 from ...perception.senses import Senses
+from ...sim.quantity import Quantities, quantity
 from ...sim.robot.kinematics import planar_pose
 from ...sim.world import Frame, Observation, Side
-from .scripted_person import LYING, laid_strap, lying_posture, mirrored
+from .scripted_person import laid_strap, lying_arm, lying_posture, mirrored
 
-PLACE = np.array((0.70, 0.0, 1.20))  # of the gown, in base [m]
-ASIDE, BELOW = 0.18, 0.37  # of a corner of its neckline from its middle, which the hook holds [m]
+
+@dataclass(frozen=True, kw_only=True)
+class ScriptedGown(Quantities):
+    """Where a hung gown is always seen, in the frame of the base."""
+
+    distance: float = quantity(0.70, "m", "from the middle of the base ahead to the gown", "choice: within reach")
+    height: float = quantity(1.20, "m", "of the hook above the floor", "choice: within reach of both arms")
+    corner_offset: float = quantity(
+        0.18, "m", "from the hook sideways to a corner of the neckline", "choice: both strips hang almost straight"
+    )
+    corner_drop: float = quantity(
+        0.37, "m", "from the hook down to a corner of the neckline", "choice: half of an adult gown's neckline, hung"
+    )
+
+
+GOWN_SEEN = ScriptedGown()
 
 
 class Proprioception(Protocol):
@@ -136,9 +152,8 @@ class ScriptedSenses(Senses):
 
     def sleeve_heading(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveHeading:
         """Along the hand at rest."""
-        return SleeveHeading(
-            stamp=frame.stamp, confidence=0.9, side=side, cuff_from_armhole_in_map=mirrored(LYING[3] - LYING[2], side)
-        )
+        _, _, wrist, fingertip = lying_arm(side)
+        return SleeveHeading(stamp=frame.stamp, confidence=0.9, side=side, cuff_from_armhole_in_map=fingertip - wrist)
 
     def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """At the shoulder, and round the arm."""
@@ -183,11 +198,13 @@ class ScriptedSenses(Senses):
 
     def _corner(self, frame: Frame, side: Side) -> GraspPoint:
         """Seen from outside, the wearer's right is on the robot's left."""
-        return self._point(frame, CORNER_OF[side], ASIDE if side == "right" else -ASIDE, BELOW)
+        aside = GOWN_SEEN.corner_offset
+        return self._point(frame, CORNER_OF[side], aside if side == "right" else -aside, GOWN_SEEN.corner_drop)
 
     def _point(self, frame: Frame, target: GraspTarget, lateral: float, below: float = 0.0) -> GraspPoint:
+        gown = np.array((GOWN_SEEN.distance, 0.0, GOWN_SEEN.height))
         base = planar_pose(self._world.observe().pose_base_in_map)
-        place = base @ np.append(PLACE + (0.0, lateral, -below), 1.0)
+        place = base @ np.append(gown + (0.0, lateral, -below), 1.0)
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,

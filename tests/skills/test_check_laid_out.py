@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.skills.check_laid_out import AT_HAND, CheckLaidOut
+from caretree.skills.check_laid_out import CheckLaidOut
 from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
@@ -14,6 +14,8 @@ from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 from .fake_senses import fake_senses
+
+FARTHEST = 0.36  # from the fingertips to a sleeve that is taken from there [m]
 
 
 def away(distance):
@@ -25,8 +27,8 @@ def away(distance):
 @pytest.mark.parametrize(
     ("sleeve", "share", "reason"),
     [
-        (away(AT_HAND - 0.02), 1.0, None),
-        (away(AT_HAND + 0.02), 1.0, Reason.SLEEVE_MISSED),
+        (away(FARTHEST - 0.02), 1.0, None),
+        (away(FARTHEST + 0.02), 1.0, Reason.SLEEVE_MISSED),
         (away(0.1), 0.5, Reason.ARM_COVERED),
         (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, None),
     ],

@@ -11,13 +11,14 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance
 from caretree.skills.geometry.strap_grip import StrapGrip
 from caretree.skills.present_sleeve import PresentSleeve
-from caretree.skills.scripted.scripted_person import LYING, lying_posture
+from caretree.skills.scripted.scripted_person import lying_arm, lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
 from .fake_senses import fake_senses
 
-ALONG = (LYING[3] - LYING[2]) * (1.0, 1.0, 0.0) / np.linalg.norm((LYING[3] - LYING[2])[:2])  # the right hand
+WRIST, FINGERTIP = lying_arm("right")[2:]
+ALONG = (FINGERTIP - WRIST) * (1.0, 1.0, 0.0) / np.linalg.norm((FINGERTIP - WRIST)[:2])  # the right hand
 
 
 def heading(beyond):
