@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from .belief.armhole_watch import ArmholeWatch
 from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load, hand_now, move_hands, open_gripper
 from .control.pinch import pinch, reach_in
-from .control.pull_law import PullLaw
 from .control.withdraw import withdraw
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
@@ -40,7 +39,10 @@ class SpreadTuning(Quantities):
     distance: float = quantity(0.15, "m", "by which the collar is drawn at most", "choice: as far as to the neck")
     speed: float = quantity(0.10, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
     timeout_factor: float = quantity(
-        2.0, "1", "of the time that the whole distance takes at full speed", "choice: room for a pull that slows down"
+        2.0,
+        "1",
+        "of the time that the whole distance takes at full speed",
+        "choice: room for a guard that slows it down",
     )
     max_load: float = quantity(
         3.5, "N", "of the collar, at which it is as far as it goes", "choice: it is then where it can be"
@@ -52,7 +54,6 @@ class SpreadTuning(Quantities):
         "choice: what is seen of a seated armhole leans over beyond the shoulder",
     )
     withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the collar")
-    pull: PullLaw = field(default_factory=PullLaw)
 
 
 class Spread(Skill):
@@ -128,7 +129,7 @@ class Spread(Skill):
                 return
             gone = float((here - start) @ way)
             self.note(f"draws the {self.side} collar: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
-            linear = tuning.speed * tuning.pull.ease(load) * way
+            linear = tuning.speed * way
             self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
 
