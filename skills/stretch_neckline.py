@@ -58,7 +58,7 @@ class StretchNeckline(Skill):
     def steps(self) -> Iterator[None]:
         """Raise, draw, settle."""
         tuning = self.tuning
-        self.note("draws the gown taut")
+        self.note("stretches the neckline")
         base = planar_pose(self.world.observe().pose_base_in_map)
         goals = {}
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
