@@ -15,7 +15,9 @@ from ..sim.world import Side
 from .belief.person_tracking import careful
 from .belief.sleeve_search import SleeveMemory
 from .control.base import drive_to
-from .control.hands import hand_now, look_towards, move_hands, open_gripper, until_load
+from .control.fingers import open_gripper
+from .control.hands import hand_now, move_hands, until_load
+from .control.head import look_towards
 from .control.pinch import back_off, pinch_or_back_off, reach_in
 from .core.ports import Input
 from .core.reasons import Reason

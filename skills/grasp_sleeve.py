@@ -15,7 +15,8 @@ from .belief.person_tracking import careful, watch_arm
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
 from .control.compliant_hold import while_holding
-from .control.hands import hand_now, move_hands, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import hand_now, move_hands
 from .control.pinch import pinch_or_back_off
 from .core.ports import Input, Output
 from .core.reasons import Reason

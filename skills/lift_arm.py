@@ -140,7 +140,7 @@ class LiftArm(Skill):
         above = over_arm(posture, tuning.goal.grip_coordinate, lift=tuning.goal.approach_height)
         place = ArmPath.of(posture).point(tuning.goal.grip_coordinate)
         arc = Arc(posture.points_in_map[0], place, self._goal(posture))
-        above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.whole)[0] - place))
+        above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.angle)[0] - place))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.approach_speed))
         grip = above.copy()
         grip[:3, 3] = place - tuning.grip_depth * UP
@@ -167,8 +167,8 @@ class LiftArm(Skill):
         last, swung = self.now(), 0.0
         while swung < arc.angle:
             if lost_arm(self, self.hand):
-                raise SkillFailure(Reason.ARM_SLIPPED, f"{swung / arc.whole:.0%} of the way up")
-            if self.now() > end and swung > tuning.min_lift * arc.whole:
+                raise SkillFailure(Reason.ARM_SLIPPED, f"{swung / arc.angle:.0%} of the way up")
+            if self.now() > end and swung > tuning.min_lift * arc.angle:
                 return
             if self.now() > end:
                 raise SkillFailure(Reason.TIMEOUT, f"{swung / arc.angle:.0%} of the way up")
@@ -179,7 +179,7 @@ class LiftArm(Skill):
             wanted, tangent = arc.at(swung)
             behind = wanted + arc.offset - seen.pose_hand_in_map[n, :3, 3]
             ease *= np.clip(2.0 - np.linalg.norm(behind) / tuning.full_speed_lag, 0.0, 1.0)
-            rate = arc.whole / tuning.duration * float(ease) * self._ramp(swung, arc.whole)
+            rate = arc.angle / tuning.duration * float(ease) * self._ramp(swung, arc.angle)
             swung += rate * step
             give = arc.give_way(load, tangent, step)
             if np.linalg.norm(behind) > tuning.max_lag:

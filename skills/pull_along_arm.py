@@ -13,7 +13,8 @@ from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_tracking import watch_arm
 from .control.compliant_hold import ease_hold, while_holding
-from .control.hands import hand_now, look_towards
+from .control.hands import hand_now
+from .control.head import look_towards
 from .control.load_easing import LoadEasing
 from .control.pull_law import PullLaw
 from .core.ports import Input

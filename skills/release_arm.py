@@ -13,7 +13,8 @@ from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_tracking import careful
 from .control.arm_grip import lost_arm
 from .control.compliant_hold import COMPLIANT_HOLD, compliant_velocity
-from .control.hands import move_arms, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import move_arms
 from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason

@@ -13,7 +13,8 @@ from ..sim.robot import model
 from ..sim.world import SIDES, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
-from .control.hands import move_arms, open_gripper
+from .control.fingers import open_gripper
+from .control.hands import move_arms
 from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason
