@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..sim.quantity import Quantities
 from ..sim.world import SIDES, Frame, RoomMap, Side
 from .errors import PerceptionFailure, Problem
 from .estimates import (
@@ -28,10 +30,11 @@ from .gown.hung_side import hung_side
 from .gown.layers import gripped_cloth, layers
 from .gown.pregrasp import pregrasp_proposal
 from .image.garment import gown_side
-from .person.arm_tracker import ArmTracker
-from .person.chest_cover import chest_cover
-from .person.hand_cover import hand_cover
-from .person.skin import head_seen
+from .person.arm_tracker import ArmTracker, ArmTrackerTuning
+from .person.chest_cover import ChestCoverTuning, chest_cover
+from .person.hand_cover import HandCoverTuning, hand_cover
+from .person.head import HeadTuning, head_seen
+from .person.skin import SkinTuning
 from .senses import Senses
 from .sleeve.cuff_round_arm import cuff_round
 from .sleeve.held_armhole import held_armhole
@@ -41,18 +44,37 @@ from .sleeve.strap import sleeve_strap
 from .sleeve.worn_sleeve import worn_sleeve
 
 
+@dataclass(frozen=True, kw_only=True)
+class ClassicalTuning(Quantities):
+    """Numbers of the senses."""
+
+    skin: SkinTuning = field(default_factory=SkinTuning)
+    head: HeadTuning = field(default_factory=HeadTuning)
+    arm: ArmTrackerTuning = field(default_factory=ArmTrackerTuning)
+    chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
+    hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
+
+
+DEFAULT = ClassicalTuning()
+
+
 class ClassicalSenses(Senses):
     """The senses of one run; both arms are tracked from call to call.
 
     Args:
         room: says where the bed is.
         seed: of the random choice among equally good grasps.
+        tuning: numbers.
     """
 
-    def __init__(self, room: RoomMap, seed: int) -> None:
+    def __init__(self, room: RoomMap, seed: int, *, tuning: ClassicalTuning = DEFAULT) -> None:
         self._bed = room.bed
+        self._tuning = tuning
         self._rng = np.random.default_rng(seed)
-        self._trackers: dict[Side, ArmTracker] = {side: ArmTracker(side, room.bed) for side in SIDES}
+        self._trackers: dict[Side, ArmTracker] = {
+            side: ArmTracker(side, room.bed, tuning=tuning.arm, head_tuning=tuning.head, skin_tuning=tuning.skin)
+            for side in SIDES
+        }
 
     def hang_point(self, frame: Frame) -> GraspPoint:
         """A random place at the paper's distance from the hanging point, on the neck binding where it shows."""
@@ -135,7 +157,7 @@ class ClassicalSenses(Senses):
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the skin that shows along the axis of the hand."""
-        return hand_cover(frame, points_in_map)
+        return hand_cover(frame, points_in_map, self._tuning.hand_cover)
 
     def cuff_round(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the cuff's binding about the axis."""
@@ -143,7 +165,7 @@ class ClassicalSenses(Senses):
 
     def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
         """By the gown's colours at a grid of points on the front of the trunk."""
-        return chest_cover(frame, self._bed, shoulders_in_map)
+        return chest_cover(frame, self._bed, shoulders_in_map, self._tuning.chest_cover)
 
     def collar_near_shoulder(self, frame: Frame, *, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
         """The end of the neck binding at the armhole that sits near the shoulder."""
@@ -151,7 +173,7 @@ class ClassicalSenses(Senses):
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""
-        return head_seen(frame, self._bed)
+        return head_seen(frame, self._bed, self._tuning.head, self._tuning.skin)
 
     def arm(
         self, frame: Frame, *, side: Side, grip_in_map: np.ndarray | None = None, arm_coordinate: float = 1.0
