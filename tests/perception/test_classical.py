@@ -6,7 +6,7 @@ from caretree.perception import estimates
 from caretree.perception.classical import ClassicalSenses, ClassicalTuning
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.senses import Senses
-from caretree.sim.quantity import changed
+from caretree.sim.quantity import changed, rows
 from caretree.sim.world import RoomMap
 
 CALLS = {  # name -> scene, type, details from the scene
@@ -119,3 +119,10 @@ def test_its_numbers_can_be_set(scenes, bed):
         ask_for(ClassicalSenses(room, 0), frame)
         with pytest.raises(PerceptionFailure):
             ask_for(ClassicalSenses(room, 0, tuning=changed(ClassicalTuning(), {name: value})), frame)
+
+
+def test_every_number_says_where_it_comes_from():
+    found = rows(ClassicalTuning())
+    assert {row.name.split(".")[0] for row in found} >= {"arm", "head", "hung_corner", "sleeve_strap", "worn_sleeve"}
+    kinds = ("choice:", "measured:", "standard:", "design:", "datasheet:", "paper:")
+    assert [row.name for row in found if not row.source.startswith(kinds)] == []
