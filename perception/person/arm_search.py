@@ -51,7 +51,10 @@ class ArmSearchTuning(Quantities):
         20.0, "1", "of skin that a fit does not explain, times its share", "choice: outweighs residuals"
     )
     min_improvement: float = quantity(
-        0.3, "1", "of the cost, for another start to count as better", "choice: fits from two starts differ by less"
+        0.3,
+        "1",
+        "of the cost, for another start to count as better",
+        "choice: the earlier start stays unless another is clearly better",
     )
     min_explained: float = quantity(0.7, "1", "of the skin that the arm has to explain", "choice: most of it")
     max_shoulder_offset: float = quantity(

@@ -43,7 +43,7 @@ class ArmTrackerTuning(Quantities):
     hidden_speed: float = quantity(0.003, "m/s", "of one that is neither seen nor held", "choice: small slips")
     recent_time: float = quantity(0.5, "s", "since it was seen or held, which still counts as now", "choice: two looks")
     sinking_time: float = quantity(
-        15.0, "s", "since it was let go of, while it may sink", "choice: longer than it does"
+        15.0, "s", "since it was let go of, while it may sink", "choice: by trial, not recorded"
     )
     # one frame
     min_points: int = quantity(15, "1", "of skin that a fit has to explain", "choice: less is noise")

@@ -30,7 +30,9 @@ class HeadTuning(Quantities):
     width_percentiles: tuple[float, float] = quantity((2, 98), "%", "of the head's points across", "choice: noise")
     top_percentile: float = quantity(95, "%", "of the head's points in height", "choice: noise")
     min_points: int = quantity(30, "1", "of a head", "choice: less is noise")
-    sure_points: int = quantity(150, "1", "of a head that is seen with certainty", "choice: half of what usually shows")
+    sure_points: int = quantity(
+        150, "1", "of a head that is seen with certainty", "choice: well above the least that counts"
+    )
     cut_confidence: float = quantity(
         0.8, "1", "of a head where skin touches the picture's border", "choice: it may be cut off"
     )
