@@ -1,73 +1,107 @@
 """One arm of the person over time, through occlusion by the gown and the robot.
 
-Each frame is fitted on its own (`chain`); a constant-velocity Kalman filter on the four joint centres takes
-the fit with the fit's own covariance.  What the cloth hides has a large covariance in the fit and is carried
-by the lengths of the limb, by its last motion, which dies out, and by the gripper that holds the arm.
+Each frame is fitted on its own (`arm_fit`); a constant-velocity Kalman filter on the four joint centres (`arm_filter`)
+takes the fit with the fit's own covariance.  What the cloth hides has a large covariance in the fit and is carried by
+the lengths of the limb, by its last motion, which dies out, and by the gripper that holds the arm.
 """
 
 from __future__ import annotations
 
-import copy
-import itertools
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import ArmPosture
 from ..image.projection import pixels_of
 from ..image.surfaces import Surface, surfaces
-from .arm_fit import (
-    LENGTHS,
-    SPAN_SIGMA,
-    ChainFit,
-    Limb,
-    SkinView,
-    Trunk,
-    fit_chain,
-    point_along,
-    span_row,
-    turned_about_shoulder,
-)
-from .skin import (
-    CROWN_TO_SHOULDER,
-    HEAD_HEIGHT,
-    SHOULDER_ABOVE_BED,
-    SHOULDER_HALF_WIDTH,
-    TRUNK_HALF_WIDTH,
-    head_seen,
-    skin_on_bed,
-)
+from .arm_filter import ArmFilter, ArmFilterTuning
+from .arm_fit import ArmFitTuning, ChainFit, Limb, fit_chain, point_along, span_row
+from .arm_search import ArmSearchTuning, find_arm
+from .head import DEFAULT as HEAD_DEFAULT
+from .head import HeadTuning
+from .lying_body import LyingBody, body_seen
+from .skin import DEFAULT as SKIN_DEFAULT
+from .skin import SkinTuning
+from .skin_view import SkinView, SkinViewTuning, skin_view
 
-_MARGIN = 0.03  # between the trunk and skin that is taken for the arm [m]
-_POINTS = 350  # skin points per fit
-_GATE = 40.0  # squared Mahalanobis distance of a whole fit, 12 degrees of freedom (99.99 %)
-_FADE = 0.4  # time after which a motion has died out [s]
-_RECENT = 0.5  # what was seen or held that lately may be moving [s]
-# Speed of the joints, standard deviation [m/s]: in view anything goes; held by the robot it may be moving where it
-# is not seen; let go of it may sink for a while; an arm that its owner cannot move, unseen and not held, stays where it
-# is but for small slips.
-_SPEED_SEEN, _SPEED_HELD, _SPEED_SINKING, _SPEED_HIDDEN = 0.10, 0.03, 0.06, 0.003
-_SINKING = 15.0  # after it was let go [s]
-_SHOULDER_PLAY = 0.02  # how far the shoulder joint moves with the arm, standard deviation [m]
-_EXPLAINED = 0.85  # share of the skin beside the trunk that the arm has to explain
-_WORST = 6.0  # mean squared residual of a fit that is believed
-_SIZES = (0.85, 1.15)  # of bodies, relative to 174 cm
-_PITCHES = np.deg2rad((-6.0, 30.0))  # at which an arm is looked for: at rest on the bed, and as a robot leaves it
-_ABDUCTIONS, _BENDS = np.deg2rad((15.0, 40.0, 65.0)), np.deg2rad((0.0, 45.0))
-# How far joints may be from where a search starts: from one posture of many, and from where they were last [m].
-_ANYWHERE, _NEARBY = np.array((0.03, 0.20, 0.30, 0.40)), np.array((0.03, 0.08, 0.10, 0.12))
-_BETTER = 0.3  # by which another start must explain a picture better than those tried before it
-_OFF = 0.10  # from where the head says that it is, a shoulder is not believed [m]
-_FAR = 0.05  # a held point that far from where it is expected turns the whole arm at once [m]
-_TWIST = 0.2  # share of the way of a turned arm's joints that is not known: it may twist about its axis
-_WELL = 0.04  # deviation of every joint at which the first look has seen a whole arm [m]
-_KNOWN_SIGMA = 0.03  # relative, of lengths that were seen once
-_LOST = 0.10  # standard deviation at which a joint counts as lost [m]
-# An arm that shows at no more of its places than that is not where it was; one looked for afresh shows at half of them.
-_PLACES, _GONE, _SHOWS = np.linspace(0.8, 3.0, 23), 0.2, 0.5
-_THICK = 0.09  # skin that is that much nearer or farther than an arm's axis is not that arm's [m]
+
+@dataclass(frozen=True, kw_only=True)
+class ArmTrackerTuning(Quantities):
+    """Numbers of the tracker, and of what it is made of."""
+
+    # How fast the joints may move, standard deviation: in view anything goes; held by the robot they may be moving
+    # where they are not seen; let go of the arm may sink for a while; an arm that its owner cannot move, unseen and not
+    # held, stays where it is but for small slips.
+    seen_speed: float = quantity(0.10, "m/s", "of the joints of an arm in view", "choice: as fast as a robot moves it")
+    held_speed: float = quantity(0.03, "m/s", "of one that the robot holds", "choice: the grip says most of it")
+    sinking_speed: float = quantity(
+        0.06, "m/s", "of one that was let go of", "choice: friction in its joints brakes it"
+    )
+    hidden_speed: float = quantity(0.003, "m/s", "of one that is neither seen nor held", "choice: small slips")
+    recent_time: float = quantity(0.5, "s", "since it was seen or held, which still counts as now", "choice: two looks")
+    sinking_time: float = quantity(
+        15.0, "s", "since it was let go of, while it may sink", "choice: by trial, not recorded"
+    )
+    # one frame
+    min_points: int = quantity(15, "1", "of skin that a fit has to explain", "choice: less is noise")
+    iterations: int = quantity(5, "1", "of the fit to one frame", "choice: it starts where the arm was just now")
+    reach: float = quantity(3.0, "1", "of the joints' deviation, within which they are looked for", "choice: 99.7 %")
+    min_anchor: float = quantity(
+        0.05,
+        "m",
+        "of the pull that keeps unseen joints where they were, standard deviation",
+        "choice: a few frames' motion",
+    )
+    shoulder_deviation: float = quantity(
+        0.02, "m", "of the shoulder joint as the arm moves", "choice: the trunk stays on the bed"
+    )
+    gate_range: tuple[float, float] = quantity(
+        (0.05, 0.12), "m", "from an arm to its skin", "choice: an arm's width to that of an arm and a half"
+    )
+    # fits that are not believed
+    min_explained: float = quantity(0.85, "1", "of the skin beside the trunk", "choice: the rest may be the robot's")
+    max_cost: float = quantity(6.0, "1", "mean squared residual of a fit that is believed", "choice: noise gives 1")
+    max_misfits: int = quantity(
+        5, "1", "of fits in turn, at which the arm is looked for again", "choice: over a second"
+    )
+    max_surprise: float = quantity(
+        40.0, "1", "squared Mahalanobis distance of a fit", "standard: chi square, 12 degrees of freedom, 99.99 %"
+    )
+    max_surprises: int = quantity(3, "1", "in turn, at which the arm did move", "choice: chance does not repeat")
+    # what is known
+    whole_deviation: float = quantity(
+        0.04, "m", "of every joint, at which the first look has seen a whole arm", "choice: nothing of it was hidden"
+    )
+    known_variation: float = quantity(
+        0.03, "1", "of lengths that were seen once, standard deviation", "choice: half of what adults differ by"
+    )
+    lost_deviation: float = quantity(
+        0.10, "m", "of a joint, at which it counts as lost", "choice: a hand that is led by it would miss the arm"
+    )
+    confident_deviation: float = quantity(0.05, "m", "at which the confidence is 1/e", "choice: half of what is lost")
+    grip_deviation: float = quantity(
+        0.02, "m", "of the arm's axis from the middle of the fingers", "choice: they are wider than the arm"
+    )
+    # an arm that does not show where it was
+    bare_range: tuple[float, float] = quantity(
+        (0.8, 3.0), "1", "arm coordinate, where bare skin is looked for", "choice: clear of the sleeve at the shoulder"
+    )
+    bare_samples: int = quantity(23, "1", "of the axis where it is looked for", "choice: every 2 to 3 cm")
+    skin_distance: float = quantity(
+        0.09, "m", "along the view, within which skin at the axis is this arm's", "choice: two radii and some noise"
+    )
+    max_bare_share: float = quantity(0.2, "1", "of the axis, of an arm that is no longer there", "choice: chance hits")
+    min_bare_share: float = quantity(0.5, "1", "of the axis, of an arm that is found elsewhere", "choice: half of it")
+    view: SkinViewTuning = field(default_factory=SkinViewTuning)
+    fit: ArmFitTuning = field(default_factory=ArmFitTuning)
+    filter: ArmFilterTuning = field(default_factory=ArmFilterTuning)
+    search: ArmSearchTuning = field(default_factory=ArmSearchTuning)
+
+
+DEFAULT = ArmTrackerTuning()
 
 
 class ArmTracker:
@@ -77,29 +111,39 @@ class ArmTracker:
     whenever the posture is needed.  Times are the world's clock and must not run backwards.
     """
 
-    def __init__(self, side: Side, bed: np.ndarray, scale: float | None = None) -> None:
+    def __init__(
+        self,
+        side: Side,
+        bed: np.ndarray,
+        scale: float | None = None,
+        *,
+        tuning: ArmTrackerTuning = DEFAULT,
+        head_tuning: HeadTuning = HEAD_DEFAULT,
+        skin_tuning: SkinTuning = SKIN_DEFAULT,
+    ) -> None:
         """Start without an estimate.
 
         Args:
             side: the person's own left or right.
             bed: (2, 3) lower and upper corner of the bed in the map [m].
             scale: body size relative to an adult of 174 cm; judged by the size of the head when omitted.
+            tuning: numbers.
+            head_tuning: numbers of the search for the head.
+            skin_tuning: numbers of what counts as skin.
         """
         self.side: Side = side
-        self.bed = np.asarray(bed, dtype=float)
-        self.scale = scale or 1.0
-        self._judge_size = scale is None
-        self.time = 0.0
-        self.seen = -np.inf  # when skin of this arm was last explained
-        self.held = -np.inf  # when the robot last said that it holds it
-        self.middle = float(self.bed[:, 0].mean())
-        self.shoulder_y = -np.inf
-        self._sign = 1.0 if side == "right" else -1.0  # the person's right is +x
+        self._tuning, self._head_tuning, self._skin_tuning = tuning, head_tuning, skin_tuning
+        self._bed = np.asarray(bed, dtype=float)
+        self._scale = scale
+        self._body: LyingBody | None = None  # stays where it lies, and is best seen before anything covers it
+        self._filter: ArmFilter | None = None
         self._limb: Limb | None = None  # of an arm that was seen whole once
-        self._filter: Any = None
-        self._rejected = 0
-        self._wrong = 0
+        self._lengths, self._shoulder = np.zeros(3), np.zeros(3)  # as they were seen
+        self._seen = -np.inf  # when skin of this arm was last explained
+        self._held = -np.inf  # when the robot last said that it holds it
         self._frame_stamp = -np.inf
+        self._surprises = 0
+        self._misfits = 0
 
     @property
     def started(self) -> bool:
@@ -115,46 +159,34 @@ class ArmTracker:
         Raises:
             PerceptionFailure: the arm has never been found and is not in this frame either.
         """
-        view = self._view(frame)
-        if self._filter is None:
-            self._start(frame, view)
-            return len(view.points)
+        if self._filter is None or self._body is None:
+            body = body_seen(frame, self._bed, self._scale, self._head_tuning, self._skin_tuning)
+            return self._begin(frame, body, self._view(frame, body))
         if frame.stamp <= self._frame_stamp:
             return 0  # a picture seen twice is not new evidence
         self._frame_stamp = frame.stamp
-        self._predict(frame.stamp)
-        if self._deviation().max() > _LOST:
-            return self._find_again(frame, view)
-        if len(view.points) < 15:
+        view = self._view(frame, self._body)
+        self._filter.predict(frame.stamp, self._speed(frame.stamp))
+        if self._filter.deviation.max() > self._tuning.lost_deviation:
+            return self._find_again(frame, self._body, view)
+        if len(view.points) < self._tuning.min_points:
             return 0
-        home = self._joints()
-        home[0] = self._shoulder  # the trunk stays on the bed, and clothes hide the shoulder most of the time
-        anchor = np.clip(3 * self._deviation(), 0.05, _NEARBY.max())
-        anchor[0] = _SHOULDER_PLAY
-        fit = fit_chain(
-            view,
-            self._joints(),
-            anchor=anchor,
-            home=home,
-            scale=self.scale,
-            limb=self._limb,
-            iterations=5,
-            gate=float(np.clip(3 * self._deviation().max(), 0.05, 0.12)),
-        )
-        self._wrong = self._wrong + 1 if fit.used < _EXPLAINED * len(view.points) or fit.cost > _WORST else 0
-        if self._wrong >= 5:
-            return self._find_again(frame, view)
-        if fit.used < 15:
+        fit = self._fit(view, self._filter, self._body)
+        explained = fit.used >= self._tuning.min_explained * len(view.points) and fit.cost <= self._tuning.max_cost
+        self._misfits = 0 if explained else self._misfits + 1
+        if self._misfits >= self._tuning.max_misfits:
+            return self._find_again(frame, self._body, view)
+        if fit.used < self._tuning.min_points:
             return 0
-        if self._surprise(fit) > _GATE:
-            self._rejected += 1
-            if self._rejected < 3:
+        if self._filter.surprise(fit) > self._tuning.max_surprise:
+            self._surprises += 1
+            if self._surprises < self._tuning.max_surprises:
                 return 0
-            self._filter.P[:12, :12] += np.eye(12) * 0.05**2  # three in a row: the arm did move
-        self._rejected = 0
-        self._measure(fit.joints.ravel(), np.eye(12), fit.covariance + np.eye(12) * 0.004**2)
-        self._keep_lengths()
-        self.seen = frame.stamp
+            self._filter.admit_jump()
+        self._surprises = 0
+        self._filter.take_fit(fit)
+        self._keep_lengths(self._filter)
+        self._seen = frame.stamp
         return fit.used
 
     def look_afresh(self, frame: Frame) -> bool:
@@ -163,42 +195,41 @@ class ArmTracker:
         Returns:
             Whether it was found elsewhere, with bare skin all along it; if not, nothing changes.
         """
-        if self._limb is None or self._bare(frame) > _GONE:
+        if self._filter is None or self._body is None or self._limb is None:
             return False
-        other = copy.copy(self)
+        if self._bare_share(frame, self._filter.joints) > self._tuning.max_bare_share:
+            return False
         try:
-            other._start(frame, other._view(frame))
+            fit = self._search(self._body, self._view(frame, self._body))
         except PerceptionFailure:
             return False
-        if other._bare(frame) < _SHOWS:
+        if self._bare_share(frame, fit.joints) < self._tuning.min_bare_share:
             return False
-        self.__dict__.update(other.__dict__)
+        self._follow(fit, frame.stamp)
         return True
 
-    def update_grip(self, time: float, point_in_map: np.ndarray, fraction: float, deviation: float = 0.02) -> None:
+    def update_grip(
+        self, time: float, point_in_map: np.ndarray, arm_coordinate: float, deviation: float | None = None
+    ) -> None:
         """The robot's fingers hold the arm: its axis passes through a known point.
 
         Args:
             time: world clock [s].
             point_in_map: (3,) of the arm's axis between the fingers [m].
-            fraction: where along the arm, 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
-            deviation: standard deviation of the point [m].
+            arm_coordinate: where along the arm, 0 shoulder, 1 elbow, 2 wrist, 3 fingertip.
+            deviation: standard deviation of the point; the tuning's if not given [m].
 
         Raises:
             PerceptionFailure: the arm has never been found.
         """
         if self._filter is None:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
-        self._predict(time)
-        self._turn_to(np.asarray(point_in_map, dtype=float), fraction)
-        self.held = time
-        segment = min(int(fraction), 2)
-        share = float(np.clip(fraction - segment, 0.0, 1.0))
-        rows = np.zeros((3, 12))
-        rows[:, 3 * segment : 3 * segment + 3] = (1 - share) * np.eye(3)
-        rows[:, 3 * segment + 3 : 3 * segment + 6] = share * np.eye(3)
-        self._measure(np.asarray(point_in_map, dtype=float), rows, np.eye(3) * deviation**2)
-        self._keep_lengths()
+        point = np.asarray(point_in_map, dtype=float)
+        self._filter.predict(time, self._speed(time))
+        self._filter.turn_to(point, arm_coordinate)
+        self._held = time
+        self._filter.take_point(point, arm_coordinate, self._tuning.grip_deviation if deviation is None else deviation)
+        self._keep_lengths(self._filter)
 
     def estimate(self, time: float) -> ArmPosture:
         """Posture at `time` [s], not before the last update.
@@ -208,211 +239,97 @@ class ArmTracker:
         """
         if self._filter is None:
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
-        self._predict(time)
-        deviation = self._deviation()
-        if deviation.max() > _LOST:
+        self._filter.predict(time, self._speed(time))
+        deviation = self._filter.deviation
+        if deviation.max() > self._tuning.lost_deviation:
             raise PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
         return ArmPosture(
-            stamp=self.time,
-            confidence=float(np.exp(-deviation.max() / 0.05)),
+            stamp=self._filter.time,
+            confidence=float(np.exp(-deviation.max() / self._tuning.confident_deviation)),
             side=self.side,
-            points_in_map=self._joints(),
+            points_in_map=self._filter.joints,
             deviation=deviation,
         )
 
-    def _turn_to(self, point: np.ndarray, fraction: float) -> None:
-        """Turn the arm about its shoulder as one piece until `fraction` of it points at where the robot holds it.
+    def _view(self, frame: Frame, body: LyingBody) -> SkinView:
+        return skin_view(frame, self._bed, body, self.side, self._tuning.view, self._skin_tuning)
 
-        A filter that is told of an elbow far from where it was leaves the hand behind.
-        """
-        joints = self._joints()
-        if np.linalg.norm(point - point_along(joints, fraction)) < _FAR:
-            return
-        turned = turned_about_shoulder(joints, fraction, point)
-        moved = np.linalg.norm(turned - joints, axis=1)
-        self._filter.x[:12] = turned.ravel()
-        self._filter.P[:12, :12] += np.diag(np.repeat((_TWIST * moved) ** 2, 3))
+    def _speed(self, time: float) -> float:
+        """How fast the joints may move at `time`, standard deviation [m/s]."""
+        if time - self._seen < self._tuning.recent_time:
+            return self._tuning.seen_speed
+        if time - self._held < self._tuning.recent_time:
+            return self._tuning.held_speed
+        if time - self._held < self._tuning.sinking_time:
+            return self._tuning.sinking_speed
+        return self._tuning.hidden_speed
 
-    def _bare(self, frame: Frame) -> float:
-        """Share of the arm's places below the upper arm's middle at which a picture shows skin."""
-        places = np.array([point_along(self._joints(), float(p)) for p in _PLACES])
-        rows, columns, depth, inside = pixels_of(frame, places)
+    def _fit(self, view: SkinView, state: ArmFilter, body: LyingBody) -> ChainFit:
+        """Fit the arm near to where the filter says that it is."""
+        home, reach = state.joints, self._tuning.reach * state.deviation
+        home[0] = self._shoulder  # the trunk stays on the bed, and clothes hide the shoulder most of the time
+        anchor = np.clip(reach, self._tuning.min_anchor, max(self._tuning.search.roam_nearby))
+        anchor[0] = self._tuning.shoulder_deviation
+        return fit_chain(
+            view,
+            state.joints,
+            anchor=anchor,
+            home=home,
+            scale=body.scale,
+            limb=self._limb,
+            iterations=self._tuning.iterations,
+            gate=float(np.clip(reach.max(), *self._tuning.gate_range)),
+            tuning=self._tuning.fit,
+        )
+
+    def _bare_share(self, frame: Frame, joints: np.ndarray) -> float:
+        """Share of an arm (4, 3) below the upper arm's middle at which a picture shows skin."""
+        coordinates = np.linspace(*self._tuning.bare_range, self._tuning.bare_samples)
+        axis = np.array([point_along(joints, float(coordinate)) for coordinate in coordinates])
+        rows, columns, depth, inside = pixels_of(frame, axis)
         skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN
-        return float((inside & skin & (np.abs(frame.depth[rows, columns] - depth) < _THICK)).mean())
+        near = np.abs(frame.depth[rows, columns] - depth) < self._tuning.skin_distance
+        return float((inside & skin & near).mean())
 
-    def _joints(self) -> np.ndarray:
-        return self._filter.x[:12].reshape(4, 3).copy()
+    def _search(self, body: LyingBody, view: SkinView) -> ChainFit:
+        """Look for the arm where it was and everywhere beside the trunk."""
+        return find_arm(
+            view,
+            body,
+            self.side,
+            limb=self._limb,
+            last=None if self._filter is None else self._filter.joints,
+            tuning=self._tuning.search,
+            fit_tuning=self._tuning.fit,
+        )
 
-    def _deviation(self) -> np.ndarray:
-        """Standard deviation (4,) of each joint in its worst direction of the axes [m]."""
-        return np.sqrt(np.maximum(np.diag(self._filter.P)[:12], 1e-8).reshape(4, 3).max(axis=1))
-
-    def _find_again(self, frame: Frame, view: SkinView) -> int:
-        """Start over where the arm is too uncertain to be followed; keep what there is if it is not seen."""
-        try:
-            self._start(frame, view)
-        except PerceptionFailure:
-            return 0
+    def _begin(self, frame: Frame, body: LyingBody, view: SkinView) -> int:
+        """Find the arm and follow it from there; nothing changes if it is not found."""
+        fit = self._search(body, view)
+        self._body = body
+        self._follow(fit, frame.stamp)
         return len(view.points)
 
-    def _view(self, frame: Frame) -> SkinView:
-        import cv2
+    def _find_again(self, frame: Frame, body: LyingBody, view: SkinView) -> int:
+        """Start over where the arm is too uncertain to be followed; keep what there is if it is not seen."""
+        try:
+            return self._begin(frame, body, view)
+        except PerceptionFailure:
+            return 0
 
-        points, skin = skin_on_bed(frame, self.bed, inner=True)
-        side = (points[:, 0] - self.middle) * self._sign
-        below_head = points[:, 1] > (self.shoulder_y - 0.10)
-        mine = points[(side > TRUNK_HALF_WIDTH * self.scale + _MARGIN) & below_head]
-        if len(mine) > _POINTS:
-            mine = mine[np.linspace(0, len(mine) - 1, _POINTS).astype(int)]
-        if skin.any():
-            to_skin = cv2.distanceTransform((~skin).astype(np.uint8), cv2.DIST_L2, 3)
-            gradient = np.stack(
-                [
-                    cv2.Sobel(to_skin, cv2.CV_32F, 1, 0, ksize=3, scale=0.125),
-                    cv2.Sobel(to_skin, cv2.CV_32F, 0, 1, ksize=3, scale=0.125),
-                ]
-            )
-        else:
-            to_skin, gradient = np.full(skin.shape, 1e3, np.float32), np.zeros((2, *skin.shape), np.float32)
-        trunk = Trunk(
-            middle=self.middle,
-            sign=self._sign,
-            half_width=0.95 * TRUNK_HALF_WIDTH * self.scale,
-            top=self.bed[1, 2] + 0.20,
-            low=self.shoulder_y - 0.05,
-            high=self.shoulder_y + 0.60,
-        )
-        return SkinView(
-            points=mine,
-            trunk=trunk,
-            depth=frame.depth,
-            to_skin=to_skin,
-            gradient=gradient,
-            intrinsics=frame.intrinsics,
-            pose_camera_in_map=frame.pose_camera_in_map,
-        )
-
-    def _start(self, frame: Frame, view: SkinView) -> None:
-        """Find the arm: try a fan of postures next to the trunk, keep the one that explains the skin best."""
-        if not self.started:  # the trunk stays where it lies, and is best seen before anything covers it
-            self._find_trunk(frame)
-        view = self._view(frame)
-        if len(view.points) < 40:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
-        shoulder = np.array(
-            (
-                self.middle + self._sign * SHOULDER_HALF_WIDTH * self.scale,
-                self.shoulder_y,
-                self.bed[1, 2] + SHOULDER_ABOVE_BED,
-            )
-        )
-        bends = _BENDS if self._limb is None else _BENDS[:1]
-        starts = [
-            (self._posture(shoulder, *angles), _ANYWHERE) for angles in itertools.product(_PITCHES, _ABDUCTIONS, bends)
-        ]
-        if self.started:
-            starts.insert(0, (self._joints(), _NEARBY))
-        best: tuple[float, ChainFit, np.ndarray] | None = None
-        for start, anchor in starts:
-            fit = fit_chain(view, start, scale=self.scale, limb=self._limb, gate=0.15, anchor=anchor, iterations=15)
-            missed = 1 - fit.used / len(view.points)
-            score = fit.cost + 20 * missed
-            if best is None or score < best[0] - _BETTER:
-                best = score, fit, anchor
-        assert best is not None
-        home = best[1].joints.copy()
-        home[0] = shoulder  # which lies on the bed however the arm is raised
-        fit = fit_chain(
-            view, best[1].joints, scale=self.scale, limb=self._limb, gate=0.06, home=home, anchor=best[2], iterations=10
-        )
-        if fit.used < 0.7 * len(view.points) or np.linalg.norm(fit.joints[0] - shoulder) > _OFF:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, f"{self.side} arm")
-        self._make_filter(fit, frame.stamp)
-
-    def _find_trunk(self, frame: Frame) -> None:
-        """Middle, size and shoulders of the body by its head."""
-        head = head_seen(frame, self.bed)
-        self.middle = head.middle
-        if self._judge_size:
-            self.scale = float(np.clip((head.crown_in_map[2] - self.bed[1, 2]) / HEAD_HEIGHT, *_SIZES))
-        self.shoulder_y = float(head.crown_in_map[1]) + CROWN_TO_SHOULDER * self.scale
-
-    def _posture(self, shoulder: np.ndarray, pitch: float, abduction: float, bend: float) -> np.ndarray:
-        """Joints (4, 3) of an arm raised by `pitch`, its forearm turned towards the body by `bend` [rad]."""
-        flat, up = np.cos(pitch), np.sin(pitch)
-        upper = np.array((self._sign * flat * np.sin(abduction), flat * np.cos(abduction), up))
-        fore = np.array((self._sign * flat * np.sin(abduction - bend), flat * np.cos(abduction - bend), up))
-        lengths = LENGTHS * self.scale
-        elbow = shoulder + lengths[0] * upper
-        wrist = elbow + lengths[1] * fore
-        return np.array((shoulder, elbow, wrist, wrist + lengths[2] * fore))
-
-    def _make_filter(self, fit: ChainFit, stamp: float) -> None:
-        from filterpy.kalman import KalmanFilter
-
-        self._filter = KalmanFilter(dim_x=24, dim_z=12)
-        self._filter.x = np.concatenate([fit.joints.ravel(), np.zeros(12)])
-        self._filter.P = np.zeros((24, 24))
-        self._filter.P[:12, :12] = fit.covariance + np.eye(12) * 0.004**2
-        self._filter.P[12:, 12:] = np.eye(12) * 0.02**2
-        # lengths as they are seen, between the fit and the prior, stay fixed from now on
+    def _follow(self, fit: ChainFit, stamp: float) -> None:
+        """Follow the arm from a fit on; what was seen of the limb itself stays known."""
+        self._filter = ArmFilter(fit, stamp, self._tuning.filter)
         if self._limb is None:
+            # lengths as they are seen, between the fit and the prior, stay fixed from now on
             self._lengths = np.linalg.norm(np.diff(fit.joints, axis=0), axis=1)
             self._shoulder = fit.joints[0].copy()
-            if self._deviation().max() < _WELL:
-                self._limb = Limb(lengths=self._lengths, sigma=_KNOWN_SIGMA, span=span_row(fit.joints)[1])
-        self._rejected = self._wrong = 0
-        self.time = self.seen = self._frame_stamp = stamp
+            if self._filter.deviation.max() < self._tuning.whole_deviation:
+                self._limb = Limb(
+                    lengths=self._lengths, variation=self._tuning.known_variation, span=span_row(fit.joints)[1]
+                )
+        self._surprises = self._misfits = 0
+        self._seen = self._frame_stamp = stamp
 
-    def _predict(self, time: float) -> None:
-        step = time - self.time
-        if step <= 0:
-            return
-        self.time = time
-        fade = float(np.exp(-step / _FADE))
-        travel = _FADE * (1 - fade)
-        transition = np.eye(24)
-        transition[:12, 12:] = travel * np.eye(12)
-        transition[12:, 12:] = fade * np.eye(12)
-        noise = np.zeros((24, 24))
-        recently_seen, recently_held = time - self.seen < _RECENT, time - self.held < _RECENT
-        may_sink = time - self.held < _SINKING
-        speed = (
-            _SPEED_SEEN
-            if recently_seen
-            else _SPEED_HELD
-            if recently_held
-            else _SPEED_SINKING
-            if may_sink
-            else _SPEED_HIDDEN
-        )
-        noise[12:, 12:] = np.eye(12) * speed**2 * (1 - fade**2)
-        noise[:12, :12] = np.eye(12) * 2 * speed**2 * _FADE * step * (1 - (1 - fade) * _FADE / step)
-        self._filter.F, self._filter.Q = transition, noise
-        self._filter.predict()
-
-    def _surprise(self, fit: ChainFit) -> float:
-        """Squared Mahalanobis distance between a fit and the prediction."""
-        gap = fit.joints.ravel() - self._filter.x[:12]
-        return float(gap @ np.linalg.solve(self._filter.P[:12, :12] + fit.covariance + np.eye(12) * 0.006**2, gap))
-
-    def _measure(self, value: np.ndarray, rows: np.ndarray, covariance: np.ndarray) -> None:
-        full = np.zeros((len(value), 24))
-        full[:, :12] = rows
-        self._filter.update(value, R=covariance, H=full)
-        self._filter.P = (self._filter.P + self._filter.P.T) / 2
-
-    def _keep_lengths(self) -> None:
-        """Limbs do not stretch: their lengths are a measurement too."""
-        joints = self._joints()
-        along = np.diff(joints, axis=0)
-        size = np.linalg.norm(along, axis=1)
-        rows = np.zeros((3, 4, 3))
-        for k in range(3):
-            rows[k, k + 1] = along[k] / size[k]
-            rows[k, k] = -rows[k, k + 1]
-        rows = rows.reshape(3, 12)
-        self._measure(self._lengths - size + rows @ self._filter.x[:12], rows, np.eye(3) * 0.006**2)
-        if self._limb is not None and self._limb.span is not None:
-            row, reach = span_row(self._joints())
-            self._measure(self._limb.span - reach + row @ self._filter.x[:12], row, np.eye(1) * SPAN_SIGMA**2)
+    def _keep_lengths(self, state: ArmFilter) -> None:
+        state.take_lengths(self._lengths, None if self._limb is None else self._limb.span)

@@ -2,46 +2,69 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Cover
 from ..image.garment import gown_labels
 from ..image.projection import pixels_of
 from ..image.surfaces import Surface
-
-_WIDTH = np.linspace(-0.14, 0.14, 9)  # across the body from its midline [m]
-_LENGTH = np.linspace(0.06, 0.48, 12)  # along it from the shoulders [m]
-_HEIGHT = 0.22  # of the front of the trunk above the bed [m]
-_FEWEST = 0.5  # share of the places that have to be in view
+from .person_facts import PERSON
 
 
-def chest_cover(frame: Frame, bed: np.ndarray, shoulders_in_map: np.ndarray) -> Cover:
-    """Ask at a grid of places on the front of the trunk whether the camera sees gown there or something else.
+@dataclass(frozen=True, kw_only=True)
+class ChestCoverTuning(Quantities):
+    """Numbers of the grid of points on the front of the trunk."""
+
+    half_width: float = quantity(0.14, "m", "of the grid, from the midline", "choice: the front, not the flanks")
+    columns: int = quantity(9, "1", "of the grid", "choice: every 3.5 cm")
+    length_range: tuple[float, float] = quantity(
+        (0.06, 0.48), "m", "of the grid along the body from the shoulders", "choice: chest and belly"
+    )
+    rows: int = quantity(12, "1", "of the grid", "choice: every 3.8 cm")
+    min_share: float = quantity(0.5, "1", "of the grid that has to be in view", "choice: half of it stands for all")
+    hidden_distance: float = quantity(
+        0.15, "m", "before the trunk, where something stands in between", "choice: a robot's arm or a raised one"
+    )
+
+
+DEFAULT = ChestCoverTuning()
+
+
+def chest_cover(
+    frame: Frame, bed: np.ndarray, shoulders_in_map: np.ndarray, tuning: ChestCoverTuning = DEFAULT
+) -> Cover:
+    """Ask at a grid of points on the front of the trunk whether the camera sees gown there or something else.
 
     Args:
         frame: a view of the person.
-        bed: (2, 3) lower and upper corner of the bed [m].
+        bed: (2, 3) lower and upper corner of the bed in the map [m].
         shoulders_in_map: (3,) middle between the shoulders [m].
+        tuning: numbers.
 
     Raises:
         PerceptionFailure: no gown in the image, or too little of the trunk in view.
     """
     labels = gown_labels(frame)
-    across, along = np.meshgrid(_WIDTH, _LENGTH)
-    places = np.column_stack(
+    across, along = np.meshgrid(
+        np.linspace(-tuning.half_width, tuning.half_width, tuning.columns),
+        np.linspace(*tuning.length_range, tuning.rows),
+    )
+    points = np.column_stack(
         (
             shoulders_in_map[0] + across.ravel(),
             shoulders_in_map[1] + along.ravel(),
-            np.full(across.size, bed[1, 2] + _HEIGHT),
+            np.full(across.size, bed[1, 2] + PERSON.front_height),
         )
     )
-    rows, columns, depth, inside = pixels_of(frame, places)
+    rows, columns, depth, inside = pixels_of(frame, points)
     rows, columns = rows[inside], columns[inside]
-    seen = frame.depth[rows, columns]
-    open_view = seen > depth[inside] - 0.15  # a robot's arm or a raised one may be in front
-    if open_view.sum() < _FEWEST * len(places):
+    open_view = frame.depth[rows, columns] > depth[inside] - tuning.hidden_distance
+    if open_view.sum() < tuning.min_share * len(points):
         raise PerceptionFailure(Problem.OUT_OF_REACH, "trunk of the person")
     covered = labels[rows, columns][open_view] != Surface.OTHER
-    return Cover(stamp=frame.stamp, confidence=float(open_view.sum() / len(places)), share=float(covered.mean()))
+    return Cover(stamp=frame.stamp, confidence=float(open_view.sum() / len(points)), share=float(covered.mean()))

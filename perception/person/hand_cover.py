@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Cover
 from ..image.projection import pixels_of
 from ..image.surfaces import Surface, surfaces
 
-_FEWEST = 4  # points in view
+
+@dataclass(frozen=True, kw_only=True)
+class HandCoverTuning(Quantities):
+    """Numbers of the look at a hand."""
+
+    min_points: int = quantity(4, "1", "of the hand's axis in view", "choice: fewer say little about a hand")
 
 
-def hand_cover(frame: Frame, points_in_map: np.ndarray) -> Cover:
+DEFAULT = HandCoverTuning()
+
+
+def hand_cover(frame: Frame, points_in_map: np.ndarray, tuning: HandCoverTuning = DEFAULT) -> Cover:
     """Ask along the axis of a hand whether the camera sees something else than skin there.
 
     In recorded pulls the share was 1 for a hand inside and at most 0.2 for one that the sleeve had missed.
@@ -21,12 +32,13 @@ def hand_cover(frame: Frame, points_in_map: np.ndarray) -> Cover:
     Args:
         frame: a view from close by; what stands between counts as a cover, so the view must be free.
         points_in_map: (n, 3) on the axis of the hand [m].
+        tuning: numbers.
 
     Raises:
-        PerceptionFailure: fewer than four of the points are in view.
+        PerceptionFailure: too few of the points are in view.
     """
     rows, columns, _, inside = pixels_of(frame, points_in_map)
-    if inside.sum() < _FEWEST:
+    if inside.sum() < tuning.min_points:
         raise PerceptionFailure(Problem.OUT_OF_REACH, "hand of the person")
     seen = surfaces(frame.rgb)[rows[inside], columns[inside]]
     return Cover(stamp=frame.stamp, confidence=float(inside.mean()), share=float((seen != Surface.SKIN).mean()))

@@ -19,6 +19,7 @@ from ...perception.estimates import ArmPosture, Head
 from ...perception.image.projection import pixels_of
 from ...perception.image.surfaces import Surface, surfaces
 from ...perception.person.arm_fit import turned_about_shoulder
+from ...perception.person.person_facts import PERSON
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, Frame, Side
 from ..core.skill import Skill
@@ -60,12 +61,6 @@ class PersonTrackingTuning(Quantities):
     arm_radius: float = quantity(0.05, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
     trunk_radius: float = quantity(0.16, "m", "of trunk and legs, as the guard is told", "choice: half their width")
     head_radius: float = quantity(0.11, "m", "of the head, as the guard is told", "choice: an adult's, with hair")
-    crown_to_shoulders: float = quantity(0.31, "m", "along the body", "choice: an adult's")
-    trunk_length: float = quantity(0.55, "m", "from the shoulders to the hips", "choice: an adult's")
-    leg_length: float = quantity(0.85, "m", "from the hips to the feet", "choice: an adult's")
-    axis_above_bed: float = quantity(
-        0.11, "m", "of the body's axis above the mattress", "choice: half the depth of a trunk that lies on its back"
-    )
 
 
 PERSON_TRACKING = PersonTrackingTuning()
@@ -207,9 +202,9 @@ def _held_at(skill: Skill, hold: Hold) -> np.ndarray:
 def _tell_body(skill: Skill, head: Head, tuning: PersonTrackingTuning) -> None:
     """Tell the guard of head and trunk, the legs with it, as far as they follow from the head."""
     crown, middle = head.crown_in_map, head.middle
-    level = skill.world.room.bed[1, 2] + tuning.axis_above_bed
-    shoulders = crown[1] + tuning.crown_to_shoulders
-    along = (0.0, tuning.trunk_length, tuning.trunk_length + tuning.leg_length)
+    level = skill.world.room.bed[1, 2] + PERSON.axis_height
+    shoulders = crown[1] + PERSON.crown_to_shoulder
+    along = (0.0, PERSON.trunk_length, PERSON.trunk_length + PERSON.leg_length)
     trunk = np.array([(middle, shoulders + down, level) for down in along])
     _tell(skill, "trunk", trunk, tuning.trunk_radius)
     radius = tuning.head_radius

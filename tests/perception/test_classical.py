@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from caretree.perception import estimates
-from caretree.perception.classical import ClassicalSenses
+from caretree.perception.classical import ClassicalSenses, ClassicalTuning
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.senses import Senses
+from caretree.sim.quantity import changed, rows
 from caretree.sim.world import RoomMap
 
 CALLS = {  # name -> scene, type, details from the scene
@@ -101,3 +102,27 @@ def test_an_arm_that_was_never_found_is_not_looked_for_again(scenes, bed):
     with pytest.raises(PerceptionFailure) as failure:
         fresh(bed).relocalised_arm(scenes.person(0).frame(0), side="right")
     assert failure.value.problem is Problem.ARM_LOST
+
+
+def test_its_numbers_can_be_set(scenes, bed):
+    scene = scenes.person(0)
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    points = np.linspace(*scene.arms["right"][2:], 6)
+    asks = {
+        "hand_cover.min_points": (7, lambda senses, frame: senses.hand_cover(frame, points_in_map=points)),
+        "head.min_points": (10**6, lambda senses, frame: senses.head(frame)),
+        "skin.height_range": ((5.0, 6.0), lambda senses, frame: senses.head(frame)),
+        "arm.search.min_points": (10**6, lambda senses, frame: senses.arm(frame, side="right")),
+    }
+    frame = scene.frame(0)
+    for name, (value, ask_for) in asks.items():
+        ask_for(ClassicalSenses(room, 0), frame)
+        with pytest.raises(PerceptionFailure):
+            ask_for(ClassicalSenses(room, 0, tuning=changed(ClassicalTuning(), {name: value})), frame)
+
+
+def test_every_number_says_where_it_comes_from():
+    found = rows(ClassicalTuning())
+    assert {row.name.split(".")[0] for row in found} >= {"arm", "head", "hung_corner", "sleeve_strap", "worn_sleeve"}
+    kinds = ("choice:", "measured:", "standard:", "design:", "datasheet:", "paper:")
+    assert [row.name for row in found if not row.source.startswith(kinds)] == []

@@ -1,24 +1,32 @@
-"""The head that stops the base's approach."""
+"""Skin of the person on the bed, and of nobody else."""
 
-import pytest
-from caretree.perception.errors import PerceptionFailure
-from caretree.perception.person.skin import head_seen
-from caretree.sim.render.camera import looking_at
+import numpy as np
+from caretree.perception.person.skin import skin_on_bed
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_head_is_where_it_is(scenes, bed, seed):
-    scene = scenes.person(seed)
-    head = head_seen(scene.frame(seed), bed)
-    assert head.middle == pytest.approx(0.0, abs=0.025)
-    assert head.crown_in_map[1] == pytest.approx(-0.55 - 0.31 * scene.scale, abs=0.025)
-    assert head.confidence > 0.5
+def test_skin_lies_on_and_above_the_bed(scenes, bed):
+    points, mask = skin_on_bed(scenes.person(0).frame(0), bed)
+    assert len(points) > 300
+    assert mask.sum() >= len(points)
+    assert (points[:, 2] > bed[1, 2] - 0.16).all()
+    assert (points[:, 0] > bed[0, 0] - 0.46).all()
+    assert (points[:, 0] < bed[1, 0] + 0.46).all()
 
 
-def test_no_head_in_view(scenes, bed, black):
-    scene = scenes.person(0)
-    scene.camera = looking_at((0.8, 0.9, 1.4), (0.0, 0.9, 0.6))  # legs only
-    for frame in (scene.frame(), black, scenes.room(0, scene.camera).frame()):
-        with pytest.raises(PerceptionFailure) as failure:
-            head_seen(frame, bed)
-        assert failure.value.kind == "nothing_seen"
+def test_a_person_in_another_bed_is_left_out(scenes, bed):
+    points, mask = skin_on_bed(scenes.person(0).frame(0), bed + (3.0, 0.0, 0.0))
+    assert len(points) == 0
+    assert mask.any()
+
+
+def test_pixels_at_the_edge_may_be_left_out(scenes, bed):
+    frame = scenes.person(0).frame(0)
+    everything, inner = skin_on_bed(frame, bed)[0], skin_on_bed(frame, bed, inner=True)[0]
+    assert len(inner) < len(everything)
+    assert {tuple(point) for point in inner} <= {tuple(point) for point in everything}
+
+
+def test_no_skin(bed, black):
+    points, mask = skin_on_bed(black, bed)
+    assert points.shape == (0, 3)
+    assert not np.any(mask)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.person.chest_cover import chest_cover
 from caretree.perception.sleeve.held_armhole import held_armhole
 from caretree.sim.bullet.world import BulletWorld
 
@@ -37,8 +36,3 @@ def test_the_middle_of_the_armhole_is_found(world, side):
 def test_no_armhole_far_away(world):
     with pytest.raises(PerceptionFailure):
         held_armhole(world.look("head"), "left", np.array((0.0, 0.0, 3.0)))
-
-
-def test_no_gown_no_cover(world):
-    with pytest.raises(PerceptionFailure):
-        chest_cover(world.look("left_hand"), world.room.bed, np.array((0.0, -0.55, 0.7)))
