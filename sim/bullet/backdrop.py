@@ -9,7 +9,7 @@ from ..render.camera import Renderer, looking_at
 from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
 from ..robot.kinematics import Kinematics
 from ..robot.visual import visual_meshes
-from ..scene.person_spec import trunk_capsules
+from ..scene.person_spec import ARM_SEGMENTS
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
 from .cloth import Cloth
 from .person import Person
@@ -44,7 +44,7 @@ class Backdrop:
         self.renderer.move_cloth(vertices)
         arms = self.person.arms()
         for arm in range(2):
-            for part in range(3):
+            for part in range(len(ARM_SEGMENTS)):
                 self.renderer.set_pose(f"arm{arm}{part}", _along(arms[arm, part], arms[arm, part + 1]))
         poses = self.kinematics.link_poses(configuration)
         for name in self._links:
@@ -78,20 +78,20 @@ class Backdrop:
 
     def _body(self, scene: Scene) -> None:
         add, skin = self.renderer.add_rigid, self._colours["skin"]
-        spec = scene.person
-        chest_left, leg_left, chest_right, leg_right, head = trunk_capsules(spec, BED_TOP, scene.bed_xy)
-        for name, (a, b, radius) in (("chest_left", chest_left), ("chest_right", chest_right), ("neck_head", head)):
-            add(name, *capsule_mesh(a, b, radius), skin)
-        for name, (a, b, radius) in (("leg_left", leg_left), ("leg_right", leg_right)):
+        legs = {name: capsule for name, capsule in self.person.trunk.items() if name.startswith("leg")}
+        for name, capsule in self.person.trunk.items():
+            if name not in legs:
+                add(name, *capsule_mesh(*capsule), skin)
+        for name, (a, b, radius) in legs.items():
             knee = a + 0.45 * (b - a)
             add(f"{name}_thigh", *capsule_mesh(a, knee, radius * 1.01), self._colours["shorts"])
             add(f"{name}_shin", *capsule_mesh(knee, b, radius), skin)
         bed = np.array((*scene.bed_xy, BED_TOP))
         add("pillow", *box_mesh(bed + (-0.25, -0.98, 0.0), bed + (0.25, -0.66, 0.03)), self._colours["sheet"])
-        lengths = np.array(spec.lengths) * spec.scale
+        lengths = scene.person.arm_lengths
         for arm in range(2):
             radii = self.person.radii()[arm]
-            for part in range(3):
+            for part in range(len(ARM_SEGMENTS)):
                 tip = np.array((0.0, 0.0, lengths[part]))
                 add(f"arm{arm}{part}", *capsule_mesh(np.zeros(3), tip, radii[part]), skin)
             add(f"shoulder{arm}", *sphere_mesh(self.person.arms()[arm, 0], radii[0] * 1.15), skin)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..scene.person_spec import ARM_SEGMENTS, arm_part
 from ..world import SIDES, Side
 from .cloth import Cloth
 from .handle import Handle
@@ -135,7 +136,7 @@ class Grip:
         )
         self.client.changeConstraint(self._constraint, maxForce=ROOM.force(2 * FRICTION_SKIN * force))
         self.kind, self.thickness, self._armed = "arm", 2 * radius, False
-        self.part = 1 + 3 * arm + part
+        self.part = arm_part(arm, part)
         self._arm_link, self._arm_local, self._arm_offset = link, np.array(local), offset
         return True
 
@@ -189,7 +190,7 @@ class Grip:
         origin, turn = pose_hand_in_map[:3, 3], pose_hand_in_map[:3, :3]
         best: tuple[float, tuple[int, int, np.ndarray, float]] | None = None
         for arm in range(2):
-            for part in range(3):
+            for part in range(len(ARM_SEGMENTS)):
                 a, b = arms[arm, part], arms[arm, part + 1]
                 f = float(np.clip((origin - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0))
                 point = a + f * (b - a)

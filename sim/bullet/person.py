@@ -1,13 +1,8 @@
 """The person: a life-sized manikin, supine, with arms that nothing but contact and the robot's grip moves.
 
-174 cm and 18 kg as the patient-care manikin of the paper.  The trunk rests on the bed and stays there (the
-robot could not move it); each arm is a passive chain of a three-axis shoulder and an elbow, with dry and
-viscous friction and joint limits, and a stiff hand.
-
-Joint zero: the arm points along the body towards the feet, palm to the thigh.  Angles of both sides have
-the same meaning: `abduction` swings the arm away from the body in the plane of the bed, `elevation` lifts
-it off the bed, `rotation` turns it about the upper arm, `flexion` bends the elbow (towards the front of
-the body at rotation 0, towards the midline at rotation -90 degrees).
+The trunk rests on the bed and stays there (the robot could not move it); each arm is a passive chain of a three-axis
+shoulder and an elbow, with dry and viscous friction and joint limits, and a stiff hand.  Sizes, masses and what the
+joint angles mean: `scene/person_spec.py`.
 """
 
 from __future__ import annotations
@@ -18,24 +13,20 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from ..scene.person_spec import ARM_AXES, PersonSpec, shoulder_in_map, trunk_capsules
+from ..scene.person_spec import (
+    ARM_AXES,
+    JOINT_LIMITS,
+    OUTWARD,
+    SHAPE,
+    PersonSpec,
+    shoulder_in_map,
+    torso_front,
+    trunk_capsules,
+)
 from ..world import SIDES, Side
 from .units import ROOM
 
-PERSON_PARTS = (
-    "trunk",
-    "left_upper_arm",
-    "left_forearm",
-    "left_hand",
-    "right_upper_arm",
-    "right_forearm",
-    "right_hand",
-)
 BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
-ARM_SHARE = 0.05  # of body mass, upper arm + forearm + hand (Winter, Biomechanics of Human Movement, table 4.1)
-
-
-_LIMITS = {"abduction": (-0.2, 1.9), "elevation": (-0.35, 1.6), "rotation": (-1.8, 1.8), "flexion": (0.0, 2.4)}
 
 
 class Person:
@@ -53,7 +44,9 @@ class Person:
         self.client, self.spec = client, spec
         self.bed_top, self.bed_xy = bed_top, bed_xy
         self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
-        self.trunk = [self._trunk_capsule(a, b, radius) for a, b, radius in trunk_capsules(spec, bed_top, bed_xy)]
+        self.trunk = trunk_capsules(spec, bed_top, bed_xy)
+        for a, b, radius in self.trunk.values():
+            self._add_capsule(a, b, radius)
         self.body = self._load()
         names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
         self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
@@ -64,7 +57,9 @@ class Person:
             for j, angle in zip(self.joints[side], spec.pose[side], strict=True):
                 client.resetJointState(self.body, j, angle)
         for link in range(-1, client.getNumJoints(self.body)):
-            client.changeDynamics(self.body, link, lateralFriction=0.5, linearDamping=0.0, angularDamping=0.0)
+            client.changeDynamics(
+                self.body, link, lateralFriction=SHAPE.skin_friction, linearDamping=0.0, angularDamping=0.0
+            )
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
             client.changeDynamics(self.body, link, jointDamping=0.0)
         self._swing = 0.0
@@ -123,32 +118,18 @@ class Person:
             upper, fore, hand = self.client.getLinkStates(self.body, self.links[side], computeForwardKinematics=1)
             out[i, 0], out[i, 1], out[i, 2] = upper[4], fore[4], hand[4]
             turn = np.array(self.client.getMatrixFromQuaternion(hand[5])).reshape(3, 3)
-            out[i, 3] = out[i, 2] + turn @ (0.0, self.spec.lengths[2] * self.spec.scale, 0.0)
+            out[i, 3] = out[i, 2] + turn @ (0.0, self.spec.arm_lengths[2], 0.0)
         return out
 
     def torso_front(self) -> np.ndarray:
         """(m, 6) points on the front of the trunk with outward normals, chest to waist, map frame [m]."""
-        s = self.spec.scale
-        out = []
-        for y in np.linspace(-0.50, -0.06, 12):
-            for x in np.linspace(-0.15, 0.15, 11) * s:
-                centre = np.copysign(0.09 * s, x) if abs(x) > 0.09 * s else x
-                lift = np.sqrt((0.11 * s) ** 2 - (x - centre) ** 2)
-                normal = np.array([x - centre, 0.0, lift]) / (0.11 * s)
-                out.append((self.bed_xy[0] + x, self.bed_xy[1] + y, self.bed_top + 0.11 * s + lift, *normal))
-        return np.array(out)
+        return torso_front(self.spec, self.bed_top, self.bed_xy)
 
     def radii(self) -> np.ndarray:
         """(2, 3) capsule radii of upper arm, forearm, hand, left then right [m]."""
-        return np.tile(np.array(self.spec.radii) * self.spec.scale, (2, 1))
+        return np.tile(self.spec.arm_radii, (2, 1))
 
-    def joint_angles(self) -> dict[str, np.ndarray]:
-        """Side -> (4,) angles in the order of `ARM_AXES` [rad]."""
-        return {
-            side: np.array([s[0] for s in self.client.getJointStates(self.body, self.joints[side])]) for side in SIDES
-        }
-
-    def _trunk_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> int:
+    def _add_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> None:
         c = self.client
         middle, length, turn = _along(a, b)
         shape = c.createCollisionShape(c.GEOM_CAPSULE, radius=radius, height=length)
@@ -160,8 +141,7 @@ class Person:
             useMaximalCoordinates=1,
             baseOrientation=c.getQuaternionFromEuler(turn),
         )
-        c.changeDynamics(body, -1, lateralFriction=0.5)
-        return body
+        c.changeDynamics(body, -1, lateralFriction=SHAPE.skin_friction)
 
     def _load(self) -> int:
         import tempfile
@@ -172,29 +152,28 @@ class Person:
             return self.client.loadURDF(str(path), useFixedBase=True)
 
     def _urdf(self) -> ET.Element:
-        spec, s = self.spec, self.spec.scale
+        spec = self.spec
         robot = ET.Element("robot", name="person")
-        _link(robot, "trunk", spec.mass * (1 - 2 * ARM_SHARE))
-        share = np.array([0.54, 0.32, 0.14]) * spec.mass * ARM_SHARE  # upper arm, forearm, hand (Winter)
+        _link(robot, "trunk", spec.trunk_mass)
+        masses, lengths, radii = spec.arm_masses, spec.arm_lengths, spec.arm_radii
         for side in SIDES:
-            sign = -1.0 if side == "left" else 1.0
+            sign = OUTWARD[side]
             # the arm's own frame: y along the arm, x away from the body (mirrored on the left by the joint axes)
             axes = {"abduction": (0, 0, -sign), "elevation": (1, 0, 0), "rotation": (0, sign, 0), "flexion": (1, 0, 0)}
             parent, offset = "trunk", self.shoulders[side]
-            lengths = np.array(spec.lengths) * s
             for name, mass, length, radius in (
                 ("abduction", 0.02, 0, 0),
                 ("elevation", 0.02, 0, 0),
-                ("rotation", share[0], lengths[0], spec.radii[0] * s),
-                ("flexion", share[1], lengths[1], spec.radii[1] * s),
+                ("rotation", masses[0], lengths[0], radii[0]),
+                ("flexion", masses[1], lengths[1], radii[1]),
             ):
                 link = _link(robot, f"{side}_{name}", mass, length)
                 if length:
                     _capsule(link, (0, 0, 0), (0, length, 0), radius)
-                _joint(robot, f"{side}_{name}", parent, f"{side}_{name}", offset, axes[name], _LIMITS[name])
+                _joint(robot, f"{side}_{name}", parent, f"{side}_{name}", offset, axes[name], JOINT_LIMITS[name])
                 parent, offset = f"{side}_{name}", np.array([0.0, length, 0.0])
-            hand = _link(robot, f"{side}_hand", share[2], lengths[2])
-            _capsule(hand, (0, 0, 0), (0, lengths[2], 0), spec.radii[2] * s)
+            hand = _link(robot, f"{side}_hand", masses[2], lengths[2])
+            _capsule(hand, (0, 0, 0), (0, lengths[2], 0), radii[2])
             _joint(robot, f"{side}_wrist", parent, f"{side}_hand", offset)
         return robot
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.person_spec import trunk_capsules
-from .person import PERSON_PARTS, Person
+from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part
+from .person import Person
 from .soft_world import GRAVITY
 
 TOUCH = 0.012  # a vertex this near to a surface touches it: twice the collision margin [m]
@@ -28,8 +28,6 @@ class ForceBalance:
     def __init__(self, person: Person, mass: float, bed_top: float) -> None:
         self.person, self.mass, self.bed_top = person, mass, bed_top
         self._centres: list[tuple[float, np.ndarray]] = []  # time, centre of mass
-        spec = person.spec
-        self._trunk = trunk_capsules(spec, person.bed_top, person.bed_xy)
 
     def parts(
         self, time: float, vertices: np.ndarray, held: np.ndarray, arm_loads: dict[int, np.ndarray]
@@ -61,11 +59,15 @@ class ForceBalance:
     def _touching(self, vertices: np.ndarray) -> tuple[np.ndarray, int]:
         """How many vertices touch each part, and how many the bed."""
         counts = np.zeros(len(PERSON_PARTS))
-        counts[0] = sum(int((_gap(vertices, a, b) < radius + TOUCH).sum()) for a, b, radius in self._trunk)
+        counts[0] = sum(
+            int((_gap(vertices, a, b) < radius + TOUCH).sum()) for a, b, radius in self.person.trunk.values()
+        )
         arms, radii = self.person.arms(), self.person.radii()
         for arm in range(2):
-            for k in range(3):
-                counts[1 + 3 * arm + k] = (_gap(vertices, arms[arm, k], arms[arm, k + 1]) < radii[arm, k] + TOUCH).sum()
+            for k in range(len(ARM_SEGMENTS)):
+                counts[arm_part(arm, k)] = (
+                    _gap(vertices, arms[arm, k], arms[arm, k + 1]) < radii[arm, k] + TOUCH
+                ).sum()
         return counts, int((vertices[:, 2] < self.bed_top + TOUCH).sum())
 
 

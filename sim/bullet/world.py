@@ -26,7 +26,7 @@ from ..render.live_view import SIZE, LiveView
 from ..robot.body import RobotBody
 from ..robot.kinematics import default_kinematics
 from ..scene.initial_state import InitialState
-from ..scene.person_spec import trunk_capsules
+from ..scene.person_spec import PERSON_PARTS, trunk_capsules
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
@@ -36,7 +36,7 @@ from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
-from .person import PERSON_PARTS, Person
+from .person import Person
 from .person_force import ForceBalance
 from .soft_world import GRAVITY, SoftWorld
 
@@ -95,7 +95,6 @@ class BulletWorld(World):
         self._recorder: Recorder | None = None
         self._steps = 0
         self._next_frame = self._next_picture = 0.0
-        self._still_since = 0.0
         self._asleep = False
         self._moving_person: list[float] = []
         self._soft = SoftWorld(TIME_STEP)
@@ -127,7 +126,7 @@ class BulletWorld(World):
         )
         hung = scene.mesh.vertices @ turn.T
         hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
-        trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy)])
+        trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy).values()])
         start = hung - hung[scene.hang_vertex] + hook
         self._cloth, self._patch = load_gown(
             self._soft, scene.mesh, start, self._effects, pinned={scene.hang_vertex}, capsules=trunk

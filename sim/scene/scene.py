@@ -10,7 +10,7 @@ from ..errors import CaretreeError
 from ..world import RoomMap
 from .gown import GOWNS, GownMesh, GownSpec, build_gown
 from .gown_file import read_gown
-from .person_spec import PERSONS, PersonSpec
+from .person_spec import LYING_ELEVATION, LYING_ROTATION, PERSONS, PersonSpec
 
 BED_TOP = 0.60  # mattress surface above the floor [m]
 BED_HALF = np.array((0.50, 1.00))  # half width and half length [m]
@@ -106,7 +106,7 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None) ->
 
 def _arm_pose(rng: np.random.Generator, low: float, high: float) -> tuple[float, float, float, float]:
     """Abduction between `low` and `high`, resting on the bed, elbow bent by 6 to 20 degrees towards the midline."""
-    return float(rng.uniform(low, high)), -0.12, -1.3, float(rng.uniform(0.10, 0.35))
+    return float(rng.uniform(low, high)), LYING_ELEVATION, LYING_ROTATION, float(rng.uniform(0.10, 0.35))
 
 
 def room_map() -> RoomMap:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pybullet
 import pytest
-from caretree.sim.bullet.person import PERSON_PARTS, Person
+from caretree.sim.bullet.person import Person
 from caretree.sim.bullet.person_force import ForceBalance
 from caretree.sim.bullet.soft_world import GRAVITY
-from caretree.sim.scene.person_spec import PERSONS
+from caretree.sim.scene.person_spec import PERSON_PARTS, PERSONS
 from pybullet_utils.bullet_client import BulletClient
 
 

@@ -11,11 +11,11 @@ from caretree.sim.abilities import (
     SupportsInitialStates,
     SupportsRecording,
 )
-from caretree.sim.bullet.person import PERSON_PARTS
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.evaluate.crossings import sleeve
+from caretree.sim.scene.person_spec import PERSON_PARTS
 from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost, WorldError
 
 
