@@ -15,7 +15,7 @@ from ..scene.gown import GownMesh, edge_counts
 from .soft_world import GRAVITY, STABILITY_MAX, SoftWorld
 
 
-class UnstableClothError(CaretreeError, ValueError):
+class UnstableClothError(CaretreeError):
     """A gown too stiff or too light for the time step."""
 
 
@@ -94,10 +94,6 @@ class Cloth:
         tension = self.mesh.spec.elastic * (length - self.rest_lengths[cut])
         weight = self.mesh.spec.mass * len(held) / len(vertices) * GRAVITY
         return (along * (tension / length)[:, None]).sum(axis=0) - (0.0, 0.0, weight)
-
-    def stretch(self, vertices: np.ndarray) -> np.ndarray:
-        """(E,) edge length over rest length."""
-        return np.linalg.norm(vertices[self.edges[:, 0]] - vertices[self.edges[:, 1]], axis=1) / self.rest_lengths
 
 
 def load_gown(

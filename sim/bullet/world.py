@@ -300,7 +300,7 @@ class BulletWorld(World):
             reading = self._robot.read()
             self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
         if self._steps % CONTROL_STEPS == 0:
-            self._fingers()
+            self._update_grips()
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -315,13 +315,13 @@ class BulletWorld(World):
             self._handles[n].follow(self._hands[n])
         self._hook.before_step()
         self._move_person()
-        self._push_cloth()
+        self._apply_effects()
         self._client.stepSimulation()
         for n in np.flatnonzero(held):
             if self._grips[n].kind == "arm":
                 self._handles[n].feel()
 
-    def _push_cloth(self) -> None:
+    def _apply_effects(self) -> None:
         """Let the effects of a model file act."""
         if self._patch is None:
             return
@@ -332,7 +332,7 @@ class BulletWorld(World):
                 holding[0].release()
                 self._patch.release_t = None
 
-    def _fingers(self) -> None:
+    def _update_grips(self) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
         reading = self._robot.read()
         if any(grip.kind != "nothing" for grip in self._grips):
@@ -369,7 +369,7 @@ class BulletWorld(World):
         """Pass room time before the run: the gown comes to rest."""
         for _ in range(round(duration / TIME_STEP)):
             self._hook.before_step()
-            self._push_cloth()
+            self._apply_effects()
             self._client.stepSimulation()
         self._vertices = self._cloth.vertices()
 

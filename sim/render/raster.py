@@ -77,10 +77,9 @@ class Picture:
 
 @njit()
 def _vertex_light(vertices, faces, lamp, ambient, intensity):
-    """Light on the front and the back of every vertex, (n, 2), and unit face normals, (m, 3)."""
+    """Light on the front and the back of every vertex, (n, 2)."""
     n = vertices.shape[0]
     normals = np.zeros((n, 3))
-    facing = np.zeros((faces.shape[0], 3))
     for f in range(faces.shape[0]):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         ux = vertices[b, 0] - vertices[a, 0]
@@ -90,8 +89,6 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
         vy = vertices[c, 1] - vertices[a, 1]
         vz = vertices[c, 2] - vertices[a, 2]
         nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        length = np.sqrt(nx * nx + ny * ny + nz * nz) + 1e-12
-        facing[f, 0], facing[f, 1], facing[f, 2] = nx / length, ny / length, nz / length
         for k in (a, b, c):
             normals[k, 0] += nx
             normals[k, 1] += ny
@@ -102,7 +99,7 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
         lambert = (normals[k, 0] * lamp[0] + normals[k, 1] * lamp[1] + normals[k, 2] * lamp[2]) / length
         light[k, 0] = intensity * (ambient + (1 - ambient) * max(0.0, lambert))
         light[k, 1] = intensity * (ambient + (1 - ambient) * max(0.0, -lambert))
-    return light, facing
+    return light
 
 
 @njit(inline="always")  # a call for every face would cost
@@ -214,7 +211,7 @@ def rasterise(
     faces = np.ascontiguousarray(triangles.faces, dtype=np.int64)
     rotation, origin = pose_camera_in_map[:3, :3], pose_camera_in_map[:3, 3]
     points = np.ascontiguousarray((vertices - origin) @ rotation)
-    lit, _ = _vertex_light(
+    lit = _vertex_light(
         vertices,
         faces,
         np.asarray(light.direction_in_map, dtype=np.float64),

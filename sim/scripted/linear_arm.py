@@ -46,13 +46,3 @@ class LinearArms:
         first, second = _turn(0, q[3]), _turn(1, q[4])
         jacobian[3:, 3:6] = yaw @ np.stack((np.eye(3)[0], first[:, 1], (first @ second)[:, 2]), axis=1)
         return jacobian
-
-    def joints_for(
-        self, side: Side, position_in_map: np.ndarray, q: np.ndarray, pose_base_in_map: np.ndarray
-    ) -> np.ndarray:
-        """Angles (7,) that bring the hand to a position (3,) without turning it [rad]."""
-        x, y, yaw = np.asarray(pose_base_in_map, float)
-        in_base = _turn(2, -yaw) @ (np.asarray(position_in_map, float) - (x, y, 0.0))
-        solved = np.array(q, float)
-        solved[:3] = (in_base - HOME_IN_BASE[side]) / GAIN
-        return solved

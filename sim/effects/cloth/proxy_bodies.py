@@ -162,9 +162,3 @@ class ClothPatch:
         total /= self._per_second**2
         for body, force, place in zip(self._bodies, total, x, strict=True):
             p.applyExternalForce(body, -1, force.tolist(), place.tolist(), p.WORLD_FRAME)
-
-    def read(self, t: np.ndarray, markers: np.ndarray) -> np.ndarray:
-        """Markers as they are recorded, (T, M, 3)."""
-        for effect, values in self.effects:
-            markers = effect.read(t, markers, values)
-        return markers
