@@ -57,7 +57,7 @@ class EffectFinding:
     """One effect, named.
 
     Attributes:
-        name: from the bank, or `mass` and the like under recalibration.
+        name: from the registry, or `mass` and the like under recalibration.
         target: joint, body, region.
         parameters: values with units and intervals.
         equivalent: other names this data cannot tell from it.

@@ -20,7 +20,7 @@ HEAD = {
     "adequate": "Nothing is missing that this data could show.",
     "recalibration": "The model's own numbers were off; no effect is missing beyond that.",
     "effects": "The model lacks physics, and the missing effects have names.",
-    "unknown": "Something is missing that the bank of effects cannot name.",
+    "unknown": "Something is missing that the registry of effects cannot name.",
 }
 
 
@@ -54,7 +54,7 @@ def write_report(verdict: Verdict, curves: list[Curve]) -> str:
 
 
 def _words(text: str) -> str:
-    """A sentence with the bank's names as words, for HTML; names of joints and files stay as they are."""
+    """A sentence with the registry's names as words, for HTML; names of joints and files stay as they are."""
     from ...sim.effects.body.body_registry import BODY_EFFECTS
     from ...sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
     from ...sim.effects.joint.joint_registry import JOINT_EFFECTS
@@ -122,7 +122,7 @@ def _what(v: Verdict) -> str:
         out.append(f"<p>Added to the model in <code>model.yaml</code>: {', '.join(added)}.</p>")
     if v.verdict == "unknown":
         out.append(f"<p>Symbolic guess for what is left: {escape(v.guess) or 'none'}.</p>")
-    return "".join(out) or "<p>No effect in the bank explains more than noise would.</p>"
+    return "".join(out) or "<p>No effect in the registry explains more than noise would.</p>"
 
 
 def _effects(findings: tuple[EffectFinding, ...], prefix: str = "") -> str:

@@ -41,7 +41,7 @@ def find(folder: Path, out: Path, alpha: float, say: Say) -> Study:
 def name(out: Path, say: Say, study: Study | None = None) -> Study:
     """Write name.json: what is missing."""
     study = study or _again(out, "find.json")
-    say("name: search of the bank")
+    say("name: search of the registry")
     verdict, effects, recalibration, guess = study.name()
     _write(
         out / "name.json",

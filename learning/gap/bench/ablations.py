@@ -1,8 +1,8 @@
 """What simpler ways to name effects reach on the same sets: one-shot least squares, STLSQ and the all-terms fit.
 
-All three get the same recordings, the same noise estimate and the same bank as the workflow, one shape per effect.  An
-axis or an arm brings its regressors, a drop what a little of each effect changes on the fall as given.  Cloth is left
-out: there each column is a simulation, and so is each of the workflow's own steps.
+All three get the same recordings, the same noise estimate and the same registry as the workflow, one shape per effect.
+An axis or an arm brings its regressors, a drop what a little of each effect changes on the fall as given.  Cloth is
+left out: there each column is a simulation, and so is each of the workflow's own steps.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ....sim.effects.effect import Parameter
 from ..fall.drop import height
 from ..fall.fit import RELEASE, fit_drops, table_of
 from ..fall.recording import drop_of
-from ..joints.block import bank
+from ..joints.block import effect_blocks
 from ..joints.gram import assemble
 from ..joints.log import read_logs
 from ..joints.search import bounded_solve
@@ -102,7 +102,7 @@ def _of_joints(measured: MeasurementSet) -> Problem:
     names = columns_of(measured)
     model = rigid_model(measured, len(names.q))
     logs = [log for log in read_logs(list(measured.episodes), names, model) if log.role != "heldout"]
-    blocks = one_shape_each([b for b in bank(model, logs, measured.system)])
+    blocks = one_shape_each(effect_blocks(model, logs, measured.system))
     gram = assemble(blocks, logs)
     yy = gram.yy.sum(axis=0)
     weight = gram.rows.sum(axis=0) / np.maximum(yy, 1e-30)

@@ -21,7 +21,7 @@ class Truth:
         effects: name, target and size (root mean square over that of the noise) of each.
         intervals: [episode, t0, t1] where a localised effect acted.
         robot: or None.
-        note: form of an effect outside the bank.
+        note: form of an effect outside the registry.
         apart: how far the truth is from the nearest other set of up to two effects [standard deviations], or None
             where it was not worked out.
     """

@@ -140,12 +140,12 @@ def _draw(rng, kind, truth, vertices, limb, duration, noise, scene, parsed):
         key = str(rng.choice(["elastic_stiffness", "damping_stiffness"]))
         changed[key] = scene.physics.__dict__[key] * float(rng.choice([0.55, 1.8]))
         truth.effects = [{"name": key, "target": "cloth", "size": float("nan")}]
-    bank = [n for n in INSIDE if limb or n not in ("contact_friction", "adhesion")]
-    names = [str(n) for n in rng.choice(bank, size={"single": 1, "two": 2}.get(kind, 0), replace=False)]
+    pool = [n for n in INSIDE if limb or n not in ("contact_friction", "adhesion")]
+    names = [str(n) for n in rng.choice(pool, size={"single": 1, "two": 2}.get(kind, 0), replace=False)]
     if set(names) == {"wind", "tilted_gravity"}:
         names = [names[0], "delay"]
     entries = []
-    spare = [n for n in bank if n not in names and not {n, *names} >= {"wind", "tilted_gravity"}]
+    spare = [n for n in pool if n not in names and not {n, *names} >= {"wind", "tilted_gravity"}]
     for name in names:
         size = float(np.exp(rng.uniform(np.log(0.7), np.log(6.0))))
         entry, got = _sized(rng, name, size, vertices, duration, noise, scene, parsed)
@@ -220,7 +220,7 @@ def _sized(rng, name, size, vertices, duration, noise, scene, parsed):
 
 
 def _outside(rng: np.random.Generator, truth: Truth, x: np.ndarray, e: ClothEpisode, noise: float) -> np.ndarray:
-    """Disagreements no effect of the bank makes: a breathing scale, a bent view, a tremor of the camera."""
+    """Disagreements no effect of the registry makes: a breathing scale, a bent view, a tremor of the camera."""
     if not truth.note:
         truth.note = str(rng.choice(["breathing", "lens", "tremor"]))
         truth.effects = [

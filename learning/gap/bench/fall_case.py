@@ -75,7 +75,7 @@ def sizes_of(kind: str) -> tuple[float, float]:
     """Range the sizes of a kind of case are drawn from, over the noise.
 
     Two effects of a few times the noise are mostly one smooth curve, so pairs are drawn up to where they part, and what
-    the bank lacks mostly looks like a set of it, so it is drawn as far.
+    the registry lacks mostly looks like a set of it, so it is drawn as far.
     """
     return (2.0, 100.0) if kind in ("two", "outside") else (0.5, 8.0)
 

@@ -1,7 +1,7 @@
 """What an ideal observer would name from a benchmark drop: the most any method could.
 
 It knows the noise's covariance, how often each kind of case is drawn, from what range its sizes come, and even the
-forms outside the bank, and picks the set with the largest evidence.  Nobody who measures knows any of this, so what
+forms outside the registry, and picks the set with the largest evidence.  Nobody who measures knows any of this, so what
 this observer misses is not in the data.
 
 The evidence is Laplace's, over the logarithm of each effect's value; a direction the drops say nothing about is worth
@@ -37,7 +37,7 @@ class Seen:
 
 
 def report(seeds: Sequence[int], out: Path, say: Callable[[str], None]) -> list[str]:
-    """Rates of the observer on pairs, single effects of size 2 and more and effects outside the bank."""
+    """Rates of the observer on pairs, single effects of size 2 and more and effects outside the registry."""
     tally: dict[str, list[float]] = {}
     for seed in seeds:
         folder = out / "observer" / f"fall_{seed:05d}"

@@ -50,14 +50,14 @@ def apart(
     """Distance of the truth from the nearest other set that is no richer [standard deviations].
 
     Args:
-        hidden: effects of the truth; where one is outside the bank, every set of up to two is its rival.
+        hidden: effects of the truth; where one is outside the registry, every set of up to two is its rival.
         drops: time [s], height without noise [m] and whitening matrix of each fitted drop.
         path: values -> time since release [s] and height above the release [m].
         known_lift: buoyancy a stated size and mass imply, or None.
     """
     most = _count(hidden, known_lift)  # a rival with more numbers loses to its own price, not to the data
     if not set(hidden) <= set(FREE):
-        most = MOST  # what no set of the bank contains is noticed only where none of them can follow it
+        most = MOST  # what no set of the registry contains is noticed only where none of them can follow it
     best = np.inf
     singles = [(n,) for n in FREE]
     for rival in [(), *singles, *combinations(FREE, 2)]:

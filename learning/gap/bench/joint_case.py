@@ -168,8 +168,8 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
 def _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm):
     """Draw one effect: its name, target, the joint it loads most, its loads (T, n) per episode, and its size there."""
     size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
-    bank = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
-    name = str(rng.choice([n for n in bank if n not in used]))
+    pool = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
+    name = str(rng.choice([n for n in pool if n not in used]))
     if name in ("payload", "wrong_tool"):
         load = _body(rng, name, arm, motions)
         j = int(np.argmax(np.sqrt(np.mean(np.concatenate(load) ** 2, axis=0)) / noise))

@@ -112,7 +112,7 @@ def _contact(m, rng):
     return [np.minimum(x.q - wall, 0.0) for x in m]
 
 
-# outside the bank
+# outside the registry
 def _cogging(m, rng):
     reach = np.ptp(np.concatenate([x.q for x in m]))
     k = 2 * np.pi * rng.uniform(5, 20) / reach

@@ -28,7 +28,7 @@ class ClothModel:
         effects: entries, in order.
         physics: changed physics parameters.
         free: parameters that are fitted.
-        carried: the recording shows the mark of carriers (they damp a swing a little), so every run has them.
+        carried: the recording shows the mark of proxy bodies (they damp a swing a little), so every run has them.
     """
 
     effects: tuple[EffectEntry, ...] = ()
@@ -38,7 +38,7 @@ class ClothModel:
 
     @property
     def acting(self) -> tuple[EffectEntry, ...]:
-        """Effects to simulate, with idle carriers where the model has them."""
+        """Effects to simulate, with idle proxy bodies where the model has them."""
         return (*self.effects, IDLE) if self.carried else self.effects
 
     def value(self, which: Free) -> float:

@@ -1,9 +1,9 @@
-"""Which drops to record next: those under which the named set, its rivals and a drag outside the bank part most.
+"""Which drops to record next: those under which the named set, its rivals and a drag outside the registry part most.
 
 Every set predicts a drop with the numbers it was fitted with, as uncertain as the recorded drops leave them, and two
-sets are as far apart as the nearest of what they could still predict, in standard deviations.  A drag outside the bank
-bends over the speed as it likes; what a drop would tell of it is counted in nats.  Two kinds of drop are asked for, the
-best of all pairs among these heights and masses.
+sets are as far apart as the nearest of what they could still predict, in standard deviations.  A drag outside the
+registry bends over the speed as it likes; what a drop would tell of it is counted in nats.  Two kinds of drop are asked
+for, the best of all pairs among these heights and masses.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SAMPLES = 120  # of a drop thought of
 LONGEST = 8.0  # [s]
 WIDTH = {"rate": 1.0, "coefficient": 0.2, "fraction": 0.3, "speed": 6.0}  # of what a number may be beforehand
 LATE = 0.3  # [s]
-FORCE = 0.05 * GRAVITY  # [m/s^2] a piece of a drag outside the bank
+FORCE = 0.05 * GRAVITY  # [m/s^2] a piece of a drag outside the registry
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,11 +1,11 @@
-"""Whether something is left over that repeats from drop to drop: then what is missing is not in the bank.
+"""Whether something is left over that repeats from drop to drop: then what is missing is not in the registry.
 
 Free forms are tried: a force that bends over the time since release slowly or quickly, one short push, one swing, and
 a reading of the height that is bent; where the body was dropped with ballast too, also a drag that bends over the
 speed.  (Released from rest at one mass, a body has one speed at a time, and a force over the one is a force over the
 other.)  A push or a swing has one or two numbers besides its place and period, and is seen where fourteen pieces of a
 force would drown it.  Effects and releases may give way to each form, and the noise's colour is asked anew, so that
-neither what the bank can still take up nor slow noise is mistaken for a discovery.
+neither what the registry can still take up nor slow noise is mistaken for a discovery.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def _pull(values: dict[str, dict[str, float]], moments: np.ndarray, factor: floa
 
 def _drag(fit: DropFit, falls: list[Fall], colours: list[Colour]) -> Leftover:
     energy, p, _ = _pays(fit, drag_ways(fit.values, falls), colours)
-    return Leftover(energy=energy, p_value=p, what="a drag that bends over the speed as none of the bank does")
+    return Leftover(energy=energy, p_value=p, what="a drag that bends over the speed as none of the registry does")
 
 
 def _force(fit: DropFit, falls: list[Fall], count: int, colours: list[Colour]) -> Leftover:

@@ -59,7 +59,7 @@ class FallStudy(Study):
         """The best set, without effects the bootstrap over drops does not keep.
 
         Where it leaves a force that repeats from drop to drop, or takes more than two effects, a set that fits nearly
-        as well without is taken instead: the bank is asked twice before `unknown` is said.
+        as well without is taken instead: the registry is asked twice before `unknown` is said.
         """
         best = self.found.best
         fit = self.found.refit(best.names, best.mode)
@@ -283,7 +283,7 @@ class FallStudy(Study):
             if self._strange > TRANSFERRED:
                 guess = "the effects that explain the fitted drops do not hold on the held-out ones"
             elif self._many and self.leftover.p_value >= SIGNIFICANT:
-                guess = "a smooth force that only three effects of the bank together can follow, as they follow any"
+                guess = "a smooth force that only three effects of the registry together can follow, as they follow any"
         return self.verdict, tuple(out), (), guess
 
     def rivals(self) -> tuple[Rival, ...]:

@@ -102,7 +102,7 @@ def body_block(term: BodyTerm, model: RigidModel) -> Block:
     )
 
 
-def bank(model: RigidModel, logs: list[JointLog], system: str) -> list[Block]:
+def effect_blocks(model: RigidModel, logs: list[JointLog], system: str) -> list[Block]:
     """Every hypothesis for these logs: each effect on each joint in each screened shape, and each body term."""
     blocks = [body_block(term, model) for term in model.body_terms()]
     for joint in range(len(model.joints)):

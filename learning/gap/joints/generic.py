@@ -1,4 +1,4 @@
-"""A basis for "some function of the state and its recent past", which notices effects the bank lacks."""
+"""A basis for "some function of the state and its recent past", which notices effects the registry lacks."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Each channel's leftover is predicted out of sample (each stretch from the others) by smooth functions of the state, by
 waves in position (cogging, eccentric gears) and by waves and slow drifts in time (fans, vibration, warming up).  What
-such a prediction removes is a missing effect the bank has no name for.
+such a prediction removes is a missing effect the registry has no name for.
 """
 
 from __future__ import annotations

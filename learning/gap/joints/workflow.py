@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .block import Block, bank
+from .block import Block, effect_blocks
 from .generic import generic_columns, scales
 from .gram import Gram, assemble, exchange
 from .log import JointLog
@@ -97,7 +97,7 @@ def explained(blocks: list[Block], theta: np.ndarray, log: JointLog) -> np.ndarr
 
 def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: float = 1.0) -> Named:
     """Floor, search, refine, search again until the set stands still."""
-    blocks = bank(model, logs, system)
+    blocks = effect_blocks(model, logs, system)
     noise = first_noise(blocks, logs)
     gram = assemble(blocks, logs)
     chosen: tuple[int, ...] = ()

@@ -14,15 +14,15 @@ STEPS = {("added_mass", "mass"): 0.01}
 
 
 class Straight:
-    """A simulator in which every carrier's load moves the markers by its own fixed pattern, in proportion."""
+    """A simulator in which every proxy body's load moves the markers by its own fixed pattern, in proportion."""
 
-    def __init__(self, carriers):
-        self.carriers = carriers
-        self.patterns = np.random.default_rng(0).normal(size=(len(carriers), 20, 6))
+    def __init__(self, proxies):
+        self.proxies = proxies
+        self.patterns = np.random.default_rng(0).normal(size=(len(proxies), 20, 6))
 
     def run(self, episode, effects=(), physics=None):
-        shares = sum(AddedMass().share(self.carriers, e.parameters) for e in effects if e.name == "added_mass")
-        return np.tensordot(shares + 0.0 * self.carriers[:, 0], self.patterns, 1)
+        shares = sum(AddedMass().share(self.proxies, e.parameters) for e in effects if e.name == "added_mass")
+        return np.tensordot(shares + 0.0 * self.proxies[:, 0], self.patterns, 1)
 
     def ahead(self, wanted):
         pass
@@ -34,9 +34,9 @@ def entry(x, z, mass, radius):
 
 def test_a_mass_is_moved_to_the_patch_it_sits_on():
     pins = (Pin(vertices=(0, 1), release_t=float("inf"), path=None),)
-    carriers = VERTICES[spread_vertices(VERTICES, 12, {0, 1})]
+    proxies = VERTICES[spread_vertices(VERTICES, 12, {0, 1})]
     scene = plain_sheet()
-    sim = Straight(carriers)
+    sim = Straight(proxies)
     episode = ClothEpisode(
         name="e", role="fit", t=np.arange(20) / 20, markers=np.zeros((20, 2, 3)), load=None, pins=pins
     )
@@ -46,6 +46,6 @@ def test_a_mass_is_moved_to_the_patch_it_sits_on():
     fitter.data = [seen]
     model = ClothModel(effects=(entry(0.07, -0.35, 0.02, 0.1),), free=(("added_mass", "mass"),))
     found = best_patch(fitter, fitter.fit(model, STEPS), scene, STEPS)
-    there = AddedMass().share(carriers, found.model.effects[0].parameters)
-    assert np.allclose(there, AddedMass().share(carriers, hidden.parameters), atol=1e-3)
+    there = AddedMass().share(proxies, found.model.effects[0].parameters)
+    assert np.allclose(there, AddedMass().share(proxies, hidden.parameters), atol=1e-3)
     assert found.rss < 1e-6

@@ -33,7 +33,7 @@ def test_ballast_is_taken_into_account(drop_set):
     assert open_study(load_set(folder)).show()[0].after > 0.1
 
 
-def test_a_drag_outside_the_bank_shows_with_ballast(drop_set):
+def test_a_drag_outside_the_registry_shows_with_ballast(drop_set):
     folder = drop_set(steep=0.01, episodes=8, ballast=(1, 1, 1, 8, 8, 0.5, 0.5, 0.5))
     verdict, _, _, guess = open_study(load_set(folder)).name()
     assert verdict == "unknown"

@@ -65,7 +65,7 @@ def test_contact_is_placed_in_time(axis_set):
     assert both / either > 0.7
 
 
-def test_an_effect_outside_the_bank_is_unknown(axis_set):
+def test_an_effect_outside_the_registry_is_unknown(axis_set):
     _, verdict, _, _, guess = solved(axis_set(lambda q, v, a: 1.5 * np.sin(90.0 * q)))
     assert verdict == "unknown"
     assert guess
