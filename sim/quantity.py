@@ -13,7 +13,7 @@ show, and `changed(PullTuning(), {"speed": 0.05})` a copy with other numbers.  A
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
@@ -80,8 +80,13 @@ def rows(numbers: Quantities) -> list[Row]:
     return found
 
 
-def changed(numbers: N, values: Mapping[str, Any]) -> N:
+def changed(numbers: N, values: Mapping[str, Any], *, also: Sequence[str] = ()) -> N:
     """A copy of `numbers` with other `values` by (dotted) name.
+
+    Args:
+        numbers: to start from.
+        values: by name.
+        also: names that an error offers besides, set elsewhere.
 
     Raises:
         QuantityError: an unknown name, or a value of another type; the dataclass may refuse values itself.
@@ -90,8 +95,8 @@ def changed(numbers: N, values: Mapping[str, Any]) -> N:
     result = numbers
     for name, value in values.items():
         if name not in known:
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join(known)}"
+            near = difflib.get_close_matches(name, [*known, *also], n=1)
+            hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join([*known, *also])}"
             raise QuantityError(f"{type(numbers).__name__} has no number {name!r}{hint}")
         result = _replaced(result, name.split("."), _as(known[name], value, f"{type(numbers).__name__}.{name}"))
     return result
@@ -112,10 +117,20 @@ def _as(default: Any, value: Any, name: str) -> Any:
         if isinstance(value, bool):
             return value
         raise QuantityError(f"{name} is {value!r}, but true or false is asked for")
+    number = float_of(name, value)
+    if isinstance(default, int):
+        if not number.is_integer():
+            raise QuantityError(f"{name} is {value!r}, but a whole number is asked for")
+        return int(number)
+    return number
+
+
+def float_of(name: str, value: Any) -> float:
+    """`value` as a float.
+
+    Raises:
+        QuantityError: it is no number; the message begins with `name`.
+    """
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value != value:
         raise QuantityError(f"{name} is {value!r}, but a number is asked for")
-    if isinstance(default, int):
-        if value != int(value):
-            raise QuantityError(f"{name} is {value!r}, but a whole number is asked for")
-        return int(value)
     return float(value)

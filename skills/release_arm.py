@@ -15,6 +15,7 @@ from .control.arm_grip import lost_arm
 from .control.compliant_hold import COMPLIANT_HOLD, compliant_velocity
 from .control.fingers import open_gripper
 from .control.hands import move_arms
+from .control.ready import Ready, ready_or_not
 from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason
@@ -62,19 +63,22 @@ class ReleaseArm(Skill):
 
     hand = Input(Side, doc="hand of the robot that holds the arm")
     lower = Input(bool, default=False, doc="whether the arm is lowered onto the bed first")
-    ready = Input(bool, default=False, doc="whether the hand then goes to its ready posture")
+    ready = Input(Ready, default="never", doc="whether the hand then goes to its ready posture")
     tuning = Input(ReleaseArmTuning, default=ReleaseArmTuning(), doc="numbers of this skill")
     reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
 
     def steps(self) -> Iterator[None]:
         """Lower if asked to, open, up and away."""
+        yield from ready_or_not(self, self.ready, self._let_go)
+
+    def _let_go(self, ready: bool) -> Iterator[None]:
         if self.lower and not lost_arm(self, self.hand):
             self.note("lowers the arm")
             yield from self._lower()
         self.note("lets the arm go")
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], self.tuning.withdraw_distance, self.tuning.withdraw)
-        if self.ready:
+        if ready:
             speed = careful(self, self.tuning.ready_speed)
             yield from move_arms(self, model.READY, sides=(self.hand,), speed=speed, retreat=True)
 

@@ -15,6 +15,7 @@ from .belief.person_tracking import careful
 from .control.base import drive_to
 from .control.fingers import open_gripper
 from .control.hands import move_arms
+from .control.ready import Ready, ready_or_not
 from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason
@@ -44,12 +45,15 @@ class Retreat(Skill):
     hands = Input(Hands, default="both", doc="hands that are opened and drawn back")
     hand_distance = Input(float, unit="m", default=0.15, doc="how far the hands are drawn back")
     base_distance = Input(float, unit="m", default=0.0, doc="how far the base then backs off")
-    ready = Input(bool, default=True, doc="whether the arms go to the ready posture in the end")
+    ready = Input(Ready, default="always", doc="whether the arms go to the ready posture in the end")
     tuning = Input(RetreatTuning, default=RetreatTuning(), doc="numbers of this skill")
     reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED, Reason.TIMEOUT)
 
     def steps(self) -> Iterator[None]:
         """Open, draw back, back off, ready."""
+        yield from ready_or_not(self, self.ready, self._back)
+
+    def _back(self, ready: bool) -> Iterator[None]:
         tuning = self.tuning
         sides: list[Side] = [side for side in SIDES if self.hands in (side, "both")]
         self.note("lets go and draws back")
@@ -61,6 +65,6 @@ class Retreat(Skill):
             x, y, yaw = self.world.observe().pose_base_in_map
             goal = np.array((x - self.base_distance * np.cos(yaw), y - self.base_distance * np.sin(yaw), yaw))
             yield from drive_to(self, goal, straight=True, speed=tuning.base_speed, retreat=True)
-        if self.ready:
+        if ready:
             speed = careful(self, tuning.ready_speed)
             yield from move_arms(self, model.READY, sides=tuple(sides), speed=speed, retreat=True)

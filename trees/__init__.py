@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .nodes.decorators import Retry as Retry
     from .nodes.decorators import Stage as Stage
     from .nodes.decorators import Timeout as Timeout
+    from .nodes.decorators import timed_stage as timed_stage
     from .run.stages import TaskStage as TaskStage
 
 _HOME = {
@@ -32,6 +33,7 @@ _HOME = {
     "fallback": ".nodes.composers",
     "parallel": ".nodes.composers",
     "sequence": ".nodes.composers",
+    "timed_stage": ".nodes.decorators",
     "watch": ".nodes.composers",
 }
 __all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll] filled on first use

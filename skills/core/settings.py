@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...sim.errors import CaretreeError
-from ...sim.quantity import Quantities, changed
+from ...sim.quantity import Quantities, QuantityError, changed, float_of
+
+TUNING = "tuning"  # the input port of a leaf's numbers
 
 
 def setting_name(kind: type) -> str:
@@ -27,18 +29,27 @@ class Settings:
         self.values: dict[str, dict[str, Any]] = {skill: dict(found) for skill, found in (values or {}).items()}
         self._met: dict[str, bool] = {}  # skills that were built -> whether they have numbers
 
-    def applied(self, kind: type, tuning: object) -> Any:
-        """`tuning` of a leaf of class `kind` with the numbers that were set for it.
+    def applied(self, kind: type, bindings: Mapping[str, Any]) -> dict[str, Any]:
+        """What of `bindings` (port -> constant or key) of a leaf of class `kind` was set otherwise for this run.
+
+        A number that is an input itself (`max_load` of `PresentSleeve`) is set as well as those of its tuning.
 
         Raises:
             QuantityError: a number that it does not have, or of another type.
         """
-        name = setting_name(kind)
-        if not isinstance(tuning, Quantities):
-            self._met.setdefault(name, False)
-            return tuning
-        self._met[name] = True
-        return changed(tuning, self.values[name]) if name in self.values else tuning
+        name, tuning = setting_name(kind), bindings.get(TUNING)
+        ports = {port for port, value in bindings.items() if isinstance(value, float) and port != TUNING}
+        self._met[name] = bool(ports) or isinstance(tuning, Quantities)
+        values = self.values.get(name, {})
+        found: dict[str, Any] = {
+            port: float_of(f"{name}.{port}", value) for port, value in values.items() if port in ports
+        }
+        rest = {number: value for number, value in values.items() if number not in ports}
+        if rest and isinstance(tuning, Quantities):
+            found[TUNING] = changed(tuning, rest, also=sorted(ports))
+        elif rest:
+            raise QuantityError(f"{name} has no number {next(iter(rest))!r}; there are {', '.join(sorted(ports))}")
+        return found
 
     def check(self) -> None:
         """Refuse numbers of skills that the tree, once built, turned out not to have.

@@ -39,7 +39,6 @@ from .reasons import Failure, Reason, SkillFailure
 from .scope import Scope
 from .world_handle import WorldHandle
 
-TUNING = "tuning"  # the input port of a leaf's numbers, which a run may set
 MOTION_REASONS = {Unreachable: Reason.UNREACHABLE, PathBlocked: Reason.PATH_BLOCKED}
 
 
@@ -72,9 +71,7 @@ class Skill(py_trees.behaviour.Behaviour):
         self.context = scope.context
         self.world = WorldHandle(self.context, self)
         self.bindings = bind_ports(self, scope.wired(type(self), ports))
-        tuning = self.context.settings.applied(type(self), self.bindings.get(TUNING))
-        if TUNING in self.bindings:
-            self.bindings[TUNING] = tuning
+        self.bindings |= self.context.settings.applied(type(self), self.bindings)
         self.failure: Failure | None = None
         self._phase: Literal["idle", "waiting", "active"] = "idle"
         self._generator: Generator[None, None, None] | None = None

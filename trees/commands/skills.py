@@ -13,8 +13,8 @@ from ... import skills
 from ...sim.errors import CaretreeError
 from ...sim.quantity import Quantities, rows
 from ...skills.core.ports import Input, Output, ports_of, type_name
-from ...skills.core.settings import setting_name
-from ...skills.core.skill import TUNING, Skill
+from ...skills.core.settings import TUNING, setting_name
+from ...skills.core.skill import Skill
 
 WIDTH = 110  # characters of a line
 

@@ -18,7 +18,7 @@ from ...skills.core.context import Context
 from ...skills.core.ports import PortError
 from ...skills.core.reasons import Failure, Reason, SkillFailure
 from ...skills.core.skill import Skill
-from .composers import TreeError, check_children
+from .composers import TreeError, check_children, sequence
 from .failures import failure_of
 
 
@@ -296,6 +296,16 @@ class Stage(Wrapper):
             t_end=self._times[1],
             reason=self._reason,
         )
+
+
+def timed_stage(
+    name: str,
+    *children: Behaviour,
+    seconds: float,
+    precondition: Behaviour | Callable[[Context], object] | None = None,
+) -> Stage:
+    """A stage whose children run in turn and must end within `seconds` of the world's clock."""
+    return Stage(name, precondition, Timeout(f"{name} in time", sequence(f"{name}: all", *children), seconds=seconds))
 
 
 class FailSafe(Wrapper):

@@ -1,4 +1,14 @@
-"""Dress a person who cannot move their arms in a back-opening hospital gown, from the rail to the bed."""
+"""Dress a person who cannot move their arms in a back-opening hospital gown, from the rail to the bed.
+
+| stage | what it does | file |
+|---|---|---|
+| take_down | takes both ends of the neckline, outside to the front, and lifts the gown off its hook | take_down.py |
+| lay | stretches the neckline and lays the gown on the person, arms bare | lay.py |
+| dress | one arm after the other: lifts it, draws the sleeve over the hand and up to the shoulder | dress.py, arm.py |
+| spread | draws the collar up where the chest shows, and sleeves that have slipped down | spread.py |
+
+What is owed whenever a stage fails is in safe.py, every number in tuning.py.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +24,15 @@ from ....skills.scripted.scripted_senses import ScriptedSenses
 from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe
 from ...run.stages import TaskStage
-from .dress import dress, make_safe, spread
-from .lay import unfold
+from .dress import dress
+from .lay import lay
+from .safe import make_safe
+from .spread import spread
 from .take_down import take_down
 
 STAGES = {
     "take_down": TaskStage(take_down, begins="gown_on_hook"),
-    "lay": TaskStage(unfold, begins="gown_in_hands"),
+    "lay": TaskStage(lay, begins="gown_in_hands"),
     "dress": TaskStage(dress, begins="gown_on_person"),
     "spread": TaskStage(spread, begins="gown_worn"),
 }

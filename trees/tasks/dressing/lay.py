@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
-from py_trees.behaviour import Behaviour
 
 from ....skills.core.context import Context
-from ....skills.core.ports import Key
+from ....skills.core.scope import Scope
 from ....skills.flip_side_check import FlipSideCheck
 from ....skills.lay_gown import LayGown
 from ....skills.stretch_neckline import StretchNeckline
-from ...nodes.composers import sequence
-from ...nodes.decorators import Stage, Timeout
+from ...nodes.decorators import Stage, timed_stage
 from .tuning import DRESSING
 
 
-def unfold(context: Context) -> Behaviour:
+def lay(context: Context) -> Stage:
     """The stage `lay`."""
-    width = Key("neckline_width")
-    return Stage(
-        "B unfold",
-        _holds_gown,
-        Timeout(
-            "B in time",
-            sequence(
-                "unfold and lay",
-                StretchNeckline("stretch the neckline", context, width=width),
-                FlipSideCheck("outside to the robot", context, min_confidence=DRESSING.laid_inside_confidence),
-                LayGown("lay it on the person", context, width=width),
-            ),
-            seconds=DRESSING.unfold_timeout,
-        ),
+    gown = Scope(context, "gown", keys=("width",))
+    return timed_stage(
+        "lay",
+        StretchNeckline("stretch the neckline", gown),
+        FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence),
+        LayGown("lay it on the person", gown),
+        precondition=_holds_gown,
+        seconds=DRESSING.lay_timeout,
     )
 
 

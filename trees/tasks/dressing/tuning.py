@@ -148,7 +148,7 @@ class DressingTuning(Quantities):
     take_down_timeout: float = quantity(
         260.0, "s", "for taking the gown down", "choice: three tries and one from one hand"
     )
-    unfold_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
+    lay_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
     dress_timeout: float = quantity(400.0, "s", "for dressing both arms", "choice: room for recoveries")
     spread_timeout: float = quantity(400.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
 

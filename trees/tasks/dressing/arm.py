@@ -1,0 +1,147 @@
+"""One arm into its sleeve, and what the stages `dress` and `spread` share for that.
+
+over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the
+                 wrist, let the arm go
+to the shoulder  pull on, seat; where that fails, with a new hold of the sleeve, which stays on the arm
+inside?          back off and look; whatever went wrong until here, the arm is put down, a stray sleeve, or one under
+                 which the arm lies, is laid out by the hand, and all begins again
+"""
+
+from __future__ import annotations
+
+from py_trees.behaviour import Behaviour
+
+from ....sim.world import Side
+from ....skills.check_laid_out import CheckLaidOut
+from ....skills.check_sleeve import CheckSleeve
+from ....skills.core.context import Context
+from ....skills.core.reasons import Reason
+from ....skills.core.scope import Scope
+from ....skills.find_stand import FindStand
+from ....skills.geometry.stances import LIFTING, PULLING, Stand, stance
+from ....skills.grasp_sleeve import GraspSleeve
+from ....skills.lay_sleeve import LaySleeve
+from ....skills.lift_arm import LiftArm
+from ....skills.look_at_person import LookAtPerson
+from ....skills.look_for_sleeve import LookForSleeve
+from ....skills.navigate import Navigate
+from ....skills.present_sleeve import PresentSleeve
+from ....skills.pull_along_arm import PullAlongArm
+from ....skills.release_arm import ReleaseArm
+from ....skills.retreat import Retreat
+from ....skills.seat_sleeve import SeatSleeve
+from ...nodes.composers import fallback, sequence
+from ...nodes.decorators import RecoverBy
+from .tuning import DRESSING, SleeveTuning
+
+STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
+LOST = (Reason.ARM_LOST, Reason.ARM_SLIPPED, Reason.GRASP_MISSED, Reason.NOTHING_SEEN, Reason.UNREACHABLE)
+MISSES = (*STUCK, *LOST, Reason.SLEEVE_MISSED, Reason.SLEEVE_FOLDED, Reason.TIMEOUT)
+
+
+def arm_scope(context: Context, name: str, side: Side) -> Scope:
+    """What leaves at one of the person's arms share: whose arm, which hand does what, how the strap is held."""
+    return Scope(context, name, keys=("grip",), side=side, lifting=LIFTING[side], pulling=PULLING[side])
+
+
+def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
+    """One arm into its `sleeve`, from beside the bed."""
+    arm = arm_scope(context, f"{side} arm", side)
+
+    def release(name: str, **ports: bool) -> Behaviour:
+        return ReleaseArm(name, arm, hand=arm["lifting"], **ports)
+
+    def grasp_again() -> Behaviour:
+        return sequence(
+            "take the sleeve on",
+            back_off("let the strap go", arm),
+            Navigate("stand there again", arm, goal=stance(side, "lift")),
+            LookAtPerson("look from there", arm),
+            grasp_worn("grasp the worn sleeve", arm),
+        )
+
+    def begin_again() -> Behaviour:
+        laid_out = CheckLaidOut("bare, its sleeve at hand", arm)
+        return sequence(
+            f"begin the {side} arm again",
+            fallback("put the arm down", release("lower", lower=True), release("open")),
+            back_off("free both hands", arm),
+            fallback("arm and sleeve laid out", laid_out, lay_out(arm), back_off("leave it as it lies", arm)),
+        )
+
+    up = RecoverBy(
+        "up to the shoulder",
+        up_arm(arm, sleeve.pull_load),
+        dict.fromkeys(STUCK, grasp_again) | {Reason.ARM_LOST: lambda: LookAtPerson("look again", arm)},
+        attempts=2,
+    )
+    away = back_off("back off", arm, DRESSING.back_off_distance)
+    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, CheckSleeve("is inside", arm))
+    return RecoverBy(f"dress the {side} arm", once, dict.fromkeys(MISSES, begin_again), attempts=3)
+
+
+def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
+    """Until the sleeve is past the wrist and the arm is let go."""
+    held, stand = Scope(arm, keys=("hold",)), arm.key("stand")
+
+    def grasp(name: str) -> Behaviour:
+        return GraspSleeve(name, held, hand=arm["pulling"])
+
+    def lay() -> Behaviour:
+        return sequence("the sleeve is folded", LaySleeve("lay the sleeve down", held), grasp("grasp it again"))
+
+    def present(name: str, **ports: float) -> Behaviour:
+        return PresentSleeve(name, held, max_load=sleeve.carry_load, **ports)
+
+    open_sleeve = present("present the sleeve", min_cuff_distance=sleeve.min_cuff_distance)
+    pull = PullAlongArm("pull over the hand", held, grip_goal=DRESSING.past_wrist)
+    return sequence(
+        "over the hand",
+        Navigate("come to it", arm, goal=stance(arm["side"], "lift")),
+        LookAtPerson("look", arm),
+        LookForSleeve("look for the sleeve", arm, hand=arm["pulling"]),
+        FindStand("choose where to stand", arm, stand=stand),
+        Navigate("stand there", arm, goal=stand),
+        LiftArm("lift", held, hand=arm["lifting"]),
+        grasp("grasp the sleeve"),
+        RecoverBy("until the sleeve opens", open_sleeve, {Reason.SLEEVE_FOLDED: lay}, attempts=3),
+        RecoverBy(
+            "until the hand is inside", pull, {Reason.SLEEVE_MISSED: lambda: present("present it again")}, attempts=3
+        ),
+        ReleaseArm("let go", arm, hand=arm["lifting"], ready="if possible"),
+    )
+
+
+def up_arm(arm: Scope, max_load: float) -> Behaviour:
+    """To the shoulder, drawn as hard as `max_load` [N]."""
+    goal = {"grip_goal": DRESSING.grip_goal, "armhole_goal": DRESSING.armhole_goal}
+    return sequence(
+        "pull up and seat",
+        PullAlongArm("pull up", arm, stand=stance(arm["side"], "shoulder"), max_load=max_load, **goal),
+        SeatSleeve("seat", arm, max_load=DRESSING.seat_load_share * max_load),
+    )
+
+
+def lay_out(arm: Scope) -> Behaviour:
+    """Take the sleeve by its strap, wherever it is, and lay it beyond the hand: the gown comes along, off the arm."""
+
+    def take(stand: Stand) -> Behaviour:
+        go = Navigate(f"go to the {stand} stance", arm, goal=stance(arm["side"], stand))
+        return sequence(f"from the {stand} stance", go, grasp_worn(f"grasp from the {stand} stance", arm))
+
+    return sequence(
+        "lay the sleeve out",
+        fallback("take the stray sleeve", take("lift"), take("shoulder")),
+        LaySleeve("lay it beyond the hand", arm),
+        back_off("leave the sleeve there", arm),
+    )
+
+
+def grasp_worn(name: str, arm: Scope) -> GraspSleeve:
+    """Take hold of a sleeve that is over the hand, or up the arm."""
+    return GraspSleeve(name, arm, hand=arm["pulling"], worn=True)
+
+
+def back_off(name: str, scope: Scope, distance: float = 0.0) -> Retreat:
+    """Let go, draw back by `distance` [m], arms ready if a way to that posture is found."""
+    return Retreat(name, scope, base_distance=distance, ready="if possible")

@@ -1,0 +1,96 @@
+"""The stage `spread` of the dressing tree: draw up the collar where the chest shows, and sleeves that slipped down."""
+
+from __future__ import annotations
+
+import numpy as np
+from py_trees.behaviour import Behaviour
+
+from ....sim.world import Side
+from ....skills.check_sleeve import CheckSleeve
+from ....skills.core.context import Context
+from ....skills.core.reasons import Reason
+from ....skills.core.scope import Scope
+from ....skills.geometry.stances import PULLING, stance
+from ....skills.look_at_person import LookAtPerson
+from ....skills.navigate import Navigate
+from ....skills.retreat import Retreat
+from ....skills.spread import Spread
+from ...nodes.composers import fallback, sequence
+from ...nodes.decorators import Condition, RecoverBy, Retry, Stage, timed_stage
+from .arm import MISSES, arm_scope, back_off, grasp_worn, up_arm
+from .tuning import DRESSING
+
+
+def spread(context: Context) -> Stage:
+    """The stage `spread`: where the chest is not covered, the collar is drawn on the left, then on the right."""
+
+    def covered(name: str) -> Behaviour:
+        return Condition(name, _chest_covered, Reason.NOTHING_SEEN)
+
+    collars = (draw_collar(context, "left"), draw_collar(context, "right"))
+    drawn = sequence("draw it straight", *collars, covered("the chest is covered"))
+    return timed_stage(
+        "spread",
+        fallback("spread the gown", covered("it lies spread already"), drawn),
+        settle_sleeve(context, "left"),
+        settle_sleeve(context, "right"),
+        seconds=DRESSING.spread_timeout,
+    )
+
+
+def draw_collar(context: Context, side: Side) -> Behaviour:
+    """Draw the collar to one shoulder, as far as it goes."""
+    shoulder = Scope(context, f"{side} shoulder", side=side)
+    draw = sequence(
+        f"draw the collar to the {side} shoulder",
+        Navigate("go to its side", shoulder, goal=f"bed_{side}"),
+        Navigate("stand there", shoulder, goal=stance(side, "shoulder")),
+        LookAtPerson("look", shoulder),
+        Retry("spread again", Spread("spread", shoulder, hand=PULLING[side]), attempts=2),
+        Retreat("leave", shoulder, base_distance=DRESSING.shoulder_back_off),
+    )
+    as_it_is = Retreat("leave it as it is", shoulder, base_distance=DRESSING.shoulder_back_off)
+    return fallback(f"the {side} shoulder, as far as it goes", draw, as_it_is)
+
+
+def settle_sleeve(context: Context, side: Side) -> Behaviour:
+    """See to a sleeve that the other one has pulled down: while it is low, take it by the strap and draw it up."""
+    sleeve = arm_scope(context, f"{side} sleeve", side)
+
+    def go(name: str) -> list[Behaviour]:
+        return [
+            Navigate(f"{name} to it", sleeve, goal=stance(side, "shoulder")),
+            LookAtPerson(f"{name} and look", sleeve),
+        ]
+
+    def come_back() -> Behaviour:
+        away = back_off("let the strap go", sleeve, DRESSING.back_off_distance)
+        return sequence("come back to the sleeve", away, *go("come back"))
+
+    def draw_up() -> Behaviour:
+        once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
+        drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
+        return sequence(
+            "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
+        )
+
+    sits = CheckSleeve("sits", sleeve, max_cuff_distance=DRESSING.cuff_sits)
+    return sequence(
+        f"settle the {side} sleeve",
+        Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
+        *go("go up"),
+        fallback(
+            "as far as the sleeve goes",
+            RecoverBy("until the sleeve sits", sits, {Reason.SLEEVE_LOW: draw_up}, attempts=3),
+            back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
+        ),
+        CheckSleeve("will do", sleeve, max_cuff_distance=DRESSING.cuff_will_do),
+    )
+
+
+def _chest_covered(context: Context) -> bool:
+    """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
+    bed = context.world.room.bed
+    shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + DRESSING.shoulders_on_bed
+    cover = context.senses.chest_cover(context.world.look("head"), shoulders_in_map=shoulders)
+    return cover.share > DRESSING.covered_share
