@@ -17,6 +17,7 @@ import numpy as np
 from .errors import CaretreeError
 
 Side = Literal["left", "right"]
+Hands = Literal["left", "right", "both"]  # of the robot
 SIDES: tuple[Side, Side] = ("left", "right")
 CAMERAS = ("head", "left_hand", "right_hand")
 ARM_JOINTS: tuple[str, ...] = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")  # Baxter's names, shoulder to wrist

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
 from ..sim.robot import model
-from ..sim.world import SIDES, Side
+from ..sim.world import SIDES, Hands, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
 from .control.fingers import open_gripper
@@ -20,8 +19,6 @@ from .control.withdraw import WithdrawTuning, withdraw
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
-
-Hands = Literal["left", "right", "both"]
 
 
 @dataclass(frozen=True, kw_only=True)

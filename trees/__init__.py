@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .nodes.composers import fallback as fallback
     from .nodes.composers import parallel as parallel
+    from .nodes.composers import reactive_fallback as reactive_fallback
     from .nodes.composers import sequence as sequence
-    from .nodes.composers import watch as watch
     from .nodes.decorators import Condition as Condition
     from .nodes.decorators import FailSafe as FailSafe
     from .nodes.decorators import RecoverBy as RecoverBy
@@ -34,7 +34,7 @@ _HOME = {
     "parallel": ".nodes.composers",
     "sequence": ".nodes.composers",
     "timed_stage": ".nodes.decorators",
-    "watch": ".nodes.composers",
+    "reactive_fallback": ".nodes.composers",
 }
 __all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll] filled on first use
 

@@ -47,7 +47,7 @@ class Settings:
         rest = {number: value for number, value in values.items() if number not in ports}
         if rest and isinstance(tuning, Quantities):
             found[TUNING] = changed(tuning, rest, also=sorted(ports))
-        elif rest:
+        elif rest and ports:  # else check() tells which skills have numbers
             raise QuantityError(f"{name} has no number {next(iter(rest))!r}; there are {', '.join(sorted(ports))}")
         return found
 

@@ -10,11 +10,13 @@ from caretree.skills.find_stand import FindStand
 from caretree.skills.flip_side_check import FlipSideCheck
 from caretree.skills.geometry.strap_grip import StrapGrip
 from caretree.skills.grasp_sleeve import GraspSleeve
+from caretree.skills.hold_still import HoldStill
 from caretree.skills.lay_gown import LayGown
 from caretree.skills.lay_sleeve import LaySleeve
 from caretree.skills.lift_arm import LiftArm
 from caretree.skills.look_at_person import LookAtPerson
 from caretree.skills.look_for_sleeve import LookForSleeve
+from caretree.skills.move_joint import MoveJoint
 from caretree.skills.navigate import Navigate
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
 from caretree.skills.present_sleeve import PresentSleeve
@@ -31,7 +33,6 @@ from caretree.skills.take_corner import TakeCorner
 from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
-from caretree.trees.tasks.wave import Hold, LetGo, MoveJoint, ReturnJoint
 
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
 
@@ -78,7 +79,5 @@ EXAMPLES = {
     Unhook: lambda context: Unhook("unhook", context, hand="right", height=0.05),
     ViewAround: lambda context: ViewAround("view around", context, hand="right"),
     MoveJoint: lambda context: MoveJoint("move joint", context, side="left", joint="w1", angle=0.3),
-    ReturnJoint: lambda context: ReturnJoint("return joint", context, side="left", joint="w1", angle=0.3),
-    Hold: lambda context: Hold("hold", context),
-    LetGo: lambda context: LetGo("let go", context),
+    HoldStill: lambda context: HoldStill("hold still", context),
 }

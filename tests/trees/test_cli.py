@@ -82,8 +82,8 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
         (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
         (["run", "wave", "--world", "scripted", "--stage", "dress"], "task 'wave' has no stages that can be run"),
         (
-            ["run", "dressing", "--world", "scripted", "--inject", "occlusion@lift the arm:step"],
-            "the nearest are 'lift the left arm', 'lift the right arm'",
+            ["run", "dressing", "--world", "scripted", "--inject", "occlusion@left arm/lit:step"],
+            "the nearest are 'left arm/lift'",
         ),
         (["run", "wave", "--world", "scripted", "--out", "a_file"], "a_file is a file, but a folder"),
         (
@@ -127,7 +127,7 @@ def test_an_error_in_a_task_is_kept_with_its_traceback(tmp_path, capsys):
     (tmp_path / "bad.py").write_text("""
 from caretree.skills.core.skill import Skill
 from caretree.trees.nodes.decorators import FailSafe
-from caretree.trees.tasks.wave import LetGo
+from caretree.skills import Release
 
 
 class Bad(Skill):
@@ -137,7 +137,7 @@ class Bad(Skill):
 
 
 def build(context):
-    return FailSafe("safely", Bad("bad", context), LetGo("let go", context))
+    return FailSafe("safely", Bad("bad", context), Release("let go", context, distance=0.0))
 """)
     assert main(["run", "bad.py", "--world", "scripted", "--out", "r"]) == 1
     assert "r/errors.log" in capsys.readouterr().out.splitlines()
@@ -165,11 +165,12 @@ def scripted(seed):
 
 def test_a_terminal_without_accents_does_not_end_a_run(tmp_path):
     (tmp_path / "t.py").write_text("""
-from caretree.trees.tasks.wave import FailSafe, Hold, LetGo
+from caretree.skills import HoldStill, Release
+from caretree.trees import FailSafe
 
 
 def build(context):
-    return FailSafe("safely", Hold("h\u00e4lt", context), LetGo("let go", context))
+    return FailSafe("safely", HoldStill("h\u00e4lt", context), Release("let go", context, distance=0.0))
 """)
     command = [sys.executable, "-m", "caretree.trees.cli", "run", "t.py", "--world", "scripted", "--out", "r"]
     done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": "ascii"}, check=False)
@@ -211,11 +212,11 @@ def test_check_says_what_holds_and_what_does_not(tmp_path, capsys):
     assert main(["check", "wave"]) == 0
     assert capsys.readouterr().out.startswith("wave holds: ")
     (tmp_path / "bad.py").write_text("""
-from caretree.trees.tasks.wave import LetGo
+from caretree.skills import Release
 
 
 def build(context):
-    return LetGo("let go", context)
+    return Release("let go", context, distance=0.0)
 """)
     assert main(["check", "bad.py"]) == 1
     out = capsys.readouterr().out

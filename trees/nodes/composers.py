@@ -57,7 +57,7 @@ def fallback(name: str, *children: Behaviour) -> py_trees.composites.Selector:
     return py_trees.composites.Selector(name, memory=True, children=check_children(name, children))
 
 
-def watch(name: str, *children: Behaviour) -> py_trees.composites.Selector:
+def reactive_fallback(name: str, *children: Behaviour) -> py_trees.composites.Selector:
     """Like `fallback`, but earlier children are asked again on every tick and preempt later ones.
 
     Raises:

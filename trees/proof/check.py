@@ -24,7 +24,7 @@ REFUSED = {
     py_trees.decorators.Retry: "keeps the data of failed attempts; use caretree.trees.decorators.Retry",
     py_trees.decorators.Repeat: "keeps the data of earlier rounds; build the body as often as it is needed",
     py_trees.decorators.Timeout: "counts wall time; use caretree.trees.decorators.Timeout",
-    py_trees.decorators.EternalGuard: "refuses numpy's truth values; use watch() or a Condition",
+    py_trees.decorators.EternalGuard: "refuses numpy's truth values; use reactive_fallback() or a Condition",
 }
 
 

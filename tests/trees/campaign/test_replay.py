@@ -1,9 +1,9 @@
 import json
 
 import pytest
+from caretree.skills import HoldStill
 from caretree.trees.campaign.replay import first_difference, replay
 from caretree.trees.cli import main
-from caretree.trees.tasks.wave import Hold
 
 
 @pytest.fixture
@@ -32,7 +32,8 @@ def record(tmp_path, monkeypatch):
 STAGED = """
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.trees import TaskStage
-from caretree.trees.tasks.wave import FailSafe, LetGo, MoveJoint
+from caretree.skills import MoveJoint, Release
+from caretree.trees import FailSafe
 
 
 class Prepared(ScriptedWorld):
@@ -54,7 +55,7 @@ STAGES = {"start": TaskStage(up, begins="low"), "go_on": TaskStage(up, begins="h
 
 
 def build(context, stages=("start",)):
-    return FailSafe("safely", STAGES[stages[0]].build(context), LetGo("let go", context))
+    return FailSafe("safely", STAGES[stages[0]].build(context), Release("let go", context, distance=0.0))
 """
 
 
@@ -128,7 +129,7 @@ def test_an_operator_who_ends_the_second_run_is_no_difference(record, monkeypatc
     def press(self):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Hold, "steps", press)
+    monkeypatch.setattr(HoldStill, "steps", press)
     assert main(["replay", str(record)]) == 130
     captured = capsys.readouterr()
     assert (captured.out, captured.err) == ("", "caretree: interrupted\n")

@@ -4,7 +4,7 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.trees.guard.guard import GuardedWorld
-from caretree.trees.nodes.composers import TreeError, fallback, parallel, sequence, watch
+from caretree.trees.nodes.composers import TreeError, fallback, parallel, reactive_fallback, sequence
 
 
 class Move(Skill):
@@ -49,8 +49,8 @@ def test_two_commanders_in_one_tick_cannot_be_built(context):
     with pytest.raises(TreeError, match="'a' and 'b' in 'both' would wait for each other"):
         parallel("both", Move("a", context), Move("b", context))
     with pytest.raises(TreeError, match="could let 'a' and 's' command in one tick"):
-        watch("w", Move("a", context), sequence("s", Look("l", context), Move("b", context)))
-    assert watch("w", Look("l", context), Move("m", context)).memory is False
+        reactive_fallback("w", Move("a", context), sequence("s", Look("l", context), Move("b", context)))
+    assert reactive_fallback("w", Look("l", context), Move("m", context)).memory is False
 
 
 def test_they_are_py_trees_own_composites(context):

@@ -10,7 +10,7 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.core.ports import Input, Key, Output
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
-from caretree.trees.nodes.composers import fallback, parallel, sequence, watch
+from caretree.trees.nodes.composers import fallback, parallel, reactive_fallback, sequence
 from caretree.trees.nodes.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout
 from caretree.trees.proof.check import check
 from caretree.trees.proof.explore import Explorer
@@ -318,7 +318,7 @@ def test_an_unexplored_rest_is_not_called_proof():
 
 def test_a_watched_branch_is_explored():
     def build(context):
-        return safe(context, watch("w", See("see", context), Make("make", context)))
+        return safe(context, reactive_fallback("w", See("see", context), Make("make", context)))
 
     assert check(task_of(build)).ok
 

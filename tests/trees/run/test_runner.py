@@ -9,7 +9,7 @@ from caretree.sim.record.recorder import Recorder
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
 from caretree.skills.core.reasons import Reason
-from caretree.trees.nodes.composers import fallback, sequence, watch
+from caretree.trees.nodes.composers import fallback, reactive_fallback, sequence
 from caretree.trees.nodes.decorators import FailSafe, Retry, Stage, Timeout
 from caretree.trees.run.runner import run as run_task
 from caretree.trees.run.task import load_task
@@ -274,7 +274,7 @@ def test_the_higher_branch_waits_for_the_lower_ones_motion():
 
 def test_watching_a_condition_preempts_a_motion():
     def build(context):
-        return watch(
+        return reactive_fallback(
             "w",
             Look("seen", context, outcomes=[Reason.NOTHING_SEEN] * 3 + [True], ticks=0),
             Plan("move", context, outcomes=[True], ticks=100),

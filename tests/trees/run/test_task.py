@@ -6,6 +6,7 @@ from caretree.sim.abilities import SupportsInitialStates
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
+from caretree.skills import MoveJoint, Release
 from caretree.skills.core.context import Context
 from caretree.trees import tasks
 from caretree.trees.cli import main
@@ -14,7 +15,6 @@ from caretree.trees.nodes.decorators import FailSafe, Stage
 from caretree.trees.run.runner import run
 from caretree.trees.run.task import Task, TaskError, load_task, task_names
 from caretree.trees.run.worlds import prepare_stage
-from caretree.trees.tasks.wave import LetGo, MoveJoint
 
 GOOD = """
 from __future__ import annotations
@@ -168,7 +168,7 @@ def test_a_folder_is_no_task_file(tmp_path):
 def test_a_joint_that_is_where_it_should_be_need_not_move():
     def build(context):
         move = MoveJoint("up", context, side="left", joint="w1", angle=0.0)
-        return FailSafe("safely", move, LetGo("let go", context))
+        return FailSafe("safely", move, Release("let go", context, distance=0.0))
 
     assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"
 

@@ -1,0 +1,48 @@
+"""Turn one joint of an arm, by an angle or to one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..sim.quantity import Quantities, quantity
+from ..sim.world import ARM_JOINTS, SIDES, JointTrajectory, Side
+from .control.follow import follow
+from .core.ports import Input, Output
+from .core.reasons import Reason
+from .core.skill import Skill
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveJointTuning(Quantities):
+    """Numbers of `MoveJoint`."""
+
+    min_duration: float = quantity(0.1, "s", "of any motion", "choice: a trajectory that goes nowhere takes time too")
+
+
+class MoveJoint(Skill):
+    """Turns one joint at a given speed and says where it was before; nothing else of the arm moves.
+
+    It fails where the command is lost or the joint does not arrive.
+    """
+
+    side = Input(Side, doc="the arm")
+    joint = Input(str, doc="name of the joint, shoulder to wrist: s0 s1 e0 e1 w0 w1 w2")
+    angle = Input(float, unit="rad", doc="by which the joint turns, or where it goes")
+    relative = Input(bool, doc="whether `angle` counts from where the joint is", default=True)
+    speed = Input(float, unit="rad/s", doc="of the joint", default=0.3)
+    before = Output(float, unit="rad", doc="where the joint was")
+    tuning = Input(MoveJointTuning, default=MoveJointTuning(), doc="numbers of this skill")
+    reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
+
+    def steps(self) -> Iterator[None]:
+        """Send one trajectory and see it through."""
+        here = float(self.world.observe().arm_positions[SIDES.index(self.side), ARM_JOINTS.index(self.joint)])
+        goal = here + self.angle if self.relative else self.angle
+        self.note(f"turns {self.joint} by {goal - here:.2f} rad")
+        duration = max(abs(goal - here) / self.speed, self.tuning.min_duration)
+        joints, times = (f"{self.side}_{self.joint}",), np.array((0.0, duration))
+        yield from follow(self, JointTrajectory(joints=joints, times=times, positions=np.array(((here,), (goal,)))))
+        self.before = here
