@@ -1,0 +1,59 @@
+"""What the dressing tree is made of."""
+
+import pytest
+from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm
+from caretree.trees.proof.check import fresh_tree
+from caretree.trees.run.task import load_task
+
+
+@pytest.fixture(scope="module")
+def nodes():
+    return list(fresh_tree(load_task("dressing")).iterate())
+
+
+def leaf(nodes, name):
+    return next(node for node in nodes if node.name == name)
+
+
+def test_names_are_short_enough_to_read_in_a_table(nodes):
+    assert [node.name for node in nodes if len(node.name) > 40] == []
+
+
+@pytest.mark.parametrize(("side", "lifting", "pulling"), [("right", "left", "right"), ("left", "right", "left")])
+def test_one_hand_holds_the_arm_and_the_other_one_its_sleeve(nodes, side, lifting, pulling):
+    lift, grasp = leaf(nodes, f"{side} arm/lift"), leaf(nodes, f"{side} arm/grasp the sleeve")
+    assert (lift.side, lift.hand, grasp.side, grasp.hand) == (side, lifting, side, pulling)
+    over = leaf(nodes, f"{side} arm/pull over the hand")
+    assert over.bindings["hold"] == lift.bindings["hold"], "the arm that is held moves while the sleeve is pulled over"
+    assert over.bindings["grip"] == grasp.bindings["grip"]
+
+
+def test_a_hold_of_one_arm_is_not_taken_for_the_other_ones(nodes):
+    left, right = (leaf(nodes, f"{side} arm/lift").bindings["hold"] for side in ("left", "right"))
+    assert left != right
+
+
+def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
+    free = [
+        node
+        for node in nodes
+        if isinstance(node, (PullAlongArm, LaySleeve)) and node.name.endswith(("pull up", "lay it beyond the hand"))
+    ]
+    assert len(free) == 6  # up: both arms and both settled sleeves; laid out: both arms
+    assert all(node.bindings["hold"] is None for node in free)
+
+
+def test_the_second_sleeve_is_drawn_less_hard_than_the_first(nodes):
+    first, second = (leaf(nodes, f"{side} arm/present the sleeve") for side in ("right", "left"))
+    assert isinstance(first, PresentSleeve)
+    assert second.max_load < first.max_load
+
+
+def test_both_hands_are_seen_to_before_the_robot_backs_off(nodes):
+    safe = next(node for node in nodes if node.name == "make safe")
+    assert [child.name for child in safe.children] == [
+        "safe: left hand",
+        "safe: right hand",
+        "safe/let go and back off",
+    ]
+    assert all(branch.children[0].lower for branch in safe.children[:2])
