@@ -46,7 +46,7 @@ def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
                 str(tmp_path / "a.npz"),
                 "--engine",
                 "fast",
-                "--strip",
+                "--filmstrip",
                 str(tmp_path / "a.png"),
             ]
         )

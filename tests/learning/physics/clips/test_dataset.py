@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import yaml
 from caretree.learning.physics.clips import dataset, generate
-from caretree.learning.physics.clips import film as clip_world
 from caretree.learning.physics.clips.clip import SIZE
 from caretree.learning.physics.clips.dataset import INDEX, SPREAD, Dataset, DatasetSpec
-from caretree.learning.physics.clips.film import film
 from caretree.learning.physics.clips.frames import look_at
 from caretree.learning.physics.clips.parameters import NAMES, to_spec
-from caretree.learning.physics.engine.fall import FRAMES
+from caretree.learning.physics.clips.render_clip import render_clip
+from caretree.learning.physics.engine.fall import FRAMES, cut_of
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scene.gown import GOWNS, GownSpec
 
@@ -37,7 +36,7 @@ def test_a_dataset_is_what_was_asked_for(tmp_path):
     np.testing.assert_array_equal(data.class_id, np.arange(15) % 3)
     for k in range(3):
         assert sorted(data.split[data.class_id == k]) == ["test", "train", "train", "train", "val"]
-    clip = film(to_spec(PAPER.unit_of(7), PAPER.gown_of(7)))
+    clip = render_clip(to_spec(PAPER.unit_of(7), PAPER.gown_of(7)))
     np.testing.assert_allclose(data.depth[7], clip.depth, atol=1e-4)
     assert [line for line in said if "left" in line]
     index = yaml.safe_load((tmp_path / INDEX).read_text())
@@ -98,7 +97,7 @@ def test_other_kinds(tmp_path, kind):
     data = Dataset.load(generate.generate(tmp_path, spec))
     assert set(data.class_id) == {-1}
     assert set(data.split) == ({"train", "val", "test"} if kind == "uniform" else {"test"})
-    clean = film(to_spec(spec.unit_of(0), spec.gown_of(0))).depth
+    clean = render_clip(to_spec(spec.unit_of(0), spec.gown_of(0))).depth
     same = np.isfinite(clean) == np.isfinite(data.depth[0])
     assert same.all() == (kind != "disturbed")
 
@@ -209,7 +208,7 @@ def test_without_ray_several_jobs_are_refused(tmp_path, monkeypatch):
 
 def test_the_heldout_gown_is_another_cut_that_can_be_filmed():
     held = DatasetSpec(kind="heldout_gown", classes=1, per_class=1).gown_of(0)
-    assert clip_world.cut_of(held)[0].vertices.shape != clip_world.cut_of(GOWNS["medium"])[0].vertices.shape
+    assert cut_of(held)[0].vertices.shape != cut_of(GOWNS["medium"])[0].vertices.shape
     assert isinstance(held, GownSpec)
 
 
@@ -220,7 +219,7 @@ def test_mixed_films_the_falls_of_uniform_clean_and_three_times_rough(tmp_path):
     np.testing.assert_array_equal(mixed.unit, np.repeat(uniform.unit, 4, axis=0))
     np.testing.assert_array_equal(mixed.split, np.repeat(uniform.split, 4))  # no fall is both learned from and tested
     spec = mixed.spec
-    again = film(to_spec(spec.unit_of(2), spec.gown_of(2)), seed=spec.seed_of(2), disturbed=True).depth
+    again = render_clip(to_spec(spec.unit_of(2), spec.gown_of(2)), seed=spec.seed_of(2), disturbed=True).depth
     np.testing.assert_allclose(mixed.depth[2], again, atol=1e-4)  # the camera and the noise are the ones it names
     assert look_at(mixed.depth).rough.reshape(5, 4).tolist() == [[False, True, True, True]] * 5
     assert not spec.misplaced(0).any()

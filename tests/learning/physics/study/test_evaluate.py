@@ -44,10 +44,10 @@ def test_coverage_counts_each_parameter():
 
 class BlobSimulator:
     def __init__(self, cut, camera=None):
-        self.films = 0
+        self.rendered = 0
 
     def __call__(self, unit, misplaced=None):
-        self.films += len(unit)
+        self.rendered += len(unit)
         return blob_frames(unit)
 
 
@@ -68,9 +68,9 @@ def test_a_study_compares_every_method_on_every_test(study):
     for test in ("uniform", "heldout_gown"):
         assert {method for t, method, _ in rows if t == test} == set(TITLES) - {"class_centre"}  # there are no classes
         assert {seed for t, method, seed in rows if (t, method) == (test, "paper")} == {0, 1}
-    assert rows["uniform", "ours_simulated", 0]["clips"] == 11
+    assert rows["uniform", "gp_inversion_simulated", 0]["clips"] == 11
     assert rows["uniform", "paper", 1]["clips"] == 12
-    assert set(rows["uniform", "ours", 0]["coverage"]) == set(NAMES)
+    assert set(rows["uniform", "gp_inversion", 0]["coverage"]) == set(NAMES)
     assert results["data"]["hash"] == study.data.examples.hash
     text = table(results)
     assert all(title in text for method, title in TITLES.items() if method != "class_centre")
@@ -86,16 +86,16 @@ def test_the_centre_of_the_class_is_shown_for_comparison(study):
 
 
 def test_an_interrupted_study_keeps_what_is_finished(study, monkeypatch):
-    study.run(lambda _: None, ("ours", "random"))
+    study.run(lambda _: None, ("gp_inversion", "random"))
     kept = {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
     assert len(kept) == 4  # of 10 for the calibration, 10 and 1, and 8
 
     def again(*_, **__):
         raise AssertionError("nothing is to be fitted again")
 
-    monkeypatch.setattr(study_module, "fit_ours", again)
+    monkeypatch.setattr(study_module, "fit_gp_inversion", again)
     monkeypatch.setattr(BlobSimulator, "__call__", again)
-    study.run(lambda _: None, ("ours",))
+    study.run(lambda _: None, ("gp_inversion",))
     assert kept == {p.name: p.stat().st_mtime_ns for p in (study.folder / "predictions").glob("*-piece-*")}
 
 
@@ -105,15 +105,19 @@ def test_other_cuts_are_learned_from_and_tested_apart(study, small_gown):
     some = replace(blobs(200, 6, seed=8), rough=np.arange(200) % 2 == 1)
     cuts = Loaded(kind="cuts", gowns=[longer] * 200, examples=some, split=np.repeat(falls, 2))
     wider = replace(study, cuts=cuts, seeds=(0,))
-    wider.run(lambda _: None, ("ours", "supervised"))
+    wider.run(lambda _: None, ("gp_inversion", "supervised"))
     rows = {(row["test"], row["method"]): row for row in json.loads(write_results(wider).read_text())["rows"]}
     assert {test for test, _ in rows} == {"uniform", "cuts", "cuts_rough", "heldout_gown"}
-    assert rows["cuts", "ours"]["clips"] == rows["cuts_rough", "supervised"]["clips"] == 20
-    assert rows["cuts", "ours_simulated"]["clips"] == 11
-    _, record = load_weights(wider.folder / "ours.safetensors")
+    assert rows["cuts", "gp_inversion"]["clips"] == rows["cuts_rough", "supervised"]["clips"] == 20
+    assert rows["cuts", "gp_inversion_simulated"]["clips"] == 11
+    _, record = load_weights(wider.folder / "gp_inversion.safetensors")
     assert record["clips"] == 36 + 120
     assert record["processor_seconds"] > 0
-    assert set(load_weights(wider.folder / "ours.safetensors")[0].inversions) == {"clean", "clean_other", "rough_other"}
+    assert set(load_weights(wider.folder / "gp_inversion.safetensors")[0].inversions) == {
+        "clean",
+        "clean_other",
+        "rough_other",
+    }
 
 
 def test_predictions_from_other_data_are_forgotten(study):
@@ -135,11 +139,11 @@ def test_an_interrupted_calibration_keeps_the_fit(study, monkeypatch):
     with monkeypatch.context() as before:
         before.setattr(BlobSimulator, "__call__", killed)
         with pytest.raises(KeyboardInterrupt):
-            study.run(lambda _: None, ("ours",))
-    monkeypatch.setattr(study_module, "fit_ours", killed)
-    _, fit = load_weights(study.folder / "ours.safetensors")
-    study.run(lambda _: None, ("ours",))
-    _, whole = load_weights(study.folder / "ours.safetensors")
+            study.run(lambda _: None, ("gp_inversion",))
+    monkeypatch.setattr(study_module, "fit_gp_inversion", killed)
+    _, fit = load_weights(study.folder / "gp_inversion.safetensors")
+    study.run(lambda _: None, ("gp_inversion",))
+    _, whole = load_weights(study.folder / "gp_inversion.safetensors")
     assert whole["processor_seconds"] >= fit["processor_seconds"] > 0
     assert (study.folder / "predictions" / "uniform-ours_simulated-0.npz").exists()
 

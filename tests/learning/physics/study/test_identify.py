@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from caretree.learning.physics import learn_cli
 from caretree.learning.physics.clips.clip import Clip
-from caretree.learning.physics.clips.film import film
 from caretree.learning.physics.clips.frames import frames_of
 from caretree.learning.physics.clips.parameters import HIGH, NAMES, SHOWN, to_spec, values_of
-from caretree.learning.physics.methods.calibrated_gp import fit_ours
+from caretree.learning.physics.clips.render_clip import render_clip
+from caretree.learning.physics.methods.gp_inversion import fit_gp_inversion
 from caretree.learning.physics.methods.method import Examples
 from caretree.learning.physics.methods.simulator import Simulator
 from caretree.learning.physics.methods.weights import load_weights, save_weights
@@ -27,7 +27,7 @@ def make(small_gown, count, seed):
 @pytest.fixture(scope="module")
 def fitted(small_gown):
     valid = make(small_gown, 24, 1)
-    method = fit_ours(make(small_gown, 60, 0), valid, seed=0, shown=SHOWN)
+    method = fit_gp_inversion(make(small_gown, 60, 0), valid, seed=0, shown=SHOWN)
     some = valid.part(np.arange(12))
     method.sort(False).set_widths("simulated", some.unit, *method.raw(some, lambda _: Simulator(small_gown)))
     return method
@@ -61,8 +61,8 @@ def test_weights_come_back_as_they_were_saved(fitted, small_gown, tmp_path):
 
 def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_path):
     gown = to_spec(np.full(6, 0.45), small_gown)
-    found = identify(film(gown), fitted)
-    quick = identify(film(gown), fitted, simulate=False)
+    found = identify(render_clip(gown), fitted)
+    quick = identify(render_clip(gown), fitted, simulate=False)
     true = values_of(gown)
     shown = list(SHOWN)
     errors = [np.abs(f.values / true - 1)[shown].mean() for f in (found, quick)]
@@ -80,7 +80,7 @@ def test_a_gown_is_identified_from_its_clip(fitted, small_gown, small_cut, tmp_p
 
 
 def test_a_clip_that_shows_no_falling_gown_is_refused(fitted, small_gown, small_cut):
-    clip = film(to_spec(np.full(6, 0.5), small_gown))
+    clip = render_clip(to_spec(np.full(6, 0.5), small_gown))
     wall = replace(clip, depth=np.full_like(clip.depth, 2.6))
     with pytest.raises(CaretreeError, match="no falling gown of the cut 'medium' looks like this clip"):
         identify(wall, fitted)
@@ -89,7 +89,7 @@ def test_a_clip_that_shows_no_falling_gown_is_refused(fitted, small_gown, small_
 
 def test_command_prints_the_table_and_writes_the_gown(fitted, small_gown, small_cut, tmp_path, capsys):
     weights = save_weights(fitted, tmp_path / "w.safetensors", {})
-    clip = film(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
+    clip = render_clip(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
     out = tmp_path / "gown.yaml"
     arguments = ["learn", "physics", "identify", str(clip), "--weights", str(weights), "--out", str(out)]
     assert main(arguments) == 0
@@ -116,7 +116,7 @@ def test_bad_clips_get_one_sentence_and_exit_2(damage, tmp_path, capsys):
 
 @pytest.mark.parametrize("out", ["", "none/gown.yaml"])
 def test_where_no_gown_can_be_written_is_said_first(fitted, small_gown, out, tmp_path, capsys):
-    clip = film(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
+    clip = render_clip(to_spec(np.full(6, 0.5), small_gown)).save(tmp_path / "clip.npz")
     assert main(["learn", "physics", "identify", str(clip), "--out", str(tmp_path / out)]) == 2
     said = capsys.readouterr()
     assert "a gown file cannot be written there" in said.err

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from caretree.learning.physics.methods.calibrated_gp import fit_ours
 from caretree.learning.physics.methods.conformal import calibrate
 from caretree.learning.physics.methods.gaussian_process import fit_gaussian_process
+from caretree.learning.physics.methods.gp_inversion import fit_gp_inversion
 from caretree.learning.physics.methods.indirect_inference import match
 from caretree.learning.physics.methods.inversion import CAMERA_UNIT
 from caretree.learning.physics.methods.pca import fit_compression
@@ -134,7 +134,7 @@ def test_matching_ends_when_nothing_is_left_to_do():
 
 def test_simulating_again_improves_and_intervals_hold():
     train, valid, test = blobs(60), blobs(40, seed=1), blobs(60, seed=2)
-    method = fit_ours(train, valid, seed=0, shown=(0, 1))
+    method = fit_gp_inversion(train, valid, seed=0, shown=(0, 1))
     method.sort(False).set_widths("simulated", valid.unit, *method.raw(valid, lambda _: blob_frames))
     alone, again = method.infer(test), method.infer(test, lambda _: blob_frames)
     assert np.abs(again.unit - test.unit).mean() < 0.5 * np.abs(alone.unit - test.unit).mean()
@@ -147,7 +147,7 @@ def test_simulating_again_improves_and_intervals_hold():
 
 def test_parameters_that_do_not_show_are_left_alone():
     train, valid = blobs(60, parameters=3), blobs(40, parameters=3, seed=1)
-    method = fit_ours(train, valid, seed=0, shown=(0, 1)).sort(False)
+    method = fit_gp_inversion(train, valid, seed=0, shown=(0, 1)).sort(False)
     some = valid.frames[:3]
     np.testing.assert_array_equal(method.simulated(some, blob_frames)[0][:, 2], method.alone(some)[0][:, 2])
 
@@ -178,15 +178,15 @@ def both_sorts(count, seed):
 
 def test_each_sort_of_clips_has_its_own_inversion_and_a_misplaced_camera_is_found():
     train, valid, test = both_sorts(160, 0), both_sorts(80, 1), both_sorts(60, 2)
-    method = fit_ours(train, valid, seed=0, shown=(0, 1))
+    method = fit_gp_inversion(train, valid, seed=0, shown=(0, 1))
     assert set(method.inversions) == {"clean", "rough"}
     assert method.sort(True) is method.sort(True, other=True) is method.inversions["rough"]
     assert method.sort(False) is method.sort(False, other=True) is method.inversions["clean"]
 
-    def films(index):
+    def simulators(index):
         return moved_blobs if test.gaps[index[0]] else blob_frames
 
-    alone, (again, _) = method.infer(test), method.raw(test, films)
+    alone, (again, _) = method.infer(test), method.raw(test, simulators)
     rough = test.gaps
     fooled = method.sort(False).alone(test.frames)[0]
     errors = [np.abs(unit - test.unit)[rough].mean() for unit in (fooled, alone.unit, again)]
@@ -198,15 +198,15 @@ def test_gowns_of_other_cuts_are_read_by_a_process_that_learned_from_many():
         some = blobs(count, seed=seed)
         return replace(some, frames=blob_frames(some.unit + [0.4, 0.0]))
 
-    method = fit_ours(blobs(60), blobs(40, seed=1), (cut(60, 3), cut(40, 4)), seed=0, shown=(0, 1))
+    method = fit_gp_inversion(blobs(60), blobs(40, seed=1), (cut(60, 3), cut(40, 4)), seed=0, shown=(0, 1))
     assert set(method.inversions) == {"clean", "clean_other"}
     assert method.sort(True, other=True) is method.inversions["clean_other"]
     test = cut(40, 5)
     fooled, told = (np.abs(method.infer(test, other=other).unit - test.unit).mean() for other in (False, True))
     assert told < 0.1 * fooled
 
-    def films(index):
+    def simulators(index):
         return lambda unit: blob_frames(unit + [0.4, 0.0])
 
-    again, _ = method.raw(test, films, other=True)
+    again, _ = method.raw(test, simulators, other=True)
     assert np.abs(again - test.unit).mean() < told
