@@ -54,7 +54,7 @@ def factor(matrix: sparse.csr_matrix, free: np.ndarray) -> Band:
 
 
 @njit(fastmath=True)
-def solve(lower, y):
+def solve(lower: np.ndarray, y: np.ndarray) -> None:
     """Turn y (3, F) into (L L^T)^-1 y in place; `lower` as in `Band`."""
     n, width = lower.shape
     y0, y1, y2 = y[0], y[1], y[2]

@@ -43,4 +43,3 @@ def test_papers_method_recognises_classes(tmp_path):
                        say=lambda _: None)  # fmt: skip
     errors = np.abs(method.estimate(test.frames) - test.unit)
     assert np.median(errors) < 0.02  # a wrong class is off by 0.1 and more
-    assert method.nearest_only(test.frames).shape == test.unit.shape
