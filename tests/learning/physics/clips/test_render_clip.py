@@ -61,7 +61,7 @@ def test_every_other_parameter_shows(small_gown, name):
 
 
 @pytest.mark.parametrize("corner", [0.0, 1.0])
-def test_the_ends_of_the_range_can_be_filmed(corner, small_gown):
+def test_the_ends_of_the_range_can_be_rendered(corner, small_gown):
     render_clip(to_spec(np.full(6, corner), small_gown))
 
 
