@@ -50,7 +50,6 @@ _DFKI = ("dfki-ric-underactuated-lab/double_pendulum", "1e8544e67f3da72a51ee52fb
 _KNIT = ("sabetta/stitch-by-stitch", "0ed27f35dcf5c3bda874f214bbcab0455055edf0")
 _SAGE = ("isaac-sim2real/sage", "4ffd2627df9d23e279b35712a67e629ce0c0dfa7")
 _SYSID = "data/experiment_records/design_C.1/sys_id/20230629/"
-_PARAMETERS = "data/system_identification/identified_parameters/design_C.1/model_1.0/"
 
 CATALOGUE: dict[str, DataSet] = {
     d.name: d

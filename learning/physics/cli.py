@@ -9,12 +9,12 @@ from ...sim.errors import CaretreeError
 
 COMMANDS = {  # command -> (module with `main(argv) -> int`, argv with the command in front; what it does)
     "data": (".data_cli", "make a dataset of clips, or what is missing of it"),
-    "clip": (".data_cli", "film one gown and write the clip"),
-    "show": (".data_cli", "draw strips of clips"),
+    "clip": (".data_cli", "render the clip of one falling gown and write it"),
+    "show": (".data_cli", "draw filmstrips of clips"),
     "sensitivity": (".data_cli", "what a clip shows of each parameter"),
     "train": (".learn_cli", "train a method"),
     "evaluate": (".learn_cli", "errors of each method"),
-    "pictures": (".learn_cli", "t-SNE, box plots and strips of a study"),
+    "pictures": (".learn_cli", "t-SNE, box plots and filmstrips of a study"),
     "identify": (".learn_cli", "parameters with intervals from one clip; writes a gown file"),
 }
 

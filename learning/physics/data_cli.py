@@ -41,15 +41,15 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")
     data.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
 
-    clip = sub.add_parser("clip", help="film one gown and write the clip")
+    clip = sub.add_parser("clip", help="render the clip of one falling gown and write it")
     clip.add_argument("file", metavar="FILE", help="the .npz to write")
     clip.add_argument("--gown", default="medium", metavar="NAME", help="name of a gown, or a gown file")
     clip.add_argument("--engine", choices=("fast", "bullet"), default="bullet")
     clip.add_argument("--disturbed", action="store_true", help="with noise, holes and a misplaced camera")
     clip.add_argument("--seed", type=seed, default=0, metavar="N")
-    clip.add_argument("--strip", metavar="FILE", help="also a picture of it")
+    clip.add_argument("--filmstrip", metavar="FILE", help="also a picture of its frames")
 
-    show = sub.add_parser("show", help="draw strips of clips")
+    show = sub.add_parser("show", help="draw filmstrips of clips")
     show.add_argument("path", nargs="+", metavar="PATH", help="clips, or folders of datasets")
     show.add_argument("--clips", type=int, default=3, metavar="N", help="of each dataset (default 3)")
     show.add_argument("--out", required=True, metavar="FILE", help="the picture to write")
@@ -106,22 +106,22 @@ def main(argv: list[str]) -> int:
         print(generate(options.folder, spec, options.jobs, options.address, say_to_stderr))
     elif options.command == "clip":
         from ...sim.scene.scene import named_gown
-        from .clips.film import film
         from .clips.parameters import BASE, NAMES
+        from .clips.render_clip import render_clip
 
         gown = named_gown(options.gown)
         if gown.air_drag <= 0:  # a named gown says nothing of the air it falls in: the usual
             gown = replace(gown, air_drag=float(BASE[NAMES.index("air_drag")]))
-        clip = film(gown, seed=options.seed, engine=options.engine, disturbed=options.disturbed)
+        clip = render_clip(gown, seed=options.seed, engine=options.engine, disturbed=options.disturbed)
         print(clip.save(options.file))
-        if options.strip:
-            from .clips.filmstrip import write_strip
+        if options.filmstrip:
+            from .clips.filmstrip import write_filmstrip
 
-            print(write_strip(options.strip, [(gown.name, clip.depth)]))
+            print(write_filmstrip(options.filmstrip, [(gown.name, clip.depth)]))
     elif options.command == "show":
-        from .clips.filmstrip import write_strip
+        from .clips.filmstrip import write_filmstrip
 
-        print(write_strip(options.out, _rows(options.path, options.clips)))
+        print(write_filmstrip(options.out, _rows(options.path, options.clips)))
     elif options.engines:
         from .study.engine_comparison import report as compared
 

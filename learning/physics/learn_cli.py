@@ -12,7 +12,16 @@ from ...sim.command_line import CommandParser, whole_number
 from ...sim.errors import CaretreeError
 
 STEPS = 1500
-METHODS = ("ours", "paper", "supervised", "contrastive_regression", "residual_only", "manual", "random", "class_centre")
+METHODS = (
+    "gp_inversion",
+    "paper",
+    "supervised",
+    "contrastive_regression",
+    "residual_only",
+    "manual",
+    "random",
+    "class_centre",
+)
 
 
 def _seeds(text: str) -> tuple[int, ...]:
@@ -43,7 +52,7 @@ def parser() -> argparse.ArgumentParser:
             type=whole_number,
             default=100,
             metavar="N",
-            help="clips of each test that ours corrects by simulation (default 100, half a second each)",
+            help="clips of each test that GP inversion corrects by simulation (default 100, half a second each)",
         )
         p.add_argument(
             "--calibrate",
@@ -59,7 +68,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--cut", default="medium", metavar="NAME", help="the gown's cut, which is known (default medium)")
     p.add_argument("--weights", metavar="FILE", help="instead of those in the package")
     p.add_argument("--fast", action="store_true", help="do not correct the answer by simulation")
-    p = sub.add_parser("pictures", help="t-SNE, box plots and strips of a study")
+    p = sub.add_parser("pictures", help="t-SNE, box plots and filmstrips of a study")
     p.add_argument("study", metavar="DIR", help="folder that `evaluate` wrote to")
     p.add_argument("data", metavar="DATA", help="the data set it was trained on")
     p.add_argument("--out", required=True, metavar="DIR", help="folder for the pictures")

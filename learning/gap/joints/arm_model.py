@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -41,10 +42,32 @@ def find_urdf(robot: str, folder: Path) -> Path:
 
 
 class ArmModel(RigidModel):
-    """Inverse dynamics by the recursive Newton-Euler algorithm, forward by the articulated-body algorithm."""
+    """Inverse dynamics by the recursive Newton-Euler algorithm, forward by the articulated-body algorithm.
 
-    def __init__(self, urdf: Path, joints: int, gravity: tuple[float, float, float] = GRAVITY) -> None:
-        """Build the model and lock every joint beyond the first `joints` movable ones.
+    Args:
+        urdf: where the model was read from.
+        model: pinocchio's model of the measured joints.
+        tool: pinocchio's inertia of what is fixed to the last link, None where nothing is.
+    """
+
+    def __init__(self, urdf: Path, model: Any, tool: Any) -> None:
+        import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+        self._pin = pin
+        self.urdf, self.model, self.tool = urdf, model, tool
+        self.data = model.createData()
+        self.joints = tuple(model.names[1:])
+        self.prismatic = tuple("P" in model.joints[i].shortname()[10:12] for i in range(1, model.njoints))
+        self._round = [model.joints[i].nq == 2 for i in range(1, model.njoints)]
+
+    @classmethod
+    def from_urdf(cls, urdf: Path, joints: int, gravity: tuple[float, float, float] = GRAVITY) -> ArmModel:
+        """Read the model and lock every joint beyond the first `joints` movable ones.
+
+        Args:
+            urdf: file.
+            joints: how many are measured.
+            gravity: acceleration in the base frame [m/s^2].
 
         Raises:
             GapError: the URDF cannot be read or has fewer movable joints.
@@ -58,24 +81,15 @@ class ArmModel(RigidModel):
         movable = [i for i in range(1, full.njoints) if full.joints[i].nv == 1]
         if len(movable) < joints:
             raise GapError(f"{urdf}: has {len(movable)} movable joints, the columns name {joints}")
-        tool = full.frames  # bodies fixed to the last measured link keep their own inertia as frames
-        self.tool = None
-        for frame in tool:
+        tool = None
+        for frame in full.frames:  # bodies fixed to the last measured link keep their own inertia as frames
             if frame.parentJoint == movable[joints - 1] and frame.inertia.mass > 1e-6:
                 part = frame.placement.act(frame.inertia)
-                self.tool = part if self.tool is None else self.tool + part
+                tool = part if tool is None else tool + part
         lock = [i for i in range(1, full.njoints) if i not in movable[:joints]]
-        self.model = pin.buildReducedModel(full, lock, pin.neutral(full)) if lock else full
-        self.model.gravity.linear = np.asarray(gravity, dtype=float)
-        self.urdf = urdf
-        self._finish(pin)
-
-    def _finish(self, pin) -> None:
-        self._pin = pin
-        self.data = self.model.createData()
-        self.joints = tuple(self.model.names[1:])
-        self.prismatic = tuple("P" in self.model.joints[i].shortname()[10:12] for i in range(1, self.model.njoints))
-        self._round = [self.model.joints[i].nq == 2 for i in range(1, self.model.njoints)]
+        model = pin.buildReducedModel(full, lock, pin.neutral(full)) if lock else full
+        model.gravity.linear = np.asarray(gravity, dtype=float)
+        return cls(urdf, model, tool)
 
     @property
     def strongest(self) -> tuple[float, ...]:
@@ -188,24 +202,19 @@ class ArmModel(RigidModel):
 
     def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:
         """The arm with a body changed by `values`."""
-        out = object.__new__(ArmModel)
-        out.tool, out.urdf = self.tool, self.urdf
         if term.name == "mass":
-            out.model = with_scaled_mass(self.model, term.target, values["mass"])
+            model = with_scaled_mass(self.model, term.target, values["mass"])
         else:
-            out.model = with_point_mass(self.model, term.target, self.moments(term, values))
-        out._finish(self._pin)
-        return out
+            model = with_point_mass(self.model, term.target, self.moments(term, values))
+        return ArmModel(self.urdf, model, self.tool)
 
     def with_armature(self, joint: int, inertia: float) -> ArmModel:
         """The arm with a rotor's inertia [kg m^2] on one joint."""
-        out = object.__new__(ArmModel)
-        out.tool, out.urdf, out.model = self.tool, self.urdf, self.model.copy()
-        armature = np.array(out.model.armature)
+        model = self.model.copy()
+        armature = np.array(model.armature)
         armature[joint] += inertia
-        out.model.armature = armature
-        out._finish(self._pin)
-        return out
+        model.armature = armature
+        return ArmModel(self.urdf, model, self.tool)
 
     def moments(self, term: BodyTerm, values: dict[str, float]) -> dict[str, float]:
         """Mass and first moments of a payload or tool change; a scaled tool brings the URDF tool's own centre."""

@@ -117,7 +117,7 @@ def rigid_model(measured: MeasurementSet, joints: int) -> RigidModel:
         gravity = measured.settings.get("gravity", GRAVITY)
         if not (isinstance(gravity, list | tuple) and len(gravity) == 3):
             raise GapError(f"gravity is {gravity!r}, three numbers [m/s^2] are needed")
-        return ArmModel(
+        return ArmModel.from_urdf(
             find_urdf(robot, measured.folder), joints, (float(gravity[0]), float(gravity[1]), float(gravity[2]))
         )
     except GapError as error:

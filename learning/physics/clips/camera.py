@@ -1,4 +1,4 @@
-"""The one fixed camera that films falling gowns."""
+"""The one fixed camera that watches falling gowns."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ MISPLACED = np.array((TURN,) * 3 + (SHIFT,) * 3)
 
 
 def misplacement(rng: np.random.Generator) -> np.ndarray:
-    """(6,) normal errors of a camera's place, as `FilmCamera.moved` takes them."""
+    """(6,) normal errors of a camera's place, as `ClipCamera.moved` takes them."""
     return rng.normal(0.0, 1.0, 6) * MISPLACED
 
 
 @dataclass(frozen=True, kw_only=True)
-class FilmCamera:
+class ClipCamera:
     """Where the camera stands, in the map of the clip (origin midway between the held vertices, z up).
 
     Attributes:
@@ -40,7 +40,7 @@ class FilmCamera:
     pose_camera_in_map: np.ndarray
     intrinsics: tuple[float, float, float, float]
 
-    def moved(self, misplaced: np.ndarray) -> FilmCamera:
+    def moved(self, misplaced: np.ndarray) -> ClipCamera:
         """The camera misplaced by (6,): a rotation vector in its own frame [rad], then a shift in the map [m]."""
         axis = np.asarray(misplaced[:3], float)
         angle = float(np.linalg.norm(axis))
@@ -49,7 +49,7 @@ class FilmCamera:
         pose = self.pose_camera_in_map.copy()
         pose[:3, :3] = pose[:3, :3] @ (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
         pose[:3, 3] += misplaced[3:]
-        return FilmCamera(pose_camera_in_map=pose, intrinsics=self.intrinsics)
+        return ClipCamera(pose_camera_in_map=pose, intrinsics=self.intrinsics)
 
     def look(self, mesh: GownMesh, vertices: np.ndarray) -> np.ndarray:
         """(64, 64) float32 depth of a gown with these vertices (V, 3) [m], NaN where there is none."""
@@ -69,11 +69,11 @@ class FilmCamera:
         return depth
 
 
-def standard_camera() -> FilmCamera:
+def standard_camera() -> ClipCamera:
     """The camera of every clip whose camera was not moved."""
     target = np.array(TARGET)
     eye = np.array((TARGET[0] + DISTANCE * np.sin(YAW), DISTANCE * np.cos(YAW), EYE_HEIGHT))
-    return FilmCamera(
+    return ClipCamera(
         pose_camera_in_map=looking_at(eye, target),
         intrinsics=intrinsics_of((SIZE, SIZE), 2 * float(np.arctan(HALF / DISTANCE))),
     )

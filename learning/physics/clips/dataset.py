@@ -137,8 +137,8 @@ KINDS = {
     "uniform": Kind(1, "the whole range"),
     "heldout_gown": Kind(2, "uniform, one cut that nothing is trained on", split="test"),
     "disturbed": Kind(3, "uniform, noise, holes and a misplaced camera", split="test"),
-    "mixed": Kind(1, "the falls of `uniform`, each filmed as it is and three times disturbed", views=4),
-    "cuts": Kind(6, "uniform, each fall of another random cut, filmed as it is and disturbed", views=2),
+    "mixed": Kind(1, "the falls of `uniform`, each rendered as it is and three times disturbed", views=4),
+    "cuts": Kind(6, "uniform, each fall of another random cut, rendered as it is and disturbed", views=2),
 }
 
 

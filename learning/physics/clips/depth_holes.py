@@ -48,7 +48,7 @@ def _closed(depth, neighbours, times):
     return out, filled / max(seen, 1)
 
 
-def mend(depth: np.ndarray) -> tuple[np.ndarray, float]:
+def fill_depth_holes(depth: np.ndarray) -> tuple[np.ndarray, float]:
     """A clip's depth with small gaps closed.
 
     Args:

@@ -1,4 +1,4 @@
-"""Strips of clips: frames side by side, one clip a row."""
+"""Filmstrips of clips: frames side by side, one clip a row."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 
-def write_strip(path: str | Path, rows: Sequence[tuple[str, np.ndarray]], every: int = 2) -> Path:
+def write_filmstrip(path: str | Path, rows: Sequence[tuple[str, np.ndarray]], every: int = 2) -> Path:
     """Draw clips under each other.
 
     Args:

@@ -1,9 +1,10 @@
 """What the methods see of a clip: small frames with two channels, the share of the pixel covered and its depth.
 
-A depth image has no value outside the gown, and networks need one everywhere.  Small gaps are closed first (`mend.py`).
-Then each 2 x 2 block of pixels becomes one pixel with two numbers: how much of the block the gown covers, and the mean
-over the block of the depth relative to the gown's usual depth, counting zero where there is no gown.  Both change
-smoothly when the outline moves by less than a pixel, which is what a falling gown's small differences consist of.
+A depth image has no value outside the gown, and networks need one everywhere.  Small gaps are closed first
+(`depth_holes.py`).  Then each 2 x 2 block of pixels becomes one pixel with two numbers: how much of the block the gown
+covers, and the mean over the block of the depth relative to the gown's usual depth, counting zero where there is no
+gown.  Both change smoothly when the outline moves by less than a pixel, which is what a falling gown's small
+differences consist of.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .dataset import DepthArray
-from .depth_holes import mend
+from .depth_holes import fill_depth_holes
 
 CENTRE = 2.6  # [m] usual distance of the gown from the camera: this depth becomes zero
 SCALE = 0.3  # [m] depth that counts as one
@@ -44,7 +45,7 @@ def look_at(depth: np.ndarray | DepthArray) -> Seen:
     frames = np.empty((n, t, 2, height // BLOCK, width // BLOCK), dtype=np.float16)
     rough = np.empty(n, bool)
     for k in range(n):
-        whole, closed = mend(depth[k])
+        whole, closed = fill_depth_holes(depth[k])
         rough[k] = closed > ROUGH
         blocks = whole.reshape(t, height // BLOCK, BLOCK, width // BLOCK, BLOCK)
         there = np.isfinite(blocks)

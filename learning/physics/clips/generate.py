@@ -64,15 +64,15 @@ def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> di
 
 
 def _depths(spec: DatasetSpec, ids: range) -> Iterator[np.ndarray]:
-    """Packed depth of each clip; a fall that is filmed several times is simulated once."""
-    from .film import clip_of, path_of, seen
+    """Packed depth of each clip; a fall that is rendered several times is simulated once."""
+    from .render_clip import clip_of, path_of, render_path
 
     camera, last, gown, path = standard_camera(), -1, None, None
     for i in ids:
         if gown is None or path is None or i // spec.views != last:
             gown, last = to_spec(spec.unit_of(i), spec.gown_of(i)), i // spec.views
             path = path_of(gown)
-        depth = seen(gown, path, camera.moved(spec.misplaced(i)) if spec.disturbed(i) else camera)
+        depth = render_path(gown, path, camera.moved(spec.misplaced(i)) if spec.disturbed(i) else camera)
         if spec.disturbed(i):
             rng = np.random.default_rng([spec.seed_of(i), 5])
             misplacement(rng)  # the numbers that `misplaced` used

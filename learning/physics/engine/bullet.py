@@ -1,4 +1,4 @@
-"""The fall of a released gown in PyBullet: what `springs.py` is checked against, and a second source of clips.
+"""The fall of a released gown in PyBullet: what `mass_spring.py` is checked against, and a second source of clips.
 
 Two traps of PyBullet 3.2.7 are avoided here.  A cloth's rest lengths are taken anew at the first step and whenever a
 vertex is pinned to, or released from, the world (`setMass` marks the constants as stale): the gown must make a step

@@ -1,4 +1,4 @@
-"""The static hang: how a gown rests that is held by two vertices.
+"""Static equilibrium: how a gown rests that is held by two vertices.
 
 Found without simulating the seconds it takes: the gown starts gently rolled, so that it always bulges to the same
 side, and is brought to rest by alternating two exact steps, with momentum.  Turn every spring to its rest length
@@ -28,7 +28,7 @@ MOMENTUM = 0.98
 
 
 def held_start(mesh: GownMesh, held: tuple[int, int]) -> np.ndarray:
-    """Where the search for the hang starts: the gown rolled about the vertical, the outside bulging to +y.
+    """Where the search for the static equilibrium starts: a gown rolled about the vertical that bulges to +y.
 
     Args:
         mesh: rest shape.
@@ -86,7 +86,7 @@ def _search(x, base, start, other, stiffness, rest, row, lower, rounds, momentum
     return now
 
 
-def hang(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = ROUNDS) -> np.ndarray:
+def static_equilibrium(springs: Springs, x: np.ndarray, held: tuple[int, int], rounds: int = ROUNDS) -> np.ndarray:
     """Positions at rest under gravity.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GownMesh, GownSpec, build_gown
-from .equilibrium import hang, held_start
+from .equilibrium import held_start, static_equilibrium
 from .mass_spring import Springs, Weave, advance, damped, weave
 
 FRAMES = 15
@@ -61,7 +61,7 @@ def springs_of(spec: GownSpec, woven: Weave) -> Springs:
 def rest(spec: GownSpec) -> np.ndarray:
     """(V, 3) how a gown hangs by the ends of its neckline [m]; the origin is midway between them."""
     mesh, woven = cut_of(spec)
-    return hang(springs_of(spec, woven), held_start(mesh, mesh.corners), mesh.corners)
+    return static_equilibrium(springs_of(spec, woven), held_start(mesh, mesh.corners), mesh.corners)
 
 
 def fall(spec: GownSpec, start: np.ndarray, frames: int = FRAMES, clamp: float = CLAMP_MASS) -> np.ndarray:

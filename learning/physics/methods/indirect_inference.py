@@ -3,7 +3,7 @@
 An estimator a(clip) is biased here and there, but it is the same estimator for a simulated clip.  So the parameters
 wanted are those whose simulated clip gets the same answer as the clip seen:
 
-    a(film(theta)) = a(clip)
+    a(render_clip(theta)) = a(clip)
 
 The slopes of the left side are first taken to be those of a perfect estimator, or measured, one unknown after the
 other; after that the steps themselves correct them (Broyden).  The estimator reduces the clip to a few numbers that

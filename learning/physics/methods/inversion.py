@@ -1,10 +1,10 @@
 """One sort of clips: a Gaussian process on principal components, corrected by simulating its answer, with intervals.
 
-Fitting takes seconds: compression.py, gaussian_process.py, prior.py and, from the validation clips, conformal.py.
-Identifying a clip reads the parameters off the process; given a simulator of the gown, indirect.py then looks for the
-parameters whose simulated clip gets the same answer, or, where the process is blunt, deviation.py learns how it errs
-for this gown.  A process fitted to rough clips also says how far the camera was from where the clip says, and the
-simulated camera is moved along with the parameters.
+Fitting takes seconds: pca.py, gaussian_process.py, prior.py and, from the validation clips, conformal.py. Identifying a
+clip reads the parameters off the process; given a simulator of the gown, indirect_inference.py then looks for the
+parameters whose simulated clip gets the same answer, or, where the process has learned little of such gowns,
+discrepancy.py learns how it errs for this gown.  A process fitted to rough clips also says how far the camera was from
+where the clip says, and the simulated camera is moved along with the parameters.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ CAMERA_UNIT = 10.0 * MISPLACED  # in which the process says how far the camera i
 CAMERA_UNSURE = 0.03  # of these, in the process's word
 FAR = 0.4  # the most that is looked for
 
-Film = Callable[..., Any]
+ClipSimulator = Callable[..., Any]
 """Simulates clips: parameters (N, P) in [0, 1] and, of rough clips, (N, 6) camera errors -> frames (N, T, 2, S, S)."""
 
 
@@ -87,19 +87,21 @@ class Inversion:
         scores = self.compression(frames)
         return self.process(scores)[:, : self.parameters], self.process.distance(scores)
 
-    def simulated(self, frames: np.ndarray, film: Film, *, blunt: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    def simulated(
+        self, frames: np.ndarray, simulate: ClipSimulator, *, blunt: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
         """The same after correction: (N, P) parameters, (N,) distance to the simulated clip.
 
         Args:
             frames: of the clips.
-            film: simulates them.
+            simulate: renders such clips.
             blunt: whether these gowns have a cut that the process knows little of; without effect where the camera is
                 looked for too.
         """
         seen, p = self.compression(frames), self.parameters
         said, novelty = self.process(seen), self.process.distance(seen)
         if blunt and said.shape[1] == p:
-            return self._followed(seen, said, film)
+            return self._followed(seen, said, simulate)
         camera = list(range(p, said.shape[1]))
         moved = self.shown + camera  # what simulating again moves
 
@@ -107,7 +109,7 @@ class Inversion:
             every = np.clip(said, 0.0, 1.0)
             every[:, moved] = values
             unit = every[:, :p]
-            scores = self.compression(film(unit, every[:, p:] * CAMERA_UNIT) if camera else film(unit))
+            scores = self.compression(simulate(unit, every[:, p:] * CAMERA_UNIT) if camera else simulate(unit))
             return self.process(scores)[:, moved], np.linalg.norm(scores - seen, axis=1)
 
         unsure = np.hstack(
@@ -125,11 +127,11 @@ class Inversion:
         found[:, self.shown] = matched[:, : len(self.shown)]
         return found, misfit
 
-    def _followed(self, seen: np.ndarray, said: np.ndarray, film: Film) -> tuple[np.ndarray, np.ndarray]:
+    def _followed(self, seen: np.ndarray, said: np.ndarray, simulate: ClipSimulator) -> tuple[np.ndarray, np.ndarray]:
         def scores(values: np.ndarray) -> np.ndarray:
             unit = np.clip(said, 0.0, 1.0)
             unit[:, self.shown] = values
-            return self.compression(film(unit))
+            return self.compression(simulate(unit))
 
         found = said.copy()
         found[:, self.shown], misfit = follow(

@@ -19,7 +19,7 @@ class Examples:
         class_id: (N,) int, negative where the data has no classes.
         hash: of the data set they come from.
         rough: (N,) bool, clips with the gaps of a real camera; none when omitted.
-        misplaced: (N, 6) how far each camera was from where the clip says, see film_camera.py; zero when omitted.
+        misplaced: (N, 6) how far each camera was from where the clip says, see camera.py; zero when omitted.
     """
 
     frames: Any

@@ -8,26 +8,26 @@ import numpy as np
 
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GownSpec
-from ..clips.camera import FilmCamera, standard_camera
+from ..clips.camera import ClipCamera, standard_camera
 from ..clips.depth_noise import disturb
-from ..clips.film import path_of, seen
 from ..clips.frames import frames_of
 from ..clips.parameters import to_spec
+from ..clips.render_clip import path_of, render_path
 
 DRAWS = 4  # of the noise on a rough clip; their mean is what such a clip is expected to look like
 
 
 class Simulator:
-    """Films gowns of known cuts; a gown that cannot be simulated gets the frames of another that could.
+    """Renders falling gowns of known cuts; one that cannot be simulated gets the frames of another that could.
 
     Args:
         cuts: of each gown, or one cut for all.
         camera: where they are said to be seen from; the usual place when omitted.
     """
 
-    def __init__(self, cuts: GownSpec | Sequence[GownSpec], camera: FilmCamera | None = None) -> None:
+    def __init__(self, cuts: GownSpec | Sequence[GownSpec], camera: ClipCamera | None = None) -> None:
         self.cuts, self.camera = cuts, camera or standard_camera()
-        self._falls: dict[int, tuple[bytes, GownSpec, np.ndarray]] = {}  # the last of each, to film it again
+        self._falls: dict[int, tuple[bytes, GownSpec, np.ndarray]] = {}  # the last of each, to render it again
 
     def __call__(self, unit: np.ndarray, misplaced: np.ndarray | None = None) -> np.ndarray:
         """Frames of gowns.
@@ -63,8 +63,8 @@ class Simulator:
                 path = path_of(spec)
                 self._falls[k] = (unit.tobytes(), spec, path)
             if misplaced is None:
-                return frames_of(seen(spec, path, self.camera)[None])[0]
-            depth = seen(spec, path, self.camera.moved(misplaced))
+                return frames_of(render_path(spec, path, self.camera)[None])[0]
+            depth = render_path(spec, path, self.camera.moved(misplaced))
             if not np.isfinite(depth).any(axis=(1, 2)).all():
                 return None
             rng = np.random.default_rng(0)  # the same noise at every call, so that only the gown and camera differ

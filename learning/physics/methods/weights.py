@@ -1,4 +1,4 @@
-"""Our fitted method as one safetensors file, which numpy alone can read."""
+"""A fitted GP inversion as one safetensors file, which numpy alone can read."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import numpy as np
 
 from ....sim.errors import CaretreeError
 from ..clips.parameters import HIGH, LOW, NAMES
-from .calibrated_gp import SORTS, Ours
 from .conformal import Calibration
 from .gaussian_process import GaussianProcess
+from .gp_inversion import SORTS, GPInversion
 from .inversion import Inversion, Widths
 from .pca import Compression
 from .prior import Prior
 
 FORMAT = "caretree-garment-physics-3"
-PACKAGED = Path(__file__).parents[1] / "weights" / "ours.safetensors"
+PACKAGED = Path(__file__).parents[1] / "weights" / "gp_inversion.safetensors"
 _SMALL = {"compression.components": np.int8, "process.inputs": np.float32}  # kept in fewer bits
 
 
@@ -44,7 +44,7 @@ def _inversion_arrays(inversion: Inversion) -> dict[str, np.ndarray]:
     return {name: np.ascontiguousarray(array, _SMALL.get(name, array.dtype)) for name, array in arrays.items()}
 
 
-def save_weights(method: Ours, path: str | Path, record: dict[str, object]) -> Path:
+def save_weights(method: GPInversion, path: str | Path, record: dict[str, object]) -> Path:
     """Write the method completely or not at all; `record` says how it came about.  Returns the path."""
     from safetensors.numpy import save_file  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
@@ -68,12 +68,12 @@ def save_weights(method: Ours, path: str | Path, record: dict[str, object]) -> P
     return path
 
 
-def load_weights(path: str | Path = PACKAGED) -> tuple[Ours, dict]:
+def load_weights(path: str | Path = PACKAGED) -> tuple[GPInversion, dict]:
     """The method in a file, and its record.
 
     Raises:
-        CaretreeError: the file is missing, is none of ours, or was made for other parameter ranges; or the package
-            `safetensors` is missing.
+        CaretreeError: the file is missing, holds no GP inversion, or was made for other parameter ranges; or the
+            package `safetensors` is missing.
     """
     try:
         from safetensors import SafetensorError, safe_open  # pyright: ignore[reportMissingImports] - extra `learn`
@@ -82,8 +82,8 @@ def load_weights(path: str | Path = PACKAGED) -> tuple[Ours, dict]:
     path = Path(path)
     if not path.is_file():
         raise CaretreeError(
-            f"{path}: there are no such weights; `caretree learn physics train DATA --method ours "
-            "--out DIR` makes them, DIR/ours.safetensors"
+            f"{path}: there are no such weights; `caretree learn physics train DATA --method gp_inversion "
+            "--out DIR` makes them, DIR/gp_inversion.safetensors"
         )
     try:
         with safe_open(path, "numpy") as file:
@@ -102,7 +102,7 @@ def load_weights(path: str | Path = PACKAGED) -> tuple[Ours, dict]:
         for sort in SORTS.values()
         if f"{sort}/process.inputs" in tensors
     }
-    return Ours(read), json.loads(about["record"])
+    return GPInversion(read), json.loads(about["record"])
 
 
 def _inversion(tensors: dict[str, np.ndarray], shown: tuple[int, ...]) -> Inversion:

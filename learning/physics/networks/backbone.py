@@ -3,7 +3,7 @@
 - `densenet121`: the paper's, DenseNet-121 on each frame and a long short-term memory over the frames.  Where the
   processor multiplies bfloat16, it learns in that (the weights, and all that is embedded afterwards, are float32).
 - `small`: the same structure with three layers on each frame; a training step with 64 clips takes 45 ms.
-- `scores`: nothing is learned from pixels: the clip's principal components (compression.py) and two full layers; 3 ms
+- `scores`: nothing is learned from pixels: the clip's principal components (pca.py) and two full layers; 3 ms
   a step, so that the same budget sees the data fifteen times as often.  The study uses this one.
 """
 

@@ -1,6 +1,6 @@
 """The paper's baselines 1 to 3: the same backbone, data and steps, with one idea of the method taken away each time.
 
-Baselines 4 and 5 need no training: see untrained.py.
+Baselines 4 and 5 need no training: see trivial_baselines.py.
 """
 
 from __future__ import annotations

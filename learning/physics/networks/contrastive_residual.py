@@ -71,10 +71,6 @@ class NearestPlusResidual(nn.Module, Method):
         self.register_buffer("unit", unit)
         self.register_buffer("spread", spread)
 
-    def nearest_only(self, frames: torch.Tensor) -> np.ndarray:
-        """Parameters of the nearest known clip: (N, ...) -> (N, 6)."""
-        return self.unit[nearest(embed(self.embedding, frames), self.database)[:, 0]].numpy()
-
     @torch.no_grad()
     def estimate(self, frames: torch.Tensor) -> np.ndarray:
         """Nearest neighbour plus residual."""

@@ -1,4 +1,4 @@
-"""How far the two engines of `clip_world` differ, and what a clip costs with each."""
+"""How far the two engines of `render_clip` differ, and what a clip costs with each."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from ....sim.scene.gown import GOWNS
 from ..clips.camera import standard_camera
 from ..clips.clip import packed
-from ..clips.film import film
 from ..clips.parameters import NAMES, to_spec
+from ..clips.render_clip import render_clip
 from ..engine.bullet import bullet_fall
 from ..engine.fall import CLAMP_MASS, cut_of, fall, rest
 
@@ -35,7 +35,7 @@ class Difference:
 
 def differences(gowns: int = 6, seed: int = 0) -> list[Difference]:
     """Without air and clamp, where both solve the same equations; with the clamp; and as clips are made."""
-    settings = {"no air, no clamp": (False, 0.0), "no air": (False, CLAMP_MASS), "as filmed": (True, CLAMP_MASS)}
+    settings = {"no air, no clamp": (False, 0.0), "no air": (False, CLAMP_MASS), "as rendered": (True, CLAMP_MASS)}
     camera, mesh = standard_camera(), cut_of(GOWNS["medium"])[0]
     found = []
     for what, (air, clamp) in settings.items():
@@ -57,8 +57,8 @@ def differences(gowns: int = 6, seed: int = 0) -> list[Difference]:
 def costs(gowns: int = 20, seed: int = 0) -> dict[str, float]:
     """Processor time of the parts of a clip, mean over gowns from the whole range [ms]."""
     camera, mesh = standard_camera(), cut_of(GOWNS["medium"])[0]
-    film(to_spec(np.full(len(NAMES), 0.5), GOWNS["medium"]))  # compiled before the clock starts
-    spent: dict[str, float] = dict.fromkeys(("static hang", "fall", "15 depth pictures", "packing"), 0.0)
+    render_clip(to_spec(np.full(len(NAMES), 0.5), GOWNS["medium"]))  # compiled before the clock starts
+    spent: dict[str, float] = dict.fromkeys(("static equilibrium", "fall", "15 depth pictures", "packing"), 0.0)
     for number in range(gowns):
         unit = np.random.default_rng([seed, 13, number]).random(len(NAMES))
         spec = to_spec(unit, GOWNS["medium"])

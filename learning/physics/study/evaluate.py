@@ -21,7 +21,9 @@ def rows_of(study: Study) -> list[dict[str, Any]]:
     """One row for each test, method and seed, from the predictions kept."""
     rows = []
     simulated = {
-        test: len(kept["true"]) for test, method, _, kept in predictions(study.folder) if method == "ours_simulated"
+        test: len(kept["true"])
+        for test, method, _, kept in predictions(study.folder)
+        if method == "gp_inversion_simulated"
     }
     for test, method, seed, kept in predictions(study.folder):
         true, estimated = to_values(kept["true"]), to_values(kept["unit"])

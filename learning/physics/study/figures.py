@@ -14,10 +14,10 @@ import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GOWNS, GownSpec
 from ..clips.clip import Clip
-from ..clips.film import film
-from ..clips.filmstrip import write_strip
+from ..clips.filmstrip import write_filmstrip
 from ..clips.frames import frames_of
 from ..clips.parameters import BASE, NAMES, SHOWN, to_spec, to_unit, to_values, values_to_unit
+from ..clips.render_clip import render_clip
 from ..methods.examples import Loaded, load_examples
 from ..methods.weights import PACKAGED, load_weights
 from ..networks.backbone import embed
@@ -40,7 +40,7 @@ def scene_gowns() -> dict[str, GownSpec]:
 
 def scene_clips() -> dict[str, Clip]:
     """A clip of each of the scene's gowns by PyBullet, not by the engine that the methods learn from."""
-    return {name: film(spec, engine="bullet") for name, spec in scene_gowns().items()}
+    return {name: render_clip(spec, engine="bullet") for name, spec in scene_gowns().items()}
 
 
 def draw(study: Path, data: Path, out: Path, *, also: Sequence[Path] = (), weights: Path = PACKAGED,
@@ -63,7 +63,7 @@ def draw(study: Path, data: Path, out: Path, *, also: Sequence[Path] = (), weigh
     yield box_plot((study, *also), out / "garment-physics-errors.png")
     yield learning_curves((study, *also), out / "garment-physics-curves.png")
     yield map_of_clips(study, load_examples(data, study, partial=partial), results, out / "garment-physics-map.png")
-    yield strips(weights, out / "garment-physics-strips.png")
+    yield filmstrips(weights, out / "garment-physics-filmstrips.png")
 
 
 def _results(study: Path) -> dict:
@@ -172,12 +172,12 @@ def map_of_clips(study: Path, loaded: Loaded, results: dict, path: Path) -> Path
     return path
 
 
-def strips(weights: Path, path: Path) -> Path:
+def filmstrips(weights: Path, path: Path) -> Path:
     """Clips of the scene's gowns, each above the clip simulated with what was identified from it."""
     method, _ = load_weights(weights)
     rows = []
     for name, clip in scene_clips().items():
         found = identify(clip, method, name)
-        again = film(to_spec(values_to_unit(found.values), GOWNS[name]))
+        again = render_clip(to_spec(values_to_unit(found.values), GOWNS[name]))
         rows += [(f"{name}, seen", clip.depth), (f"{name}, simulated with what was found", again.depth)]
-    return write_strip(path, rows)
+    return write_filmstrip(path, rows)

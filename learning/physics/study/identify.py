@@ -10,12 +10,12 @@ import numpy as np
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GOWNS, GownSpec
 from ....sim.scene.gown_file import GownFile, write_gown
-from ..clips.camera import FilmCamera
+from ..clips.camera import ClipCamera
 from ..clips.clip import Clip
 from ..clips.frames import look_at
 from ..clips.gown_cuts import same_cut
 from ..clips.parameters import NAMES, PARAMETERS, to_values
-from ..methods.calibrated_gp import Ours
+from ..methods.gp_inversion import GPInversion
 from ..methods.simulator import Simulator
 
 HOPELESS = 1.0  # misfit, in scores, of clips of two gowns that have nothing in common; good ones stay below 0.3
@@ -61,7 +61,7 @@ class Identified:
 
 
 def identify(
-    clip: Clip, method: Ours, cut: str = "medium", *, simulate: bool = True, trained: GownSpec = GOWNS["medium"]
+    clip: Clip, method: GPInversion, cut: str = "medium", *, simulate: bool = True, trained: GownSpec = GOWNS["medium"]
 ) -> Identified:
     """Parameters of the gown in a clip.
 
@@ -77,7 +77,7 @@ def identify(
     """
     if cut not in GOWNS:
         raise CaretreeError(f"unknown gown '{cut}'; there are {', '.join(GOWNS)}")
-    camera = FilmCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
+    camera = ClipCamera(pose_camera_in_map=clip.pose_camera_in_map, intrinsics=clip.intrinsics)
     seen = look_at(clip.depth[None])
     other = not same_cut(GOWNS[cut], trained)
     inversion = method.sort(bool(seen.rough[0]), other)

@@ -1,4 +1,4 @@
-"""Which number of the gown, besides the five the world knows, moves a clip most: how the sixth parameter was chosen.
+"""Parameter selection: which number of the gown moves a clip most, besides the five that the world knows.
 
 Candidates are what PyBullet's `loadSoftBody` offers beyond mass, stiffness, bending, damping and friction, and the
 drag of the air.  The size is none: it is known from the cut.

@@ -15,8 +15,8 @@ from ..networks.contrastive_residual import fit_paper
 from ..networks.training import Budget
 
 TITLES = {
-    "ours": "ours, Gaussian process",
-    "ours_simulated": "ours, corrected by simulation",
+    "gp_inversion": "GP inversion",
+    "gp_inversion_simulated": "GP inversion, corrected by simulation",
     "paper": "the paper's method",
     "supervised": "baseline 1, supervised",
     "contrastive_regression": "baseline 2, contrastive, then regression",
@@ -40,7 +40,7 @@ class Plan:
 
     Attributes:
         steps: optimiser steps of each phase.
-        backbone: of these methods; ours has none.
+        backbone: of these methods; GP inversion has none.
         folder: of checkpoints; one for each seed.
         say: told of progress.
     """

@@ -4,9 +4,9 @@ For gowns drawn from the whole range, the clip is differentiated with respect to
 information of the depth images under a depth camera's noise gives the smallest standard deviation with which any
 method could know a parameter: when the others are known, and when they are not (Cramer-Rao).
 
-Derivatives need care, because the static hang is not quite smooth in the parameters: a fold may sit here or there.
+Derivatives need care, because the static equilibrium is not quite smooth in the parameters: folds may sit elsewhere.
 
-- Damping and air do not enter the hang, so their derivatives are clean.
+- Damping and air do not enter the static equilibrium, so their derivatives are clean.
 - Multiply mass, elastic, bending, damping and air drag by one factor: the gown hangs the same and, but for the clamp
   of known mass, falls the same.  So the derivative along that direction is minus the derivative with respect to the
   clamp's mass, clean as well; and the one with respect to mass alone follows from it and the others.
@@ -28,8 +28,8 @@ from ..clips.depth_noise import SIGMA
 from ..clips.parameters import HIGH, LOW, NAMES, SHOWN, to_spec
 from ..engine.fall import CLAMP_MASS, cut_of, fall, rest
 
-STEPS = (-0.03, -0.02, -0.01, 0.01, 0.02, 0.03)  # for the slopes through the hang, on the [0, 1] scale
-CLEAN = 0.01  # step for what does not enter the hang
+STEPS = (-0.03, -0.02, -0.01, 0.01, 0.02, 0.03)  # for the slopes through the static equilibrium, on the [0, 1] scale
+CLEAN = 0.01  # step for what does not enter the static equilibrium
 EDGE = 0.03  # a pixel that jumps by more has passed a fold or an edge and has no derivative [m]
 SCALED = [NAMES.index(name) for name in ("mass", "elastic", "bending", "damping", "air_drag")]
 

@@ -14,8 +14,8 @@ import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ..clips.gown_cuts import same_cut
 from ..clips.parameters import SHOWN, values_to_unit
-from ..methods.calibrated_gp import SORTS, Ours, fit_ours
 from ..methods.examples import Loaded
+from ..methods.gp_inversion import SORTS, GPInversion, fit_gp_inversion
 from ..methods.inversion import SCORES
 from ..methods.method import Examples
 from ..methods.pca import fit_compression
@@ -72,9 +72,9 @@ class Study:
         """Of all data that is learned from."""
         return self.data.examples.hash + (f"+{self.cuts.examples.hash}" if self.cuts else "")
 
-    def ours(self, say: Callable[[str], None]) -> Ours:
-        """Our method, fitted and calibrated, or as it was left in the folder."""
-        path = self.folder / "ours.safetensors"
+    def gp_inversion(self, say: Callable[[str], None]) -> GPInversion:
+        """GP inversion, fitted and calibrated, or as it was left in the folder."""
+        path = self.folder / "gp_inversion.safetensors"
         method, calibrated_on, before = None, 0, -time.process_time()
         if path.exists():
             kept, record = load_weights(path)
@@ -83,22 +83,24 @@ class Study:
                 before += record.get("processor_seconds", 0.0)
         if method is None:
             others = (self.cuts.part("train"), self.cuts.part("val")) if self.cuts else None
-            method = fit_ours(self.data.part("train"), self.data.part("val"), others, seed=self.seeds[0], shown=SHOWN)
+            method = fit_gp_inversion(
+                self.data.part("train"), self.data.part("val"), others, seed=self.seeds[0], shown=SHOWN
+            )
             self._save(method, path, 0, before)  # what follows takes much longer than the fit, and may be interrupted
         if self.calibrate and calibrated_on != self.calibrate:
             self._calibrate(method, say)
             self._save(method, path, self.calibrate, before)
         return method
 
-    def _save(self, method: Ours, path: Path, calibrated_on: int, before: float) -> None:
+    def _save(self, method: GPInversion, path: Path, calibrated_on: int, before: float) -> None:
         clips = sum(int((one.split == "train").sum()) for one in (self.data, self.cuts) if one)
         save_weights(method, path, {
-            "method": "ours", "data": self.hash, "kind": self.data.kind, "seed": self.seeds[0],
+            "method": "gp_inversion", "data": self.hash, "kind": self.data.kind, "seed": self.seeds[0],
             "clips": clips, "calibrated_on": calibrated_on, "machine": machine(),
             "processor_seconds": round(before + time.process_time(), 3),
         })  # fmt: skip
 
-    def _calibrate(self, method: Ours, say: Callable[[str], None]) -> None:
+    def _calibrate(self, method: GPInversion, say: Callable[[str], None]) -> None:
         for (rough, other), name in SORTS.items():
             loaded = self.cuts if other else self.data
             if name not in method.inversions or loaded is None:
@@ -163,15 +165,15 @@ class Study:
             self._keep(
                 test, "class_centre", first, clips.unit, unit=class_centres(self.data.part("train"), clips.class_id)
             )
-        if wanted("ours"):
-            self._ours(sets, say)
+        if wanted("gp_inversion"):
+            self._predict_gp_inversion(sets, say)
 
-    def _ours(self, sets: list[tuple[str, Loaded, np.ndarray]], say: Callable[[str], None]) -> None:
-        method, seed = self.ours(say), self.seeds[0]
+    def _predict_gp_inversion(self, sets: list[tuple[str, Loaded, np.ndarray]], say: Callable[[str], None]) -> None:
+        method, seed = self.gp_inversion(say), self.seeds[0]
         for test, loaded, index in sets:
             clips, other = loaded.examples.part(index), not same_cut(loaded.gowns[index[0]], self.data.gowns[0])
             found = method.infer(clips, other=other)
-            self._keep(test, "ours", seed, clips.unit, unit=found.unit, lower=found.lower, upper=found.upper)
+            self._keep(test, "gp_inversion", seed, clips.unit, unit=found.unit, lower=found.lower, upper=found.upper)
             sorts = [method.sort(rough, other) for rough in np.unique(clips.gaps)]
             if not self.simulate or not all("simulated" in sort.widths for sort in sorts):
                 continue
@@ -180,7 +182,7 @@ class Study:
             found = method.judged("simulated", gaps, *self._simulated(test, loaded, some, method, say), other=other)
             self._keep(
                 test,
-                "ours_simulated",
+                "gp_inversion_simulated",
                 seed,
                 loaded.examples.unit[some],
                 unit=found.unit,
@@ -189,7 +191,7 @@ class Study:
             )
 
     def _simulated(
-        self, name: str, loaded: Loaded, index: np.ndarray, method: Ours, say: Callable[[str], None]
+        self, name: str, loaded: Loaded, index: np.ndarray, method: GPInversion, say: Callable[[str], None]
     ) -> tuple[np.ndarray, np.ndarray]:
         """Parameters and misfits after correction by simulation, kept piece by piece."""
         pieces = []
@@ -233,7 +235,7 @@ class Study:
 
 
 def predictions(folder: Path) -> Iterator[tuple[str, str, int, dict[str, np.ndarray]]]:
-    """What a study's folder keeps: test, method, seed and arrays (`true`, `unit`, and of ours `lower`, `upper`)."""
+    """Test, method, seed and arrays that a folder keeps: `true`, `unit`, and of GP inversion `lower` and `upper`."""
     for path in sorted((folder / "predictions").glob("*.npz")):
         test, method, *_, seed = path.stem.split("-")
         if method != "piece" and len(path.suffixes) == 1:  # no part of a file, and no file cut short

@@ -58,15 +58,6 @@ def test_bad_input_is_one_sentence_with_file_column_and_row(axis_set, spoil, wor
     assert all(w in text for w in words), text
 
 
-def test_a_byte_order_mark_and_comments_are_no_obstacle(axis_set):
-    folder = axis_set()
-    file = folder / "e1.csv"
-    plain = load_set(folder).episodes[1].columns["force"]
-    lines = file.read_text().splitlines()
-    file.write_text("\n".join([lines[0], "# a remark", *lines[1:]]), encoding="utf-8-sig")
-    assert np.array_equal(load_set(folder).episodes[1].columns["force"], plain)
-
-
 def replace_cell(folder, row, column, text):
     file = folder / "e1.csv"
     lines = [line.split(",") for line in file.read_text().splitlines()]

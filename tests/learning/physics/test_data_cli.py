@@ -1,9 +1,7 @@
-import importlib.util
 import json
 
 import numpy as np
 import pytest
-from caretree.learning.physics.cli import COMMANDS
 from caretree.learning.physics.clips import generate
 from caretree.learning.physics.clips.clip import Clip
 from caretree.learning.physics.clips.dataset import Dataset
@@ -18,13 +16,6 @@ def quick(monkeypatch, small_gown):
     monkeypatch.setitem(GOWNS, "medium", small_gown)
 
 
-def test_help_names_every_part_and_command(capsys):
-    assert main(["learn"]) == main(["learn", "physics", "--help"]) == 0
-    out = capsys.readouterr().out
-    assert "physics" in out
-    assert all(f"\n  {command} " in out for command in COMMANDS)
-
-
 def test_data_makes_a_dataset_and_says_how_far_it_is(tmp_path, capsys):
     command = ["learn", "physics", "data", str(tmp_path / "set"), "--classes", "2", "--per-class", "3"]
     assert main(command) == 0
@@ -36,7 +27,7 @@ def test_data_makes_a_dataset_and_says_how_far_it_is(tmp_path, capsys):
     assert "min left" not in capsys.readouterr().err  # nothing to do
 
 
-def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
+def test_clip_renders_a_named_gown_and_a_gown_file(tmp_path, capsys):
     assert (
         main(
             [
@@ -46,7 +37,7 @@ def test_clip_films_a_named_gown_and_a_gown_file(tmp_path, capsys):
                 str(tmp_path / "a.npz"),
                 "--engine",
                 "fast",
-                "--strip",
+                "--filmstrip",
                 str(tmp_path / "a.png"),
             ]
         )
@@ -111,9 +102,3 @@ def test_a_mistake_is_one_sentence_and_status_2(tmp_path, monkeypatch, capsys, a
     assert error.startswith("caretree: ")
     assert error.count("\n") == 1
     assert not list(tmp_path.iterdir())
-
-
-def test_a_command_of_a_later_version_is_told(monkeypatch, capsys):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda *_: None)
-    assert main(["learn", "physics", "train"]) == 2
-    assert "`caretree learn physics train` is not in this version" in capsys.readouterr().err

@@ -1,32 +1,20 @@
-import sys
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
 from caretree.learning.physics.clips import dataset, generate
-from caretree.learning.physics.clips import film as clip_world
 from caretree.learning.physics.clips.clip import SIZE
 from caretree.learning.physics.clips.dataset import INDEX, SPREAD, Dataset, DatasetSpec
-from caretree.learning.physics.clips.film import film
 from caretree.learning.physics.clips.frames import look_at
 from caretree.learning.physics.clips.parameters import NAMES, to_spec
-from caretree.learning.physics.engine.fall import FRAMES
+from caretree.learning.physics.clips.render_clip import render_clip
+from caretree.learning.physics.engine.fall import FRAMES, cut_of
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scene.gown import GOWNS, GownSpec
 
 PAPER = DatasetSpec(kind="paper", classes=3, per_class=5)
-
-
-@pytest.fixture(autouse=True)
-def quick(monkeypatch, small_gown):
-    """Shards of four clips of a small gown."""
-    monkeypatch.setattr(generate, "SHARD", 4)
-    monkeypatch.setattr(dataset, "SHARD", 4)
-    monkeypatch.setitem(GOWNS, "medium", small_gown)
-    monkeypatch.setattr(dataset, "HELDOUT_GOWN", replace(small_gown, name="heldout", length=8))
-    monkeypatch.setattr(dataset, "random_cut", lambda seed, number: replace(small_gown, length=8 - number % 2))
+pytestmark = pytest.mark.usefixtures("quick")
 
 
 def test_a_dataset_is_what_was_asked_for(tmp_path):
@@ -37,40 +25,13 @@ def test_a_dataset_is_what_was_asked_for(tmp_path):
     np.testing.assert_array_equal(data.class_id, np.arange(15) % 3)
     for k in range(3):
         assert sorted(data.split[data.class_id == k]) == ["test", "train", "train", "train", "val"]
-    clip = film(to_spec(PAPER.unit_of(7), PAPER.gown_of(7)))
+    clip = render_clip(to_spec(PAPER.unit_of(7), PAPER.gown_of(7)))
     np.testing.assert_allclose(data.depth[7], clip.depth, atol=1e-4)
     assert [line for line in said if "left" in line]
     index = yaml.safe_load((tmp_path / INDEX).read_text())
     assert [shard["clips"] for shard in index["shards"]] == [4, 4, 4, 3]
     assert index["machine"]
     assert index["versions"]["numpy"] == np.__version__
-
-
-def test_the_same_seed_gives_the_same_bytes_however_often_it_was_interrupted(tmp_path, monkeypatch):
-    generate.generate(tmp_path / "once", PAPER)
-    real, made = generate.make_shard, []
-
-    def killed(spec, number, folder=None):
-        if len(made) == 2:
-            (tmp_path / "twice" / "shard_0002.npz.part").write_bytes(b"half")
-            raise KeyboardInterrupt
-        made.append(number)
-        return real(spec, number, folder)
-
-    monkeypatch.setattr(generate, "make_shard", killed)
-    with pytest.raises(KeyboardInterrupt):
-        generate.generate(tmp_path / "twice", PAPER)
-    with pytest.raises(CaretreeError, match="8 of 15 clips are made"):
-        Dataset.load(tmp_path / "twice")
-    assert len(Dataset.load(tmp_path / "twice", partial=True)) == 8
-    monkeypatch.setattr(generate, "make_shard", lambda *a: made.append(a[1]) or real(*a))
-    generate.generate(tmp_path / "twice", PAPER)
-    assert made == [0, 1, 2, 3]
-    assert Dataset.load(tmp_path / "once").hash == Dataset.load(tmp_path / "twice").hash
-    assert (
-        Dataset.load(generate.generate(tmp_path / "other", replace(PAPER, seed=1))).hash
-        != Dataset.load(tmp_path / "once").hash
-    )
 
 
 def test_a_dataset_can_grow(tmp_path):
@@ -98,23 +59,9 @@ def test_other_kinds(tmp_path, kind):
     data = Dataset.load(generate.generate(tmp_path, spec))
     assert set(data.class_id) == {-1}
     assert set(data.split) == ({"train", "val", "test"} if kind == "uniform" else {"test"})
-    clean = film(to_spec(spec.unit_of(0), spec.gown_of(0))).depth
+    clean = render_clip(to_spec(spec.unit_of(0), spec.gown_of(0))).depth
     same = np.isfinite(clean) == np.isfinite(data.depth[0])
     assert same.all() == (kind != "disturbed")
-
-
-def test_damage_is_seen_and_repaired(tmp_path):
-    generate.generate(tmp_path, PAPER)
-    before = Dataset.load(tmp_path).hash
-    shard = tmp_path / "shard_0001.npz"
-    shard.write_bytes(shard.read_bytes()[:1000])
-    with pytest.raises(CaretreeError, match="the shard is not the one"):
-        Dataset.load(tmp_path)
-    generate.generate(tmp_path, PAPER)
-    assert Dataset.load(tmp_path).hash == before
-    shard.unlink()
-    with pytest.raises(CaretreeError, match="cannot be read"):
-        Dataset.load(tmp_path)
 
 
 def test_what_is_no_dataset_is_refused(tmp_path):
@@ -154,73 +101,20 @@ def test_bad_specs_are_refused(changes, sentence):
         replace(PAPER, **changes)
 
 
-class FakeRay:
-    """As much of Ray as `generate` uses, in this process and in reverse order."""
-
-    def __init__(self):
-        self.asked, self.flying = None, 0
-
-    def init(self, **asked):
-        self.asked = asked
-        if asked.get("address") == "ray://nobody":
-            raise ConnectionError("ray client connection timeout\nand more")
-        if asked.get("num_cpus") == 3:
-            raise Exception("The current node timed out during startup.")
-
-    def remote(self, **_):
-        def wrap(function):
-            def call(*arguments):
-                self.flying += 1
-                return lambda: function(*arguments)
-
-            return SimpleNamespace(remote=call)
-
-        return wrap
-
-    def wait(self, refs, num_returns):
-        assert len(refs) <= 2
-        return refs[-1:], refs[:-1]
-
-    def get(self, ref):
-        return ref()
-
-    def shutdown(self):
-        self.asked = None
-
-
-def test_with_ray_the_bytes_are_the_same(tmp_path, monkeypatch):
-    fake = FakeRay()
-    monkeypatch.setitem(sys.modules, "ray", fake)
-    generate.generate(tmp_path / "one", PAPER)
-    generate.generate(tmp_path / "many", PAPER, jobs=2)
-    assert fake.flying == 4
-    assert Dataset.load(tmp_path / "one").hash == Dataset.load(tmp_path / "many").hash
-    with pytest.raises(CaretreeError, match=r"no Ray cluster answers at ray://nobody: ray client connection timeout$"):
-        generate.generate(tmp_path / "far", PAPER, address="ray://nobody")
-    with pytest.raises(CaretreeError, match="Ray does not start here: The current node timed out"):
-        generate.generate(tmp_path / "far", PAPER, jobs=3)
-
-
-def test_without_ray_several_jobs_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "ray", None)
-    with pytest.raises(CaretreeError, match="more than one job needs Ray"):
-        generate.generate(tmp_path, PAPER, jobs=2)
-
-
-def test_the_heldout_gown_is_another_cut_that_can_be_filmed():
+def test_the_heldout_gown_is_another_cut_that_can_be_rendered():
     held = DatasetSpec(kind="heldout_gown", classes=1, per_class=1).gown_of(0)
-    assert clip_world.cut_of(held)[0].vertices.shape != clip_world.cut_of(GOWNS["medium"])[0].vertices.shape
+    assert cut_of(held)[0].vertices.shape != cut_of(GOWNS["medium"])[0].vertices.shape
     assert isinstance(held, GownSpec)
 
 
-def test_mixed_films_the_falls_of_uniform_clean_and_three_times_rough(tmp_path):
+def test_mixed_renders_the_falls_of_uniform_clean_and_three_times_rough(tmp_path):
     uniform = Dataset.load(generate.generate(tmp_path / "u", DatasetSpec(kind="uniform", classes=1, per_class=5)))
     mixed = Dataset.load(generate.generate(tmp_path / "m", DatasetSpec(kind="mixed", classes=1, per_class=20)))
     np.testing.assert_array_equal(mixed.depth.raw[::4], uniform.depth.raw)
     np.testing.assert_array_equal(mixed.unit, np.repeat(uniform.unit, 4, axis=0))
     np.testing.assert_array_equal(mixed.split, np.repeat(uniform.split, 4))  # no fall is both learned from and tested
     spec = mixed.spec
-    again = film(to_spec(spec.unit_of(2), spec.gown_of(2)), seed=spec.seed_of(2), disturbed=True).depth
+    again = render_clip(to_spec(spec.unit_of(2), spec.gown_of(2)), seed=spec.seed_of(2), disturbed=True).depth
     np.testing.assert_allclose(mixed.depth[2], again, atol=1e-4)  # the camera and the noise are the ones it names
     assert look_at(mixed.depth).rough.reshape(5, 4).tolist() == [[False, True, True, True]] * 5
     assert not spec.misplaced(0).any()

@@ -9,7 +9,7 @@ from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.scene.gown import GOWNS
 
 
-def test_the_hang_is_at_rest(small_gown):
+def test_the_static_equilibrium_is_at_rest(small_gown):
     """Held by both vertices it stays where it is, for as long as a clip takes."""
     mesh, woven = cut_of(small_gown)
     start = rest(small_gown)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from caretree.learning.physics.methods.calibrated_gp import fit_ours
 from caretree.learning.physics.methods.discrepancy import follow
+from caretree.learning.physics.methods.gp_inversion import fit_gp_inversion
 
 from ..moving_blobs import blob_frames, blobs
 
@@ -53,7 +53,7 @@ def test_gowns_of_other_cuts_are_simulated_until_their_own_deviation_is_known(cl
     def other_cut(unit):  # the same knobs move other gowns a little differently
         return blob_frames(np.clip(0.1 + 0.75 * np.asarray(unit) + 0.05 * np.asarray(unit)[:, ::-1], 0.0, 1.0))
 
-    method = fit_ours(train, valid, (train, valid), seed=0, shown=(0, 1))
+    method = fit_gp_inversion(train, valid, (train, valid), seed=0, shown=(0, 1))
     frames = other_cut(test.unit)
     sort = method.sort(False, other=True)
     alone, _ = sort.alone(frames)

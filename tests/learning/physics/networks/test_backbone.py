@@ -3,7 +3,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
 from caretree.learning.physics.networks import backbone
 from caretree.learning.physics.networks.backbone import ClipEmbedding, embed
-from caretree.learning.physics.networks.densenet import densenet, densenet121
+from caretree.learning.physics.networks.densenet import densenet
 from caretree.sim.errors import CaretreeError
 
 
@@ -44,21 +44,6 @@ def test_densenet_learns_in_half_precision_and_embeds_in_full(monkeypatch, half)
     assert all(p.grad.dtype == torch.float32 for p in network.parameters())
     embed(network, torch.rand(2, 3, 2, 32, 32))
     assert kinds == [torch.bfloat16 if half else torch.float32, torch.float32]
-
-
-def test_densenet121_has_121_layers():
-    layers = [
-        m for m in densenet121(channels=2, features=10).modules() if isinstance(m, torch.nn.Conv2d | torch.nn.Linear)
-    ]
-    assert len(layers) == 121
-
-
-def test_densenet_layers_see_all_before_them():
-    torch.manual_seed(0)
-    network = densenet(channels=2, features=3, growth=4, blocks=(2, 2))
-    assert network(torch.rand(2, 2, 32, 32)).shape == (2, 3)
-    inputs = [m.grow[0].num_features for m in network if hasattr(m, "grow")]
-    assert inputs == [8, 12, 8, 12]
 
 
 def test_scores_are_embedded_without_frames():

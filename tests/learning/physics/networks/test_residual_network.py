@@ -2,11 +2,9 @@ import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
-from caretree.learning.physics.networks.contrastive_residual import ResidualObjective, fit_paper
+from caretree.learning.physics.networks.contrastive_residual import ResidualObjective
 from caretree.learning.physics.networks.residual_network import draw_pairs, nearest
 from caretree.learning.physics.networks.training import Budget, fit
-
-from ..moving_blobs import as_tensors, blob_classes
 
 
 def test_nearest_finds_the_nearest_and_skips_itself():
@@ -35,12 +33,3 @@ def test_residual_network_learns_a_difference(tmp_path):
     with torch.no_grad():
         left = objective.network(embedding[i], embedding[j]) * spread - (unit[i] - unit[j])
     assert left.square().mean() < 0.3 * (unit[i] - unit[j]).square().mean()
-
-
-def test_papers_method_recognises_classes(tmp_path):
-    train, test = as_tensors(blob_classes(6, 12)), as_tensors(blob_classes(6, 4, seed=1))
-    method = fit_paper(train, Budget(steps=60, learning_rate=3e-3), seed=0, folder=tmp_path, backbone="small",
-                       say=lambda _: None)  # fmt: skip
-    errors = np.abs(method.estimate(test.frames) - test.unit)
-    assert np.median(errors) < 0.02  # a wrong class is off by 0.1 and more
-    assert method.nearest_only(test.frames).shape == test.unit.shape

@@ -3,8 +3,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from caretree.learning.physics.clips.film import film
 from caretree.learning.physics.clips.parameters import HIGH, LOW, NAMES, SHOWN
+from caretree.learning.physics.clips.render_clip import render_clip
 from caretree.learning.physics.study import sensitivity
 from caretree.sim.scene.gown import GOWNS
 
@@ -15,13 +15,13 @@ def table():
 
 
 def test_a_derivative_foretells_a_small_change():
-    """The slope along air drag, which the hang does not know, times a step is what a film with that step shows."""
+    """Air drag does not enter the static equilibrium: its slope times a step is what a clip with that step shows."""
     gown = replace(GOWNS["medium"], air_drag=0.3)
     _, metres, _ = sensitivity.derivatives(gown)
     step = 0.03
     k = NAMES.index("air_drag")
-    there = film(replace(gown, air_drag=0.3 * (HIGH[k] / LOW[k]) ** step)).depth
-    change = (there - film(gown).depth).ravel()
+    there = render_clip(replace(gown, air_drag=0.3 * (HIGH[k] / LOW[k]) ** step)).depth
+    change = (there - render_clip(gown).depth).ravel()
     foretold = np.median(np.abs(metres[SHOWN.index(k)])) * step
     seen = np.abs(change[np.isfinite(change) & (np.abs(change) < sensitivity.EDGE)])
     assert np.median(seen) == pytest.approx(foretold, rel=0.3)

@@ -1,11 +1,11 @@
-"""Film a gown that hangs by two vertices, one of which is let go.
+"""Render the depth clip of a gown that hangs by two vertices, one of which is let go.
 
 The held vertices are the two ends of the neckline.  On the one that is let go sits a clamp of known mass: in free
 fall alone a gown of twice the mass, stiffness, damping and drag moves exactly the same, so nothing but ratios
 would show; against a known mass they all do (`docs/garment-physics.md`).
 
-Two engines: `fast` moves the cloth with `springs.py`, `bullet` with PyBullet (`bullet_fall.py`); both start from the
-same static hang and agree where both can be exact (no air).
+Two engines: `fast` moves the cloth with `mass_spring.py`, `bullet` with PyBullet (`bullet.py`); both start from the
+same static equilibrium and agree where both can be exact (no air).
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ import numpy as np
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GownSpec
 from ..engine.fall import RATE, cut_of, fall, rest
-from .camera import FilmCamera, misplacement, standard_camera
+from .camera import ClipCamera, misplacement, standard_camera
 from .clip import Clip
 from .depth_noise import disturb
 
 
-def film(
-    spec: GownSpec, camera: FilmCamera | None = None, seed: int = 0, *, engine: str = "fast", disturbed: bool = False
+def render_clip(
+    spec: GownSpec, camera: ClipCamera | None = None, seed: int = 0, *, engine: str = "fast", disturbed: bool = False
 ) -> Clip:
     """A depth clip of a gown falling.  The same arguments give the same clip.
 
@@ -40,9 +40,9 @@ def film(
     named = camera or standard_camera()
     path = path_of(spec, engine)
     if not disturbed:
-        return clip_of(seen(spec, path, named), named)
+        return clip_of(render_path(spec, path, named), named)
     rng = np.random.default_rng([seed, 5])
-    return clip_of(disturb(seen(spec, path, named.moved(misplacement(rng))), rng), named)
+    return clip_of(disturb(render_path(spec, path, named.moved(misplacement(rng))), rng), named)
 
 
 def path_of(spec: GownSpec, engine: str = "fast") -> np.ndarray:
@@ -57,14 +57,14 @@ def path_of(spec: GownSpec, engine: str = "fast") -> np.ndarray:
     return engines[engine](spec, rest(spec))
 
 
-def seen(spec: GownSpec, path: np.ndarray, camera: FilmCamera) -> np.ndarray:
-    """(frames, 64, 64) depth of a gown's path (frames, V, 3) [m], NaN where there is no gown."""
+def render_path(spec: GownSpec, path: np.ndarray, camera: ClipCamera) -> np.ndarray:
+    """Depth (frames, 64, 64) [m] of a gown along its path (frames, V, 3) [m], NaN where there is no gown."""
     mesh, _ = cut_of(spec)
     return np.array([camera.look(mesh, x) for x in path])
 
 
-def clip_of(depth: np.ndarray, named: FilmCamera) -> Clip:
-    """The clip of a depth (frames, 64, 64) whose camera is said to be `named`.
+def clip_of(depth: np.ndarray, named: ClipCamera) -> Clip:
+    """The clip of a depth (frames, 64, 64) whose camera is stated to be `named`.
 
     Raises:
         CaretreeError: a frame shows nothing of the gown.

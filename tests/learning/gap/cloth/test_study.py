@@ -1,0 +1,50 @@
+import numpy as np
+import pytest
+from caretree.learning.gap.cloth.candidates import Candidate
+from caretree.learning.gap.cloth.fitting import ClothFit, ClothModel
+from caretree.learning.gap.cloth.noise import Coherence
+from caretree.learning.gap.cloth.search import ClothSearch
+from caretree.learning.gap.errors import GapError
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
+
+
+def test_markers_that_never_move_teach_nothing(cloth_set):
+    table = np.loadtxt(cloth_set / "e1.csv", delimiter=",", skiprows=1)
+    header = (cloth_set / "e1.csv").read_text().splitlines()[0]
+    table[:, 1:] = table[0, 1:]
+    np.savetxt(cloth_set / "e1.csv", table, delimiter=",", header=header, comments="")
+    with pytest.raises(GapError, match=r"e1.csv: columns 'm0x' and on never change"):
+        open_study(load_set(cloth_set))
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "newtons", "verdict"), [(20.0, 0.0, "recalibration"), (1e-6, 0.0, "unknown"), (20.0, 3.0, "unknown")]
+)
+def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth_set, stiffness, newtons, verdict):
+    study = open_study(load_set(cloth_set))
+    rng = np.random.default_rng(0)
+    rows = len(study.episodes[0].t)
+    for e in study.episodes:
+        e.load[:, 2] = -np.linspace(0.0, 5.0, rows)
+    noise = np.concatenate([1e-4 * rng.normal(size=(rows, 15)), 0.01 * rng.normal(size=(rows, 3))], axis=1)
+    off = np.zeros((rows, 18))
+    off[:, 17] = np.linspace(0.0, 1.0, rows)
+    start = ClothModel(physics={"elastic_stiffness": 40.0}, free=(("physics", "elastic_stiffness"),))
+
+    def fit(model, load):
+        return ClothFit(model=model, rss=1.0, residuals=[noise + load * off], covariance=np.eye(1))
+
+    calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
+    study.__dict__["found"] = ClothSearch(
+        chosen=(
+            Candidate(name="elastic_stiffness", target="cloth", start=start, push=start, steps={}, recalibration=True),
+        ),
+        fit=fit(ClothModel(physics={"elastic_stiffness": stiffness}), newtons),
+        plain=fit(ClothModel(), 4.0),
+        before=calm,
+        after=calm,
+        rivals={},
+        worth=100.0,
+    )
+    assert study.verdict == verdict

@@ -1,0 +1,22 @@
+import numpy as np
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
+
+
+def test_a_log_balances_the_measured_load_and_the_models(axis_set):
+    log = open_study(load_set(axis_set(lambda q, v, a: 5.0 * v, noise=0.05))).fitted[0]
+    inner = log.inner
+    assert np.corrcoef(log.residual[inner, 0], log.dq[inner, 0])[0, 1] > 0.99
+    assert np.allclose(log.rigid, 10.0 * log.ddq)
+    assert log.wide().cutoff == np.inf
+
+
+def test_without_a_column_of_speed_the_slope_of_the_position_is_taken(axis_set):
+    folder = axis_set(noise=0.05)
+    given = open_study(load_set(folder)).fitted[0]
+    for file in folder.glob("*.csv"):
+        data = np.loadtxt(file, delimiter=",", skiprows=1)
+        np.savetxt(file, np.delete(data, 2, axis=1), delimiter=",", header="t,q,force", comments="")
+    derived = open_study(load_set(folder)).fitted[0]
+    inner = derived.inner
+    assert np.allclose(derived.dq[inner], given.dq[inner], atol=0.02 * np.abs(given.dq).max())
