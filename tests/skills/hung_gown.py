@@ -34,10 +34,12 @@ def seen_at(place, target="near_hang", *, stamp=0.0, confidence=0.9, approach=AH
 
 
 def holding(**places):
-    """Joint angles (2, 7) with hands at places (3,) by side, palms ahead, the other arm ready."""
+    """Joint angles (2, 7) with hands at places (3,) by side, reached from their own side, the other arm ready."""
     arms = model.READY.copy()
     for side, place in places.items():
-        pose = hand_pose(place, AHEAD, LEFT)
+        inwards = -0.5 if side == "left" else 0.5
+        approach = np.sqrt(0.75) * AHEAD + inwards * LEFT
+        pose = hand_pose(place, approach, np.cross(-DOWN, approach))
         n = SIDES.index(side)
         arms[n] = solve_ik(default_kinematics(), side, pose, STAND, arms[n])
     return arms
