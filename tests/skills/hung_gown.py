@@ -9,6 +9,7 @@ from caretree.sim.world import SIDES, GripperOpening
 from caretree.skills.core.context import Context
 from caretree.skills.motion.ik import hand_pose, solve_ik
 from caretree.skills.testing.bench import Bench, OpenGuard
+from py_trees.common import Status
 
 from .fake_senses import fake_senses
 
@@ -89,11 +90,12 @@ def bench_with(make, *, arms=model.READY, pull=None, **answers):
     return Bench(make, context)
 
 
-def ended(bench, *, seconds=60.0):
-    """Run to the end; returns the reason of the failure, or None."""
-    bench.run(int(15 * seconds))
+def ended(bench, *, seconds=60.0, each_tick=lambda: None):
+    """Run to the end and call `each_tick` on the way; returns the reason of the failure, or None."""
+    while bench.tick() == Status.RUNNING:
+        assert bench.world.clock.now() < seconds, "it does not end"
+        each_tick()
     assert not bench.context.errors, bench.context.errors[0]
-    assert bench.skill.status.name in ("SUCCESS", "FAILURE"), "it does not end"
     return bench.skill.failure and bench.skill.failure.reason
 
 

@@ -33,7 +33,7 @@ def test_the_inside_is_the_wrong_side():
 
 @pytest.mark.parametrize(
     ("frames", "reason"),
-    [([INSIDE, OUTSIDE, INSIDE], Reason.WRONG_SIDE), ([OUTSIDE, INSIDE, OUTSIDE], None)],
+    [([INSIDE, INSIDE, OUTSIDE], Reason.WRONG_SIDE), ([OUTSIDE, OUTSIDE, INSIDE], None)],
     ids=["two of three show the inside", "one of three does"],
 )
 def test_most_frames_win(frames, reason):

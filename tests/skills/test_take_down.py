@@ -37,9 +37,13 @@ def test_drives_back_with_the_whole_gown():
 def test_both_hands_rise_on_arcs_about_the_hook():
     run = bench(light_gown)
     places = {side: [] for side in SIDES}
-    while np.allclose(run.world.observe().pose_base_in_map, STAND) and run.tick().name == "RUNNING":
-        for side in SIDES:
-            places[side].append(hand_from_base(run.world, side) - (AHEAD, 0.0, UP))
+
+    def note_places():
+        if np.allclose(run.world.observe().pose_base_in_map, STAND):
+            for side in SIDES:
+                places[side].append(hand_from_base(run.world, side) - (AHEAD, 0.0, UP))
+
+    assert ended(run, each_tick=note_places) is None
     for side, sign in (("left", 1.0), ("right", -1.0)):
         place = np.array(places[side])
         assert place[0, 2] < -0.15 < 0.03 < place[-1, 2]  # [m]: from below the hook to above it

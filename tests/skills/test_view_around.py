@@ -50,8 +50,10 @@ def test_the_cloth_swings_out_before_the_first_view():
 
 def test_a_hand_that_stops_on_the_way_is_told():
     run = bench()
-    while run.tick().name == "RUNNING":
-        if run.world.clock.now() > 8.0:  # [s]: in the middle of the turn
+
+    def stop_in_the_turn():
+        if run.world.clock.now() > 8.0:  # [s]
             run.world.stop()
-    assert run.skill.failure.reason == Reason.MOTION_BLOCKED
+
+    assert ended(run, each_tick=stop_in_the_turn) == Reason.MOTION_BLOCKED
     assert "views" in run.skill.failure.detail
