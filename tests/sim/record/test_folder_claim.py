@@ -5,7 +5,6 @@ import sys
 
 import pytest
 from caretree.sim.errors import RecordError
-from caretree.sim.record.file_lock import lock_file
 from caretree.sim.record.folder_claim import FolderClaim, FolderTakenError, claim_free
 from caretree.sim.record.record import RUN_FILE, TRACE_FILE, RunResult
 from caretree.sim.record.recorder import Recorder
@@ -76,20 +75,3 @@ def test_a_file_in_the_way_is_one_sentence(tmp_path):
         FolderClaim(tmp_path / "file")
     with pytest.raises(RecordError, match=r"opening the record in .* failed: Not a directory"):
         FolderClaim(tmp_path / "file" / "below")
-
-
-def test_a_lock_on_a_file_that_was_taken_away_is_not_believed(tmp_path, monkeypatch):
-    import fcntl
-
-    path, taken = tmp_path / "lock", []
-    flock = fcntl.flock
-
-    def slow(file, how):
-        flock(file, how)
-        if not taken:  # between opening and locking, its last holder takes the file away
-            path.unlink()
-            taken.append(file)
-
-    monkeypatch.setattr(fcntl, "flock", slow)
-    assert lock_file(path) is not None
-    assert lock_file(path) is None

@@ -8,7 +8,7 @@ from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import BaseVelocity, Frame, GripperOpening, HandTwist, JointTrajectory
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.trees.guard.guard import GuardedWorld
-from caretree.trees.guard.limits import DEFAULT, SOURCES, Limits
+from caretree.trees.guard.limits import DEFAULT
 
 NEAR = DEFAULT.hand_speed * DEFAULT.hand_speed_commanded
 
@@ -40,19 +40,6 @@ def speed(command):
 def pull(world, newton, side="left"):
     """Cloth pulls the hand towards -x."""
     world.load[side] = np.array((-newton, 0, 0, 0, 0, 0), float)
-
-
-def test_every_limit_has_a_source_and_no_other():
-    from dataclasses import fields
-
-    assert {item.name for item in fields(Limits)} == set(SOURCES)
-
-
-def test_limits_that_contradict_are_refused():
-    with pytest.raises(Exception, match=r"cloth_load_slow is 20 N, but must be below cloth_load_stop, 18.0 N"):
-        Limits(cloth_load_slow=20)
-    with pytest.raises(Exception, match="limit hand_speed is 0, but limits are above zero"):
-        Limits(hand_speed=0)
 
 
 def test_a_twist_is_slowed_near_the_person_only():
@@ -427,12 +414,3 @@ def test_wrong_places_of_the_person_are_refused():
         guard.update_person(np.full((2, 3), np.nan))
     with pytest.raises(Exception, match="radius"):
         guard.update_person(np.zeros((2, 3)), radius=-1.0)
-
-
-def test_distance_to_a_chain_is_to_its_links_not_only_its_points():
-    from caretree.trees.guard.person_zone import PersonZone
-
-    zone = PersonZone(np.zeros((2, 3)))
-    zone.update(np.array(((0, 0, 0), (1.0, 0, 0), (1.0, 1.0, 0))), part="arm", radius=0.1)
-    got = zone.distance(np.array(((0.5, 0, 0.3), (1.0, 0.5, 0.0), (2.0, 1.0, 0.0), (-0.3, 0.4, 0))))
-    np.testing.assert_allclose(got, (0.2, 0.0, 0.9, 0.4), atol=1e-9)

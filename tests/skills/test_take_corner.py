@@ -1,0 +1,89 @@
+"""A corner of the hung gown's neckline is pinched where it hangs, and let alone where that goes wrong."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.skills.core.reasons import Reason
+from caretree.skills.take_corner import TakeCorner
+
+from .hung_gown import DOWN, at, bench_with, ended, seen_at
+
+HOOK = seen_at(at(0.75, 0.0, 1.50))
+CORNER = at(0.75, -0.16, 1.20)  # of the wearer's left, in front of the robot's right hand
+RIGHT = 1
+
+
+def shown(place=CORNER, confidence=0.9):
+    return lambda frame, **details: seen_at(
+        place(frame.stamp) if callable(place) else place, "collar_corner_left", confidence=confidence
+    )
+
+
+def bench(shows, *, tug=0.5, **ports):
+    """The right hand takes the corner; what it has closed on pulls with `tug` [N]."""
+
+    def make(context):
+        return TakeCorner("take", context, hand="right", sleeve="left", hook=HOOK, **ports)
+
+    made = bench_with(make, hung_corner=shows)
+    made.world.pull = lambda side, hand: tug * DOWN if side in made.world.closed else np.zeros(3)
+    return made
+
+
+def test_closes_around_the_corner_and_tells_the_length_of_the_strip():
+    run = bench(shown())
+    assert ended(run) is None
+    place, _ = run.world.closed["right"]
+    assert np.linalg.norm(place - CORNER) < 0.015  # [m]
+    assert run.world.observe().gripper_opening[RIGHT] == pytest.approx(0.0, abs=0.001)
+    assert run.skill.length == pytest.approx(0.34, abs=0.001)  # 0.16 m aside, 0.30 m down
+
+
+def test_closes_where_a_swaying_corner_will_be():
+    sway = 0.008 * DOWN  # [m/s]
+    run = bench(shown(lambda time: CORNER + time * sway))
+    assert ended(run) is None
+    place, time = run.world.closed["right"]
+    assert (place - (CORNER + time * sway)) @ DOWN == pytest.approx(0.0, abs=0.005)  # [m]
+
+
+def test_an_error_of_the_second_look_is_not_followed_far():
+    run = bench(shown(lambda time: CORNER + (0.03 if time > 0.5 else 0.0) * DOWN))
+    assert ended(run) is None
+    place, _ = run.world.closed["right"]
+    assert 0.03 < (place - CORNER) @ DOWN < 0.055  # [m]: two centimetres beyond the last look at most
+
+
+def test_fingers_that_close_on_nothing_open_and_draw_back():
+    run = bench(shown(), tug=0.0)
+    assert ended(run) == Reason.GRASP_MISSED
+    seen = run.world.observe()
+    assert seen.gripper_opening[RIGHT] > 0.08  # [m]
+    assert np.linalg.norm(seen.pose_hand_in_map[RIGHT, :3, 3] - CORNER) > 0.10  # [m]
+
+
+def test_a_corner_that_is_hardly_seen_is_not_gone_for():
+    run = bench(shown(confidence=0.3), min_confidence=0.45)
+    assert ended(run) == Reason.NOTHING_SEEN
+    assert run.sent == 0
+
+
+def test_does_not_close_where_other_cloth_has_come_beside_the_corner():
+    found = seen_at(CORNER, "collar_corner_left", confidence=0.8)
+    run = bench(shown(confidence=0.3), corner=found)
+    assert ended(run) == Reason.MULTI_LAYER
+    assert not run.world.closed
+    assert run.world.observe().gripper_opening[RIGHT] > 0.08  # [m]
+
+
+def test_goes_for_the_place_where_the_corner_was_found_when_it_no_longer_shows():
+    found = seen_at(CORNER, "collar_corner_left", confidence=0.8)
+    run = bench(PerceptionFailure(Problem.NOTHING_SEEN, "a corner"), corner=found)
+    assert ended(run) is None
+    assert np.linalg.norm(run.world.closed["right"][0] - CORNER) < 0.015  # [m]
+
+
+def test_a_corner_out_of_reach_is_left_alone():
+    run = bench(shown(at(2.5, -0.16, 1.20)))
+    assert ended(run) == Reason.UNREACHABLE
+    assert not run.world.closed

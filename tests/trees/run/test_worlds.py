@@ -1,0 +1,37 @@
+"""Worlds by name, and what they refuse."""
+
+import pytest
+from caretree.sim.errors import CaretreeError
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.trees.run.task import load_task
+from caretree.trees.run.worlds import make_world, prepare_stage
+
+
+def test_the_scripted_world_comes_with_what_is_seen_there():
+    world, senses = make_world("scripted", load_task("dressing"), seed=3)
+    frame = world.look("head")
+    assert senses.hook(frame).stamp == frame.stamp
+
+
+@pytest.mark.parametrize("option", [{"gown": "large"}, {"person": "small"}, {"model": "model.yaml"}, {"view": True}])
+def test_the_scripted_world_has_no_cloth_and_no_person(option):
+    with pytest.raises(CaretreeError, match=f"--{next(iter(option))} needs the bullet world"):
+        make_world("scripted", load_task("wave"), seed=0, **option)
+
+
+def test_an_unknown_world_is_refused_with_those_there_are():
+    with pytest.raises(CaretreeError, match="unknown world 'moon'; there are bullet, scripted"):
+        make_world("moon", load_task("wave"), seed=0)
+
+
+def test_a_world_with_one_beginning_cannot_begin_at_a_later_stage():
+    task = load_task("dressing")
+    stage = list(task.stages)[-1]
+    with pytest.raises(CaretreeError, match="ScriptedWorld has one beginning only"):
+        prepare_stage(ScriptedWorld(), task, stage)
+
+
+def test_a_whole_task_begins_where_the_world_does():
+    world = ScriptedWorld()
+    prepare_stage(world, load_task("dressing"), None)
+    assert not world.sent
