@@ -1,9 +1,9 @@
-"""The bench of the leaves' tests: one leaf on a robot of numbers beside the bed, behind the runner's guard."""
+"""The bench of the leaves' tests: one leaf behind the runner's guard, on a robot of numbers beside the bed."""
 
 import numpy as np
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.sim.scripted.world import scripted_room
+from caretree.sim.scene.scene import room_map
 from caretree.sim.world import SIDES, GripperOpening
 from caretree.skills.control.arm_grip import over_arm
 from caretree.skills.core.context import Context
@@ -33,12 +33,13 @@ class LeafBench(Bench):
         each_tick: called with the bench before each tick, for a world that answers what the robot does.
 
     Attributes:
+        start: observation before the first tick.
         seen: observation after each tick.
     """
 
     def __init__(self, make, context, each_tick=lambda bench: None):
         super().__init__(make, context)
-        self.seen = []
+        self.start, self.seen = self.world.observe(), []
         self._each_tick = each_tick
 
     def tick(self):
@@ -74,14 +75,14 @@ def beside_bed(*, stand=None, hands=None, held=None, load=None, deaf_to=(), **an
     Args:
         stand: base pose (3,); where the person's right arm is lifted from if not given.
         hands: poses (4, 4) by side at which hands begin; the others are ready.
-        held: thickness of what closed fingers hold at first, by side [m], for instance `CLOTH`; the others are open.
+        held: thickness of what closed fingers hold at first, by side [m]: `CLOTH`, `ARM`, 0; the others are open.
         load: force (3,) on the hands by side [N].
         deaf_to: classes of commands that are lost on their way.
         **answers: of the senses, by method.
     """
 
     def build():
-        room, base = scripted_room(), stance("right", "lift") if stand is None else np.array(stand, float)
+        room, base = room_map(), stance("right", "lift") if stand is None else np.array(stand, float)
         room.waypoints["start"] = tuple(base)
         arms = model.READY.copy()
         for side, pose in (hands or {}).items():
