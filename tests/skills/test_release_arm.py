@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.robot.model import READY
-from caretree.sim.world import GripperOpening
+from caretree.sim.world import GripperOpening, JointTrajectory
 from caretree.skills.core.reasons import Reason
 from caretree.skills.release_arm import ReleaseArm
 
@@ -68,13 +68,20 @@ def test_it_opens_at_once_where_nothing_is_to_be_lowered(holds, lower):
 
 
 def test_one_that_is_to_be_ready_ends_in_the_ready_posture():
-    run = bench(ready=True)
+    run = bench(ready="always")
     assert run.ended() is None
     ready = default_kinematics().pose_hand_in_map("left", READY[0], run.world.observe().pose_base_in_map)
     assert run.way("left")[-1] == pytest.approx(ready[:3, 3], abs=0.03)
-    stays = bench(ready=False)
+    stays = bench(ready="never")
     assert stays.ended() is None
     assert np.linalg.norm(stays.way("left")[-1] - ready[:3, 3]) > 0.1
+
+
+@pytest.mark.parametrize(("ready", "reason"), [("always", Reason.COMMAND_LOST), ("if possible", None)])
+def test_a_hand_that_does_not_get_ready_is_a_failure_only_where_it_has_to(ready, reason):
+    run = bench(ready=ready, deaf_to=(JointTrajectory,))
+    assert run.ended() == reason
+    assert run.openings("left")[-1] > 0.08
 
 
 def test_fingers_that_do_not_open_are_told():

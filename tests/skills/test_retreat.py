@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.robot.model import READY
-from caretree.sim.world import SIDES, BaseVelocity, GripperOpening
+from caretree.sim.world import SIDES, BaseVelocity, GripperOpening, JointTrajectory
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import HEADWARD
 from caretree.skills.motion.ik import hand_pose
@@ -32,7 +32,7 @@ def begun(values, by):
 
 
 def test_the_fingers_open_before_a_hand_draws_back_and_the_base_leaves_last():
-    run = bench(base_distance=0.4, ready=False)
+    run = bench(base_distance=0.4, ready="never")
     assert run.ended() is None
     base = np.array([seen.pose_base_in_map for seen in run.seen])
     for side in SIDES:
@@ -42,7 +42,7 @@ def test_the_fingers_open_before_a_hand_draws_back_and_the_base_leaves_last():
 
 
 def test_each_hand_draws_back_the_way_it_points():
-    run = bench(hand_distance=0.12, ready=False)
+    run = bench(hand_distance=0.12, ready="never")
     assert run.ended() is None
     moved = {side: run.way(side)[-1] - run.start.pose_hand_in_map[n, :3, 3] for n, side in enumerate(SIDES)}
     assert moved["left"] == pytest.approx((0.0, 0.0, 0.12), abs=0.02)
@@ -58,6 +58,14 @@ def test_the_arms_are_ready_in_the_end_and_the_base_stays_if_it_may():
     ready = [default_kinematics().pose_hand_in_map(side, READY[n], STAND) for n, side in enumerate(SIDES)]
     assert last.pose_hand_in_map[:, :3, 3] == pytest.approx(np.array(ready)[:, :3, 3], abs=0.03)
     assert last.pose_base_in_map == pytest.approx(STAND, abs=0.005)
+
+
+@pytest.mark.parametrize(("ready", "reason"), [("always", Reason.COMMAND_LOST), ("if possible", None)])
+def test_arms_that_do_not_get_ready_are_a_failure_only_where_they_have_to(ready, reason):
+    run = bench(ready=ready, deaf_to=(JointTrajectory,))
+    assert run.ended() == reason
+    assert min(run.openings(side)[-1] for side in SIDES) > 0.08
+    assert min(run.way(side)[-1, 2] - run.way(side)[0, 2] for side in SIDES) > 0.1, "both hands are clear of the person"
 
 
 def test_the_other_hand_keeps_what_it_holds():
