@@ -88,11 +88,11 @@ class SleeveOpening(GraspPoint):
     """A grasp on the rim of an armhole, with what is seen of the rim.
 
     Attributes:
-        ring_points_in_map: (n, 3) of the armhole's binding [m].
+        armhole_points_in_map: (n, 3) of the armhole's binding [m].
         centre_in_map: (3,) of the opening [m].
     """
 
-    ring_points_in_map: np.ndarray
+    armhole_points_in_map: np.ndarray
     centre_in_map: np.ndarray
 
 

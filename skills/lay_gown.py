@@ -153,7 +153,7 @@ class LayGown(Skill):
             seen = self.context.senses.sleeve_opening(self.world.look("head"), side=NEAR_SLEEVE, near_in_map=near)
         except PerceptionFailure:
             return  # it stays as it was taken
-        shown = float(np.median(seen.ring_points_in_map[:, 0]))
+        shown = float(np.median(seen.armhole_points_in_map[:, 0]))
         askew = shown + tuning.hidden_offset - (self.width + tuning.overhang) / 2
         if askew < -tuning.min_askew:
             self._middle = tuning.middle_x + min(-tuning.shift_factor * askew, tuning.max_shift)

@@ -59,7 +59,7 @@ def held_armhole(
         position_in_map=np.asarray(near_in_map, float),
         approach_in_map=view,
         closing_in_map=unit(np.cross(view, (0.0, 0.0, 1.0))),
-        ring_points_in_map=points,
+        armhole_points_in_map=points,
         centre_in_map=(low + high) / 2,
     )
 

@@ -139,7 +139,7 @@ def sleeve_opening(
         position_in_map=position,
         approach_in_map=-normal,
         closing_in_map=across(edge, -normal),
-        ring_points_in_map=armhole,
+        armhole_points_in_map=armhole,
         centre_in_map=(low + high) / 2,
     )
 

@@ -142,7 +142,7 @@ def sleeve_strap(frame: Frame, side: Side, near_in_map: np.ndarray, tuning: Stra
         position_in_map=between.middle,
         approach_in_map=-between.normal,
         closing_in_map=across,
-        ring_points_in_map=between.rim,
+        armhole_points_in_map=between.rim,
         centre_in_map=np.percentile(between.rim, tuning.extent, axis=0).mean(axis=0),
     )
 
@@ -181,7 +181,7 @@ def _past_neckline(frame: Frame, side: Side, near_in_map: np.ndarray, tuning: St
         position_in_map=middle,
         approach_in_map=-normal,
         closing_in_map=closing,
-        ring_points_in_map=rim,
+        armhole_points_in_map=rim,
         centre_in_map=np.percentile(rim, tuning.extent, axis=0).mean(axis=0),
     )
 

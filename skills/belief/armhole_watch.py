@@ -105,7 +105,7 @@ class ArmholeWatch:
                 )
             except PerceptionFailure:
                 continue
-            outwards_of_axis = (armhole.ring_points_in_map - path.point(coordinate)) @ (side * across)
+            outwards_of_axis = (armhole.armhole_points_in_map - path.point(coordinate)) @ (side * across)
             edges.append(np.percentile(outwards_of_axis, self._tuning.edge_percentile))
         if not edges:
             return
@@ -134,7 +134,7 @@ class ArmholeWatch:
             if now - self._located > self._tuning.memory:
                 self.coordinate = None
             return
-        some = armhole.ring_points_in_map[:: max(1, len(armhole.ring_points_in_map) // self._tuning.max_points)]
+        some = armhole.armhole_points_in_map[:: max(1, len(armhole.armhole_points_in_map) // self._tuning.max_points)]
         self.coordinate, self._located = float(np.median([path.coordinate_of(point) for point in some])), now
 
     def hand_is_bare(self, path: ArmPath) -> bool:

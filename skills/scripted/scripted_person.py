@@ -63,6 +63,6 @@ def laid_strap(side: Side, stamp: float = 0.0) -> SleeveOpening:
         position_in_map=mirrored(strap, side),
         approach_in_map=np.array((0.0, 0.0, -1.0)),
         closing_in_map=np.array((0.0, -1.0, 0.0)),
-        ring_points_in_map=ring,
+        armhole_points_in_map=ring,
         centre_in_map=ring.mean(axis=0),
     )

@@ -26,7 +26,7 @@ def moved(*offset, confidence=0.9):
         STRAP,
         confidence=confidence,
         position_in_map=STRAP.position_in_map + there,
-        ring_points_in_map=STRAP.ring_points_in_map + there,
+        armhole_points_in_map=STRAP.armhole_points_in_map + there,
         centre_in_map=STRAP.centre_in_map + there,
     )
 

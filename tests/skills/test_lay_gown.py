@@ -26,7 +26,7 @@ NARROWING = 0.03  # of the hands at once [m]
 
 def armhole(x):
     seen = laid_strap("right")
-    return replace(seen, ring_points_in_map=seen.ring_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
+    return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
 def let_go_at(seen, taut_until=1.0):

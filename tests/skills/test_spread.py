@@ -78,7 +78,7 @@ def test_a_collar_that_pulls_is_drawn_no_farther():
 
 def test_a_sleeve_that_sits_at_the_shoulder_is_drawn_no_farther():
     ring = PATH.point(-0.58) + 0.02 * np.array([(np.cos(a), np.sin(a), 0.0) for a in np.linspace(0.0, 6.0, 20)])
-    run = bench(armhole=replace(laid_strap("right"), ring_points_in_map=ring))
+    run = bench(armhole=replace(laid_strap("right"), armhole_points_in_map=ring))
     assert run.ended() is None
     for way in draws(run):
         assert np.linalg.norm((way[-1] - way[0])[:2]) < 0.03  # [m]

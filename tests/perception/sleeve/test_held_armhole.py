@@ -23,7 +23,7 @@ def test_the_middle_of_the_armhole_is_found(world, side):
     ring = world._cloth.vertices()[world.scene.mesh.loops[f"armhole_{side}"]]
     grip = ring[0]
     seen = held_armhole(world.look("head"), side, grip)
-    assert np.linalg.norm(seen.ring_points_in_map - grip, axis=1).max() < 0.34
+    assert np.linalg.norm(seen.armhole_points_in_map - grip, axis=1).max() < 0.34
     lateral = world.look("head").pose_camera_in_map[:3, 0]
     # on the hook the other sleeve hangs within reach too and draws the middle towards it, but not over the grip
     other = world._cloth.vertices()[world.scene.mesh.loops["armhole_left" if side == "right" else "armhole_right"]]

@@ -35,7 +35,7 @@ def make(points=None, share=1.0):
             position_in_map=points[0],
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
-            ring_points_in_map=points,
+            armhole_points_in_map=points,
             centre_in_map=points.mean(axis=0),
         )
     if share is None:
