@@ -152,7 +152,7 @@ class PullAlongArm(Skill):
         ahead = 0.5 * (arm.coordinate_of(hand_now(self, self.grip.hand)[:3, 3]) + self.grip_goal)
         yield from while_holding(self, self.hold, look_towards(self, arm.point(ahead)))
         follower = None if self.stand is None else self._drift()
-        pull = _Pull(follower=follower, ring=ArmholeWatch(self, self.grip.arm, self.grip.hand), begun=self.now())
+        pull = _Pull(follower=follower, armhole=ArmholeWatch(self, self.grip.arm, self.grip.hand), begun=self.now())
         while True:
             now = self._observe(pull)
             if self._at_goal(pull, now) or self._stands_seated(pull, now):
@@ -197,11 +197,11 @@ class PullAlongArm(Skill):
             SkillFailure: SLEEVE_MISSED when they do on the forearm, and the arm shows beside the cuff.
         """
         if now.coordinate < self.tuning.armhole_watch and np.isfinite(self.armhole_goal):
-            pull.ring.locate(now.path, now.hand[:3, 3])
+            pull.armhole.locate(now.path, now.hand[:3, 3])
         hard = now.coordinate < self.tuning.seated and now.size > self.max_load
-        if not self.arrived(pull.ring.coordinate, now.coordinate) and not hard:
+        if not self.arrived(pull.armhole.coordinate, now.coordinate) and not hard:
             return False
-        if self.grip_goal > 1.0 and pull.ring.arm_is_beside(now.path):
+        if self.grip_goal > 1.0 and pull.armhole.arm_is_beside(now.path):
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} arm shows beside the cuff")
         return True
 
@@ -241,16 +241,16 @@ class PullAlongArm(Skill):
             SkillFailure: SLEEVE_MISSED when the hand shows beside the sleeve.
         """
         if now.coordinate > self.tuning.centring_end:
-            pull.ring.centre(now.path, now.coordinate, now.hand[:3, 3])
+            pull.armhole.centre(now.path, now.coordinate, now.hand[:3, 3])
         crossed = now.before is not None and now.before > self.tuning.miss_check >= now.coordinate
-        if crossed and pull.ring.hand_is_bare(now.path):
+        if crossed and pull.armhole.hand_is_bare(now.path):
             raise SkillFailure(Reason.SLEEVE_MISSED, f"the {self.grip.arm} hand shows beside the sleeve")
 
     def _velocity(self, pull: _Pull, now: _Now) -> np.ndarray:
         """Velocity (3,) of the grip: slower while the armhole is centred, and near the greatest load [m/s]."""
         tuning, place = self.tuning, now.coordinate
-        linear = tuning.law.velocity(now.path, place, now.hand[:3, 3], pull.ring.offset, tuning.speed, now.load)
-        beside = abs(pull.ring.error) > ARMHOLE_WATCH.tolerance
+        linear = tuning.law.velocity(now.path, place, now.hand[:3, 3], pull.armhole.offset, tuning.speed, now.load)
+        beside = abs(pull.armhole.error) > ARMHOLE_WATCH.tolerance
         if place > 3.0 and beside and now.seen.time < pull.begun + tuning.centring_timeout:  # before the fingertip
             along = now.path.direction(place)
             linear = linear - (1.0 if place < tuning.entry else tuning.approach_slowing) * (linear @ along) * along
@@ -305,7 +305,7 @@ class _Pull:
 
     Attributes:
         follower: of the base's way, None where the base stands still.
-        ring: what is seen of the armhole.
+        armhole: what is seen of it.
         begun: when the pull began [s].
         coordinate: of the grip along the arm at the last tick.
         travelled: way along the arm so far [m].
@@ -314,7 +314,7 @@ class _Pull:
     """
 
     follower: PathFollower | None
-    ring: ArmholeWatch
+    armhole: ArmholeWatch
     begun: float
     coordinate: float | None = None
     travelled: float = 0.0

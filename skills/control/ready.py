@@ -10,7 +10,6 @@ from ..core.skill import Skill
 from ..motion.errors import MotionError
 
 Ready = Literal["always", "if possible", "never"]
-REST_PATIENCE = 5.0  # [s] in which a motion that has failed comes to rest, as the motion lease allows
 
 
 def ready_or_not(skill: Skill, ready: str, let_go: Callable[[bool], Iterator[None]]) -> Iterator[None]:
@@ -33,5 +32,6 @@ def ready_or_not(skill: Skill, ready: str, let_go: Callable[[bool], Iterator[Non
     except (MotionError, SkillFailure):
         skill.note("leaves the arms as they are")
         skill.world.stop()
-        yield from skill.until(skill.context.guard.still, timeout=REST_PATIENCE, reason=Reason.MOTION_BLOCKED)
+        patience = skill.context.lease.patience  # what any motion is given to come to rest
+        yield from skill.until(skill.context.guard.still, timeout=patience, reason=Reason.MOTION_BLOCKED)
         yield from let_go(False)

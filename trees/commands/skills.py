@@ -65,7 +65,7 @@ def described(kind: type[Skill]) -> list[str]:
         lines += _wrapped(reason.name, reason.value)
     numbers = next((port.default for name, port in ports if name == TUNING and isinstance(port, Input)), None)
     if isinstance(numbers, Quantities):
-        lines += ["", f"Numbers (--set {setting_name(kind)}.NUMBER=VALUE):"]
+        lines += ["", f"Numbers (--set {setting_name(kind)}.NUMBER=VALUE; inputs that are numbers too):"]
         for row in rows(numbers):
             lines += _wrapped(row.name, f"{_number(row.value)}{_unit(row.unit)}: {row.meaning} ({row.source})")
     return lines
