@@ -18,6 +18,10 @@ def setting_name(kind: type) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", kind.__name__).lower()
 
 
+class SettingError(CaretreeError):
+    """A number was set for a run that the tree does not have, or to something it cannot be."""
+
+
 class Settings:
     """Values by skill and number; they win over what the tree gives its leaves.
 
@@ -35,8 +39,14 @@ class Settings:
         A number that is an input itself (`max_load` of `PresentSleeve`) is set as well as those of its tuning.
 
         Raises:
-            QuantityError: a number that it does not have, or of another type.
+            SettingError: a number that it does not have, or of another type.
         """
+        try:
+            return self._applied(kind, bindings)
+        except QuantityError as error:
+            raise SettingError(f"the setting for {setting_name(kind)} does not fit: {error}") from error
+
+    def _applied(self, kind: type, bindings: Mapping[str, Any]) -> dict[str, Any]:
         name, tuning = setting_name(kind), bindings.get(TUNING)
         ports = {port for port, value in bindings.items() if isinstance(value, float) and port != TUNING}
         self._met[name] = bool(ports) or isinstance(tuning, Quantities)
@@ -55,11 +65,11 @@ class Settings:
         """Refuse numbers of skills that the tree, once built, turned out not to have.
 
         Raises:
-            CaretreeError: there is such a skill.
+            SettingError: there is such a skill.
         """
         known = sorted(name for name, tunable in self._met.items() if tunable)
         for name in self.values:
             if name not in known:
                 near = difflib.get_close_matches(name, known, n=1)
                 hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known) or 'none'}"
-                raise CaretreeError(f"this task has no skill {name!r} with numbers to set; {hint}")
+                raise SettingError(f"this task has no skill {name!r} with numbers to set; {hint}")

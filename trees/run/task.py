@@ -31,6 +31,7 @@ from ...sim.errors import CaretreeError
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import World
 from ...skills.core.context import Context
+from ...skills.core.settings import SettingError
 from .. import tasks
 from .stages import TaskStage, span_of
 
@@ -104,6 +105,7 @@ class Task:
 
         Raises:
             TaskError: the file's own code fails, or returns no tree.
+            SettingError: the run sets a number that a skill of the tree does not have.
         """
         try:
             inspect.signature(self.function).bind(context, **params)
@@ -111,6 +113,8 @@ class Task:
             raise TaskError(f"{self._line()}: task {self.name!r}: build(context, ...) {error}") from error
         try:
             root = self.function(context, **params)
+        except SettingError:
+            raise  # a mistake on the command line, not in the file
         except (Exception, SystemExit) as error:
             raise TaskError(_located(self.file, error)) from error
         if not isinstance(root, Behaviour):

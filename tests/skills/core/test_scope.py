@@ -1,12 +1,11 @@
 from dataclasses import dataclass
 
 import pytest
-from caretree.sim.errors import CaretreeError
-from caretree.sim.quantity import Quantities, QuantityError, quantity
+from caretree.sim.quantity import Quantities, quantity
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills import Context, Input, Key, Output, Scope, Skill
 from caretree.skills.core.ports import PortError
-from caretree.skills.core.settings import Settings
+from caretree.skills.core.settings import SettingError, Settings
 from caretree.trees.guard.guard import GuardedWorld
 
 
@@ -83,10 +82,10 @@ def test_numbers_of_skills_that_are_not_in_the_tree_are_refused(values, words):
     run = context(Settings(values))
     FetchTowel("fetch", run, side="left")
     HandTowel("hand over", run, side="left")
-    with pytest.raises(CaretreeError, match=words):
+    with pytest.raises(SettingError, match=words):
         run.settings.check()
 
 
 def test_unknown_numbers_are_refused_when_the_leaf_is_built():
-    with pytest.raises(QuantityError, match="did you mean max_load"):
+    with pytest.raises(SettingError, match="did you mean max_load"):
         FetchTowel("fetch", context(Settings({"fetch_towel": {"max_lod": 1.0}})), side="left")
