@@ -5,15 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_laid_out import CheckLaidOut
-from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
-from caretree.trees.guard.guard import GuardedWorld
-from py_trees.common import Status
 
-from .fake_senses import fake_senses
+from .bench import LeafBench, beside_bed
 
 FARTHEST = 0.36  # from the fingertips to a sleeve that is taken from there [m]
 
@@ -36,14 +32,8 @@ def away(distance):
 def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, share, reason):
     monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: share)
     monkeypatch.setattr("caretree.skills.belief.person_tracking.visible_share", lambda frame, posture: 1.0)
-    world = ScriptedWorld()
-    guard = GuardedWorld(world)
-    senses = fake_senses(sleeve_opening=sleeve, arm=lying_posture("left"))
-    skill = CheckLaidOut("laid out", Context(world=guard, guard=guard, senses=senses), side="left")
-    for _ in range(10):
-        skill.tick_once()
-        world.clock.wait_until(world.clock.now() + 1 / 15)
-        if skill.status != Status.RUNNING:
-            break
-    assert skill.status == (Status.SUCCESS if reason is None else Status.FAILURE)
-    assert (skill.failure and skill.failure.reason) == reason
+    run = LeafBench(
+        lambda context: CheckLaidOut("laid out", context, side="left"),
+        beside_bed(sleeve_opening=sleeve, arm=lying_posture("left")),
+    )
+    assert run.ended(seconds=1.0) == reason

@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import WornSleeve
-from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.check_sleeve import CheckSleeve
-from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
-from caretree.trees.guard.guard import GuardedWorld
 from py_trees.common import Status
 
-from .fake_senses import fake_senses
+from .bench import LeafBench, beside_bed
 
 UPPER_ARM = float(np.linalg.norm(np.diff(lying_posture("left").points_in_map[:2], axis=0)))  # [m]
 
@@ -23,16 +20,12 @@ def worn(cuff_at=0.5, round_arm=0.7):
 
 def ran(seen, **options):
     """The skill after one run."""
-    world = ScriptedWorld()
-    guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, senses=fake_senses(worn_sleeve=seen, arm=lying_posture("left")))
-    skill = CheckSleeve("inside", context, side="left", **options)
-    for _ in range(10):
-        skill.tick_once()
-        world.clock.wait_until(world.clock.now() + 1 / 15)
-        if skill.status != Status.RUNNING:
-            break
-    return skill
+    run = LeafBench(
+        lambda context: CheckSleeve("inside", context, side="left", **options),
+        beside_bed(worn_sleeve=seen, arm=lying_posture("left")),
+    )
+    run.ended(seconds=1.0)
+    return run.skill
 
 
 @pytest.mark.parametrize(

@@ -5,34 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.sim.scripted.world import ScriptedWorld
-from caretree.skills.core.context import Context
 from caretree.skills.find_stand import FindStand
 from caretree.skills.geometry.stances import stance
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
-from caretree.trees.guard.guard import GuardedWorld
-from py_trees.common import Status
 
-from .fake_senses import fake_senses
+from .bench import LeafBench, beside_bed
 
 
 def chosen(sleeve):
     """The base pose (3,) for an arm at rest and a sleeve that is seen, or not."""
-    world = ScriptedWorld()
-    guard = GuardedWorld(world)
-    context = Context(
-        world=guard,
-        guard=guard,
-        senses=fake_senses(sleeve_opening=sleeve, arm=lying_posture("right")),
+    lies = lying_posture("right")
+    run = LeafBench(
+        lambda context: FindStand("stand", context, side="right", lifting="left", pulling="right"),
+        beside_bed(sleeve_opening=sleeve, arm=lies, relocalised_arm=lies),
     )
-    skill = FindStand("stand", context, side="right", lifting="left", pulling="right")
-    for _ in range(60):
-        skill.tick_once()
-        world.clock.wait_until(world.clock.now() + 1 / 15)
-        if skill.status != Status.RUNNING:
-            break
-    assert skill.status == Status.SUCCESS
-    return skill.stand
+    assert run.ended(seconds=4.0) is None
+    return run.skill.stand
 
 
 def moved(offset):
