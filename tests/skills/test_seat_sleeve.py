@@ -1,4 +1,4 @@
-"""A seated strap is tucked down beside the shoulder, unless that pulls too hard or the mattress is near."""
+"""A seated strap is drawn headward, tucked down beside the shoulder as far as it goes, and slackened."""
 
 import pytest
 from caretree.sim.world import SIDES
@@ -6,19 +6,44 @@ from caretree.skills.geometry.stances import stance
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.skills.seat_sleeve import SeatSleeve
 
-from .bench import GRIP, LeafBench, beside_bed
+from .bench import CLOTH, GRIP, LeafBench, beside_bed
 
 
-def heights(load, bed_below):
-    """Heights (n,) of the hand over time, for a strap that pulls footward, and a bed that far below the hand [m]."""
+def ran(load, bed_below):
+    """The bench after a run, for a strap that pulls footward with `load` [N], and a bed that far below the hand [m]."""
     lies = lying_posture("right")
     run = LeafBench(
         lambda context: SeatSleeve("seat sleeve", context, grip=GRIP),
-        beside_bed(stand=stance("right", "shoulder"), load={"right": (0.0, load, 0.0)}, arm=lies, relocalised_arm=lies),
+        beside_bed(
+            stand=stance("right", "shoulder"),
+            held={"right": CLOTH},
+            load={"right": (0.0, load, 0.0)},
+            arm=lies,
+            relocalised_arm=lies,
+        ),
     )
     run.world.room.bed[1, 2] = run.start.pose_hand_in_map[SIDES.index("right"), 2, 3] - bed_below
     assert run.ended(seconds=200.0) is None
-    return run.way("right")[:, 2]
+    return run
+
+
+def heights(load, bed_below):
+    """Heights (n,) of the hand over time [m]."""
+    return ran(load, bed_below).way("right")[:, 2]
+
+
+@pytest.mark.parametrize(("load", "drawn"), [(0.4, 0.08), (5.0, 0.0)])
+def test_a_strap_that_gives_is_drawn_headward(load, drawn):
+    way = ran(load, bed_below=0.6).way("right")
+    assert way[0, 1] - way[:, 1].min() == pytest.approx(drawn, abs=0.02)  # [m]; the head of the bed is at lower y
+
+
+@pytest.mark.parametrize(("load", "follows"), [(0.4, 0.0), (3.0, 0.16)])
+def test_a_strap_that_pulls_is_slackened_in_the_end_and_still_held(load, follows):
+    run = ran(load, bed_below=0.6)
+    way = run.way("right")
+    assert way[-1, 1] - way[:, 1].min() == pytest.approx(follows, abs=0.02)  # [m]: 4 s at 0.04 m/s
+    assert run.openings("right").max() < 0.01
 
 
 def test_a_strap_that_gives_goes_down():
