@@ -30,3 +30,9 @@ def test_of_two_sheets_the_upper_one_is_seen():
 @pytest.mark.parametrize("height", [0.4, -0.1], ids=["far above", "below the skin"])
 def test_cloth_that_does_not_lie_on_the_torso_covers_nothing(height):
     assert coverage(sheet(height), FACES, TORSO) == (0.0, 0.0)
+
+
+def test_a_sheet_that_rises_covers_as_far_as_it_lies():
+    tent = sheet(0.02)
+    tent[1:3, 2] = 0.8  # [m]: 0.2 m over the points at x = 0.25, 0.6 m over those at x = 0.75
+    assert coverage(tent, FACES, TORSO) == pytest.approx((0.25, 1.0))
