@@ -81,7 +81,7 @@ class Cloth:
 
         The springs between held and free vertices are the cut through which all of the load passes; add the
         held vertices' own weight.  Motor forces behind an anchored link are no load cell as soon as that link
-        can turn: known weights were read 8 to 30 % wrong (`tests/sim/test_handle.py` checks this one).
+        can turn: known weights were read 8 to 30 % wrong (`tests/sim/bullet/test_handle.py` checks this one).
         """
         mine = np.zeros(len(vertices), dtype=bool)
         mine[list(held)] = True

@@ -20,6 +20,20 @@ def test_links_lead_somewhere(page):
             assert (page.parent / target).exists(), target
 
 
+SOURCES = [path for top in ("sim", "perception", "learning", "skills", "trees") for path in (ROOT / top).rglob("*.py")]
+
+
+def test_files_that_are_named_exist():
+    named = re.compile(r"(?<![\w/])(?:sim|perception|learning|skills|trees|tests|docs)(?:/\w+)+\.(?:py|md)\b")
+    lost = {
+        f"{page.relative_to(ROOT)}: {file}"
+        for page in [*PAGES, *SOURCES]
+        for file in named.findall(page.read_text(encoding="utf-8"))
+        if not (ROOT / file).exists()
+    }
+    assert lost == set()
+
+
 BLOCKS = [(page.name, code) for page in PAGES for code in re.findall(r"```python\n(.*?)```", page.read_text(), re.S)]
 
 

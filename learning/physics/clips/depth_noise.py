@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-SIGMA = 0.002  # of the depth at 1 m; grows with the square of the distance, as in sim/raster.py [m]
+SIGMA = 0.002  # of the depth at 1 m; grows with the square of the distance, as in sim/render/raster.py [m]
 EDGE_LOSS = 0.3  # share of the gown's outline that returns nothing
 HOLES = 3.0  # mean number of holes a frame
 HOLE_RADIUS = (0.7, 2.5)  # [px]

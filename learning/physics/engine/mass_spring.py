@@ -9,8 +9,8 @@ Bullet's deformable solver does this to a cloth with `useMassSpring`, `useBendin
 
 f sums `k (|e| - rest) e / |e|` over the edges of the mesh (k = elastic) and over all pairs of vertices two edges
 apart (k = bending).  Bullet solves the middle line by conjugate residuals, this by conjugate gradients; the clips
-agree to a fraction of a millimetre (`tests/learning/physics/test_mass_spring.py`).  What Bullet lacks is added here:
-drag of still air at every vertex, with the law of `sim/effects/air_drag.py`.
+agree to a fraction of a millimetre (`tests/learning/physics/engine/test_mass_spring.py`).  What Bullet lacks is added
+here: drag of still air at every vertex, with the law of `sim/effects/cloth/air_drag.py`.
 """
 
 from __future__ import annotations
