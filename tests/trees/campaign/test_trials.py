@@ -181,18 +181,12 @@ def test_bad_plans_are_refused(tmp_path, bad):
 def test_command_line(fake_caretree, capsys):
     parser = argparse.ArgumentParser()
     add_parser(parser.add_subparsers())
-    args = parser.parse_args(
-        ["trials", "dressing", "-n", "2", "--out", str(fake_caretree), "--gown", "small", "--inject", "stale@lift:step"]
-    )
+    to_runs = ["--gown", "small", "--inject", "stale@lift:step", "--set", "lift_arm.duration=6"]
+    args = parser.parse_args(["trials", "dressing", "-n", "2", "--out", str(fake_caretree), *to_runs])
     assert args.main is main
     assert main(args) == 0
     assert "1/2 = 50%" in capsys.readouterr().out
-    assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == [
-        "--gown",
-        "small",
-        "--inject",
-        "stale@lift:step",
-    ]
+    assert json.loads((fake_caretree / "trials.json").read_text())["arguments"] == to_runs
 
 
 def test_a_trial_that_another_campaign_runs_is_left_alone(fake_caretree):
