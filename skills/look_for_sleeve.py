@@ -29,13 +29,14 @@ class LookForSleeveTuning(Quantities):
 class LookForSleeve(Skill):
     """Looks until the sleeve shows well, from the head and with the hand's camera, so that it is known after the lift.
 
-    A sleeve that shows badly from everywhere is no failure; it fails where the arm is lost, or a hand does not move.
+    A sleeve that shows badly from everywhere, or an arm that is lost meanwhile, is no failure: who lifts the arm looks
+    again.  It fails where a hand does not move.
     """
 
     side = Input(Side, doc="arm of the person that the sleeve belongs to")
     hand = Input(Side, doc="hand whose camera may look from above")
     tuning = Input(LookForSleeveTuning, default=LookForSleeveTuning(), doc="numbers of this skill")
-    reasons = (Reason.ARM_LOST, Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST)
+    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Look; then the hand goes back to where it was."""

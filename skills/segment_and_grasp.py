@@ -8,9 +8,9 @@ from ..perception.estimates import GraspPoint
 from ..sim.world import Side
 from .control.base import stand_for
 from .control.head import pan_head
-from .control.pinch import back_off, pinch, reach_in
+from .control.pinch import pinch_or_back_off, reach_in
 from .core.ports import Input, Output
-from .core.reasons import Reason, SkillFailure
+from .core.reasons import Reason
 from .core.skill import Skill
 
 
@@ -40,10 +40,5 @@ class SegmentAndGrasp(Skill):
         self.note("reaches for the gown")
         yield from stand_for(self, self.hand, point.position_in_map)
         yield from reach_in(self, self.hand, point.position_in_map, point.approach_in_map, point.closing_in_map)
-        try:
-            yield from pinch(self, self.hand, force=self.force)
-        except SkillFailure as miss:
-            if miss.reason == Reason.GRASP_MISSED:
-                yield from back_off(self, self.hand)
-            raise
+        yield from pinch_or_back_off(self, self.hand, force=self.force)
         self.grasp = point

@@ -163,14 +163,14 @@ def pinch(
     skill.context.guard.declare_grip(side, "cloth")
 
 
-def pinch_or_back_off(skill: Skill, side: Side) -> Iterator[None]:
-    """`pinch`; where nothing is between the fingers, they open and the hand draws back before that is told.
+def pinch_or_back_off(skill: Skill, side: Side, *, force: float = FINGERS.grip_force) -> Iterator[None]:
+    """`pinch` with `force` [N]; where nothing is between the fingers, they open and the hand draws back first.
 
     Raises:
         SkillFailure: as `pinch` does.
     """
     try:
-        yield from pinch(skill, side)
+        yield from pinch(skill, side, force=force)
     except SkillFailure as miss:
         if miss.reason == Reason.GRASP_MISSED:
             yield from open_gripper(skill, side)

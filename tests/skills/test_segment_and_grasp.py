@@ -38,10 +38,11 @@ def test_stands_where_the_hand_works_with_ease():
     assert run.world.observe().pose_base_in_map[2] == pytest.approx(STAND[2], abs=0.03)  # [rad]
 
 
-def test_a_hand_that_closed_on_nothing_draws_back():
+def test_a_hand_that_closed_on_nothing_opens_and_draws_back():
     run = bench(seen_at(FAR), between=NOTHING)
     assert ended(run) == Reason.GRASP_MISSED
     assert np.linalg.norm(run.world.hand("right")[:3, 3] - FAR) > 0.09  # [m]
+    assert run.world.observe().gripper_opening[1] > 0.07  # [m]
 
 
 def test_no_gown_in_view_is_told_from_where_the_robot_stands():
