@@ -12,7 +12,8 @@ from ..estimates import GownSide
 from ..image.garment import gown_labels, gown_side
 from ..image.projection import points_in_map
 from ..image.surfaces import Surface
-from .hung_corner import hook, strips
+from .hung_corner import hook
+from .neckline_strip import strips
 
 
 @dataclass(frozen=True, kw_only=True)
