@@ -1,4 +1,4 @@
-"""Stage A's grasp."""
+"""The grasp beside the point from which the gown hangs."""
 
 import numpy as np
 import pytest

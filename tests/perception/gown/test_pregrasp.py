@@ -1,4 +1,4 @@
-"""Stage B's proposal from six views."""
+"""The pre-grasp proposal from six views."""
 
 import numpy as np
 import pytest
