@@ -77,7 +77,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
     )
     away = back_off("back off", arm, DRESSING.back_off_distance)
     once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, CheckSleeve("is inside", arm))
-    return RecoverBy(f"dress the {side} arm", once, dict.fromkeys(MISSES, begin_again), attempts=3)
+    return RecoverBy(f"dress the {side} arm", once, dict.fromkeys(MISSES, begin_again), attempts=DRESSING.arm_attempts)
 
 
 def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:

@@ -96,6 +96,9 @@ class DressingTuning(Quantities):
         "choice: sleeves and folds always show some of it",
     )
     # dressing an arm
+    arm_attempts: int = quantity(
+        6, "1", "at one arm, the first one included", "choice: the stage's time ends them; a missed grasp costs 20 s"
+    )
     past_wrist: float = quantity(
         1.5, "1", "arm coordinate of the grip where the lifting hand may let go", "choice: half way up the forearm"
     )
@@ -149,7 +152,7 @@ class DressingTuning(Quantities):
         260.0, "s", "for taking the gown down", "choice: three tries and one from one hand"
     )
     lay_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
-    dress_timeout: float = quantity(400.0, "s", "for dressing both arms", "choice: room for recoveries")
+    dress_timeout: float = quantity(600.0, "s", "for dressing both arms", "choice: room for two misses at each arm")
     spread_timeout: float = quantity(400.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
 
 
