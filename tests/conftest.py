@@ -49,6 +49,12 @@ def gown() -> TruthStatic:
         loops=loops,
         arm_radii=np.tile([0.05, 0.045, 0.04], (2, 1)),
         person_parts=("torso", "left_arm", "right_arm"),
+        robot_capsule_names=("left_palm", "right_palm"),
+        person_capsules=np.array([(0.0, -0.1, 0.0, 0.0, -0.25, 0.0, 0.08), (0.0, 0.1, -0.1, 0.0, 0.5, -0.1, 0.1)]),
+        person_capsule_names=("neck_head", "trunk"),
+        bed_top=-0.1,
+        face=np.array((0.0, -0.2, 0.08, 0.0, 0.0, 1.0)),
+        neckline=np.arange(11),
     )
 
 
@@ -70,6 +76,8 @@ def frame(static: TruthStatic, index: int) -> TruthFrame:
         gripper_closed=np.full(2, held),
         gripper_load=load,
         person_force=np.array([0.5, 2.0 * held, 1.0]),
+        robot_capsules=np.array([(x, -0.5, 1.0, x, -0.6, 1.0, 0.05) for x in (-0.5, 0.5)]),
+        holds_arm=np.full(2, -1),
     )
 
 

@@ -87,6 +87,7 @@ class Grip:
         kind: `nothing`, `cloth` or `arm`.
         layers: of the cloth held.
         part: index in `PERSON_PARTS` of the arm part held, or None.
+        arm: which arm is held: -1 none, 0 left, 1 right.
         thickness: what keeps the fingers apart [m].
     """
 
@@ -95,6 +96,7 @@ class Grip:
         self.kind = "nothing"
         self.layers = 0
         self.part: int | None = None
+        self.arm = -1
         self.thickness = 0.0
         self._pins: list[int] = []
         self._held: tuple[int, ...] = ()
@@ -136,7 +138,7 @@ class Grip:
         )
         self.client.changeConstraint(self._constraint, maxForce=ROOM.force(2 * FRICTION_SKIN * force))
         self.kind, self.thickness, self._armed = "arm", 2 * radius, False
-        self.part = arm_part(arm, part)
+        self.part, self.arm = arm_part(arm, part), arm
         self._arm_link, self._arm_local, self._arm_offset = link, np.array(local), offset
         return True
 
@@ -161,7 +163,7 @@ class Grip:
         if self._constraint is not None:
             self.client.removeConstraint(self._constraint)
             self._constraint = None
-        self.kind, self.layers, self.part, self.thickness = "nothing", 0, None, 0.0
+        self.kind, self.layers, self.part, self.arm, self.thickness = "nothing", 0, None, -1, 0.0
 
     @property
     def load(self) -> np.ndarray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part
+from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from .person import Person
 from .soft_world import GRAVITY
 
@@ -59,9 +59,8 @@ class ForceBalance:
     def _touching(self, vertices: np.ndarray) -> tuple[np.ndarray, int]:
         """How many vertices touch each part, and how many the bed."""
         counts = np.zeros(len(PERSON_PARTS))
-        counts[0] = sum(
-            int((_gap(vertices, a, b) < radius + TOUCH).sum()) for a, b, radius in self.person.trunk.values()
-        )
+        for name, (a, b, radius) in self.person.trunk.items():
+            counts[part_of(name)] += (_gap(vertices, a, b) < radius + TOUCH).sum()
         arms, radii = self.person.arms(), self.person.radii()
         for arm in range(2):
             for k in range(len(ARM_SEGMENTS)):

@@ -24,9 +24,10 @@ from ..record.truth import TruthFrame, TruthStatic
 from ..render.camera import CAMERA_VIEWS, camera_intrinsics
 from ..render.live_view import SIZE, LiveView
 from ..robot.body import RobotBody
+from ..robot.capsules import RobotCapsules
 from ..robot.kinematics import default_kinematics
 from ..scene.initial_state import InitialState
-from ..scene.person_spec import PERSON_PARTS, trunk_capsules
+from ..scene.person_spec import PERSON_PARTS, face, trunk_capsules
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
@@ -90,6 +91,7 @@ class BulletWorld(World):
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.kinematics = default_kinematics()
+        self._capsules = RobotCapsules(self.kinematics)
         self.timing: dict[str, float] = defaultdict(float)
         self._noise = np.random.default_rng([seed, 2])
         self._recorder: Recorder | None = None
@@ -385,6 +387,12 @@ class BulletWorld(World):
                 loops=mesh.loops,
                 arm_radii=self._person.radii(),
                 person_parts=PERSON_PARTS,
+                robot_capsule_names=self._capsules.names,
+                person_capsules=np.array([(*a, *b, radius) for a, b, radius in self._person.trunk.values()]),
+                person_capsule_names=tuple(self._person.trunk),
+                bed_top=BED_TOP,
+                face=face(self.scene.person, BED_TOP, self.scene.bed_xy),
+                neckline=mesh.collar,
             )
         )
         self._recorder = recorder
@@ -407,6 +415,12 @@ class BulletWorld(World):
             gripper_closed=closed,
             gripper_load=loads,
             person_force=force,
+            robot_capsules=self._capsules.rows(
+                self._capsules.ends(
+                    reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
+                )
+            ),
+            holds_arm=np.array([grip.arm for grip in self._grips]),
         )
 
     def _record(self) -> None:

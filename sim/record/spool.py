@@ -91,6 +91,7 @@ def open_spool(folder: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
             vertices=len(static["rest_vertices"]),
             torso_points=int(static.pop("torso_points")),
             parts=len(static["person_parts"]),
+            links=len(static["robot_capsule_names"]),
         )
         rows = (folder / "frames.bin").stat().st_size // row_type.itemsize
         if rows == 0:

@@ -43,6 +43,12 @@ class TruthStatic:
         loops: name in `LOOPS` -> (n,) int, ordered so that the right-hand normal points from body to hand.
         arm_radii: (2, 3) capsule radii of upper arm, forearm and hand, left then right [m].
         person_parts: (k,) names of the body parts whose force is recorded.
+        robot_capsule_names: (r,) names of the robot's links; those of a hand's fingers contain `finger`.
+        person_capsules: (p, 7) ends and radius of head, trunk and legs, which do not move [m].
+        person_capsule_names: (p,) names of them.
+        bed_top: height of the mattress under the person [m].
+        face: (6,) a point between mouth and nose and the outward normal there [m].
+        neckline: (n,) int, vertices of the gown's neckline from end to end.
 
     Raises:
         RecordError: a shape, an index or a loop name is wrong.
@@ -53,6 +59,12 @@ class TruthStatic:
     loops: Mapping[str, np.ndarray]
     arm_radii: np.ndarray
     person_parts: tuple[str, ...]
+    robot_capsule_names: tuple[str, ...]
+    person_capsules: np.ndarray
+    person_capsule_names: tuple[str, ...]
+    bed_top: float
+    face: np.ndarray
+    neckline: np.ndarray
 
     def __post_init__(self) -> None:
         """Reject a mesh that later frames could not be read against."""
@@ -65,6 +77,10 @@ class TruthStatic:
         for name, loop in self.loops.items():
             _check_shape(f"loop_{name}", loop, (None,))
             _check_index(f"loop_{name}", loop, len(self.rest_vertices))
+        _check_shape("person_capsules", self.person_capsules, (len(self.person_capsule_names), 7))
+        _check_shape("face", self.face, (6,))
+        _check_shape("neckline", self.neckline, (None,))
+        _check_index("neckline", self.neckline, len(self.rest_vertices))
 
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays under the names they carry in truth.npz."""
@@ -75,6 +91,12 @@ class TruthStatic:
             **named,
             "arm_radii": np.asarray(self.arm_radii, dtype=np.float32),
             "person_parts": np.asarray(self.person_parts, dtype=np.str_),
+            "robot_capsule_names": np.asarray(self.robot_capsule_names, dtype=np.str_),
+            "person_capsules": np.asarray(self.person_capsules, dtype=np.float32),
+            "person_capsule_names": np.asarray(self.person_capsule_names, dtype=np.str_),
+            "bed_top": np.asarray(self.bed_top, dtype=np.float64),
+            "face": np.asarray(self.face, dtype=np.float32),
+            "neckline": np.asarray(self.neckline, dtype=np.int32),
         }
 
 
@@ -90,7 +112,9 @@ class TruthFrame:
         gripper_pose: (2, 7) position [m] and quaternion x, y, z, w of each hand.
         gripper_closed: (2,) bool, holds cloth.
         gripper_load: (2, 3) cloth load on each gripper [N].
-        person_force: (k,) force on each body part [N].
+        person_force: (k,) force on each body part, by cloth and by the robot [N].
+        robot_capsules: (r, 7) axis ends and radius of every link above the base [m].
+        holds_arm: (2,) int, which arm each hand holds: -1 none, 0 left, 1 right.
     """
 
     t: float
@@ -101,6 +125,8 @@ class TruthFrame:
     gripper_closed: np.ndarray
     gripper_load: np.ndarray
     person_force: np.ndarray
+    robot_capsules: np.ndarray
+    holds_arm: np.ndarray
 
     def row_type(self, static: TruthStatic) -> np.dtype:
         """The packed type of one frame on disk, after checking this frame against `static`.
@@ -109,6 +135,7 @@ class TruthFrame:
             RecordError: an array has the wrong shape.
         """
         vertices, parts = len(static.rest_vertices), len(static.person_parts)
+        links = len(static.robot_capsule_names)
         _check_shape("vertices", self.vertices, (vertices, 3))
         _check_shape("arms", self.arms, (2, 4, 3))
         _check_shape("torso_front", self.torso_front, (None, 6))
@@ -119,11 +146,13 @@ class TruthFrame:
         _check_shape("gripper_closed", self.gripper_closed, (2,))
         _check_shape("gripper_load", self.gripper_load, (2, 3))
         _check_shape("person_force", self.person_force, (parts,))
-        return frame_type(vertices=vertices, torso_points=points, parts=parts)
+        _check_shape("robot_capsules", self.robot_capsules, (links, 7))
+        _check_shape("holds_arm", self.holds_arm, (2,))
+        return frame_type(vertices=vertices, torso_points=points, parts=parts, links=links)
 
 
-def frame_type(*, vertices: int, torso_points: int, parts: int) -> np.dtype:
-    """Packed type of one frame with `vertices` V, `torso_points` m and `parts` k."""
+def frame_type(*, vertices: int, torso_points: int, parts: int, links: int) -> np.dtype:
+    """Packed type of one frame with `vertices` V, `torso_points` m, `parts` k and `links` r."""
     return np.dtype(
         [
             ("t", "<f8"),
@@ -134,5 +163,7 @@ def frame_type(*, vertices: int, torso_points: int, parts: int) -> np.dtype:
             ("gripper_closed", "?", (2,)),
             ("gripper_load", "<f4", (2, 3)),
             ("person_force", "<f4", (parts,)),
+            ("robot_capsules", "<f4", (links, 7)),
+            ("holds_arm", "i1", (2,)),
         ]
     )

@@ -21,7 +21,7 @@ from ..world import SIDES, Side
 
 ARM_AXES = ("abduction", "elevation", "rotation", "flexion")
 ARM_SEGMENTS = ("upper_arm", "forearm", "hand")
-PERSON_PARTS = ("trunk", *(f"{side}_{segment}" for side in SIDES for segment in ARM_SEGMENTS))
+PERSON_PARTS = ("trunk", *(f"{side}_{segment}" for side in SIDES for segment in ARM_SEGMENTS), "legs", "head")
 OUTWARD: dict[Side, float] = {"left": -1.0, "right": 1.0}  # the person's left is at smaller x
 JOINT_LIMITS = {
     "abduction": (-0.2, 1.9),
@@ -56,6 +56,9 @@ class BodyShape(Quantities):
     head_y: float = quantity(0.22, "m", "of the head, from the shoulders", "choice: a manikin of 174 cm")
     head_z: float = quantity(0.12, "m", "of the head", "choice: on a pillow")
     head_radius: float = quantity(0.09, "m", "of neck and head", "choice: a manikin of 174 cm")
+    face_y: float = quantity(
+        0.17, "m", "between mouth and nose, from the shoulders towards the head", "choice: 14 cm below the crown"
+    )
     front_x: float = quantity(0.15, "m", "half the width of the front of the trunk", "choice: all but the rim")
     front_y: float = quantity(0.06, "m", "of the waist, towards the head", "choice: where chest and belly end")
     arm_mass_share: float = quantity(
@@ -164,7 +167,7 @@ def trunk_capsules(spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float]
     for side in SIDES:
         sign, level = OUTWARD[side], z + body.chest_radius * s
         chest = x + sign * body.chest_x * s
-        out[f"chest_{side}"] = ((chest, y - body.chest_y, level), (chest, y, level), body.chest_radius * s)
+        out[f"trunk_{side}"] = ((chest, y - body.chest_y, level), (chest, y, level), body.chest_radius * s)
         out[f"leg_{side}"] = (
             (x + sign * body.hip_x * s, y + body.hip_y, z + body.hip_z * s),
             (x + sign * body.foot_x * s, y + body.foot_y * s, z + body.foot_z * s),
@@ -177,6 +180,21 @@ def trunk_capsules(spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float]
         body.head_radius * s,
     )
     return {name: (np.array(a), np.array(b), radius) for name, (a, b, radius) in out.items()}
+
+
+def part_of(capsule: str) -> int:
+    """Index in `PERSON_PARTS` of what one of `trunk_capsules` belongs to."""
+    part = "head" if "head" in capsule else "legs" if "leg" in capsule else "trunk"
+    return PERSON_PARTS.index(part)
+
+
+def face(spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float]) -> np.ndarray:
+    """(6,) point on the skin between mouth and nose and the outward normal there, map frame [m]."""
+    s, body = spec.scale, SHAPE
+    share = (body.face_y - body.neck_y) / (body.head_y - body.neck_y)
+    level = body.neck_z + share * (body.head_z - body.neck_z)
+    y = bed_xy[1] - body.shoulder_y - body.face_y * s
+    return np.array((bed_xy[0], y, bed_top + (level + body.head_radius) * s, 0.0, 0.0, 1.0))
 
 
 def torso_front(spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float]) -> np.ndarray:

@@ -1,5 +1,6 @@
 """The record survives a kill, a full disk and wrong input."""
 
+import dataclasses
 import json
 import os
 from pathlib import Path
@@ -30,6 +31,12 @@ def static() -> TruthStatic:
         loops=dict.fromkeys(names, loop),
         arm_radii=np.full((2, 3), 0.05),
         person_parts=("head", "torso"),
+        robot_capsule_names=("left_palm",),
+        person_capsules=np.zeros((1, 7)),
+        person_capsule_names=("head",),
+        bed_top=0.6,
+        face=np.zeros(6),
+        neckline=np.arange(3),
     )
 
 
@@ -43,6 +50,8 @@ def truth(index: int, points: int = 100) -> TruthFrame:
         gripper_closed=np.array([True, False]),
         gripper_load=np.full((2, 3), float(index)),
         person_force=np.array([0.0, index]),
+        robot_capsules=np.full((1, 7), float(index)),
+        holds_arm=np.array([-1, 1]),
     )
 
 
@@ -97,6 +106,14 @@ def test_finished_record_holds_what_design_asks_for(tmp_path):
             "gripper_load",
             "person_force",
             "person_parts",
+            "robot_capsules",
+            "robot_capsule_names",
+            "holds_arm",
+            "person_capsules",
+            "person_capsule_names",
+            "bed_top",
+            "face",
+            "neckline",
         }
         assert stored["vertices"].shape == (600, 3, 3)
         assert stored["vertices"].dtype == np.float32
@@ -192,11 +209,13 @@ def test_shapes_are_checked_when_they_are_given(tmp_path):
         ("faces", np.array([[0.0, 1.0, 2.0]]), "integers"),
         ("arm_radii", np.zeros((2, 2)), "arm_radii has shape"),
         ("loops", {"armhole_left": np.arange(3)}, "loops are named"),
+        ("person_capsules", np.zeros((2, 7)), "person_capsules has shape"),
+        ("neckline", np.array([3]), "0 to 2"),
     ],
 )
 def test_bad_static_part_is_one_sentence(field, value, message):
     given = static()
-    fields = {name: getattr(given, name) for name in ("faces", "rest_vertices", "loops", "arm_radii", "person_parts")}
+    fields = {each.name: getattr(given, each.name) for each in dataclasses.fields(given)}
     with pytest.raises(RecordError, match=message):
         TruthStatic(**(fields | {field: value}))
 

@@ -23,7 +23,7 @@ def test_the_front_lies_on_the_chest(spec):
     front = torso_front(spec, 0.6, (0.01, -0.02))
     assert np.linalg.norm(front[:, 3:], axis=1) == pytest.approx(np.ones(len(front)))
     assert (front[:, 5] > 0.0).all()
-    a, b, radius = trunk_capsules(spec, 0.6, (0.01, -0.02))["chest_left"]
+    a, b, radius = trunk_capsules(spec, 0.6, (0.01, -0.02))["trunk_left"]
     left = front[front[:, 0] < a[0]]
     distance = np.linalg.norm(left[:, (0, 2)] - a[[0, 2]], axis=1)
     assert distance == pytest.approx(np.full(len(left), radius))
@@ -34,8 +34,8 @@ def test_the_front_lies_on_the_chest(spec):
 def test_left_and_right_mirror_each_other_in_the_order_that_physics_loads_them():
     spec = PERSONS["small"]
     trunk = trunk_capsules(spec, 0.6, (0.0, 0.0))
-    assert list(trunk) == ["chest_left", "leg_left", "chest_right", "leg_right", "neck_head"]
-    for part in ("chest", "leg"):
+    assert list(trunk) == ["trunk_left", "leg_left", "trunk_right", "leg_right", "neck_head"]
+    for part in ("trunk", "leg"):
         for left, right in zip(trunk[f"{part}_left"][:2], trunk[f"{part}_right"][:2], strict=True):
             np.testing.assert_array_equal(left * (-1, 1, 1), right)
     left, right = (shoulder_in_map(spec, side, 0.6, (0.0, 0.0)) for side in ("left", "right"))
@@ -53,7 +53,7 @@ def test_segments_scale_and_weigh_what_the_body_does():
 def test_parts_of_the_arms_are_found_by_their_names():
     assert PERSON_PARTS[arm_part(0, 0)] == "left_upper_arm"
     assert PERSON_PARTS[arm_part(1, 2)] == "right_hand"
-    assert len(PERSON_PARTS) == 7
+    assert len(PERSON_PARTS) == 9
 
 
 def test_every_number_of_the_shape_says_where_it_comes_from():

@@ -1,0 +1,154 @@
+"""The robot as capsules, one or two for each link above the base: for distances to the person, and for contact.
+
+The boxes of `shapes.py` become the capsules that fill them; its capsules stay what they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+from ..world import SIDES
+from . import model
+from .kinematics import Kinematics
+from .shapes import Shape, collision_shapes
+
+# capsule -> link of `shapes.py`; the base is left out: the map keeps it off the bed
+_LIMB = {
+    "shoulder": "upper_shoulder",
+    "upper_arm": "upper_elbow",
+    "elbow": "lower_elbow",
+    "forearm": "upper_forearm",
+    "wrist_1": "lower_forearm",
+    "wrist_2": "wrist",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkCapsule:
+    """A capsule fixed to a link.
+
+    Attributes:
+        name: `left_palm_1`, `right_finger_2`, `left_forearm`, `torso_1`, ...
+        link: that carries it.
+        ends: (2, 3) of its axis, in the link's frame [m].
+        radius: [m].
+    """
+
+    name: str
+    link: str
+    ends: np.ndarray
+    radius: float
+
+
+def link_capsules() -> tuple[LinkCapsule, ...]:
+    """All capsules: of each arm from the shoulder to the fingers, then torso and head."""
+    shapes = collision_shapes()
+    capsules = []
+    for side in SIDES:
+        for name, link in _LIMB.items():
+            capsules.append(_of_capsule(f"{side}_{name}", f"{side}_{link}", shapes[f"{side}_{link}"][0]))
+        capsules += _palm(f"{side}_palm", f"{side}_gripper")
+        capsules += [
+            _finger(f"{side}_finger_{n + 1}", f"{side}_finger_{finger}_link", sign)
+            for n, (finger, sign) in enumerate((("a", 1.0), ("b", -1.0)))
+        ]
+    capsules += _upright("torso", "torso", shapes["torso"][0])
+    return (*capsules, _of_capsule("head", "head", shapes["head"][0]))
+
+
+def _of_capsule(name: str, link: str, shape: Shape) -> LinkCapsule:
+    radius, length = shape.size
+    axis = pin.rpy.rpyToMatrix(*shape.rpy)[:, 2] * length / 2
+    return LinkCapsule(name=name, link=link, ends=np.array((shape.xyz - axis, shape.xyz + axis)), radius=radius)
+
+
+def _palm(name: str, link: str) -> list[LinkCapsule]:
+    """Two capsules along the closing direction, at either end of the box."""
+    across, closing, height = model.PALM_SIZE
+    radius, half = across / 2, (closing - across) / 2
+    return [
+        LinkCapsule(
+            name=f"{name}_{n + 1}", link=link, ends=np.array(((0.0, -half, z), (0.0, half, z))), radius=float(radius)
+        )
+        for n, z in enumerate((radius, height - radius))
+    ]
+
+
+def _finger(name: str, link: str, sign: float) -> LinkCapsule:
+    """As thick as the finger: its pad faces the other one at y = 0."""
+    _, thick, long = model.FINGER_SIZE
+    radius = float(thick / 2)
+    ends = np.array(((0.0, sign * radius, -long + radius), (0.0, sign * radius, -radius)))
+    return LinkCapsule(name=name, link=link, ends=ends, radius=radius)
+
+
+def _upright(name: str, link: str, box: Shape) -> list[LinkCapsule]:
+    """Two upright capsules beside each other, as deep as the box."""
+    deep, wide, high = box.size
+    radius, x, z = deep / 2, box.xyz[0], box.xyz[2]
+    lift = high / 2 - radius
+    return [
+        LinkCapsule(
+            name=f"{name}_{n + 1}",
+            link=link,
+            ends=np.array(((x, y, z - lift), (x, y, z + lift))),
+            radius=radius,
+        )
+        for n, y in enumerate((radius - wide / 2, wide / 2 - radius))
+    ]
+
+
+class RobotCapsules:
+    """Where the capsules are for given joint angles.
+
+    Args:
+        kinematics: the robot's model.
+
+    Attributes:
+        capsules: in the order of the rows.
+        names: (r,) of them.
+        radii: (r,) [m].
+    """
+
+    def __init__(self, kinematics: Kinematics) -> None:
+        self.capsules = link_capsules()
+        self.names = tuple(capsule.name for capsule in self.capsules)
+        self.radii = np.array([capsule.radius for capsule in self.capsules])
+        self._kinematics, model_ = kinematics, kinematics.model
+        frames = [model_.frames[model_.getFrameId(capsule.link)] for capsule in self.capsules]
+        self._joints = [frame.parentJoint for frame in frames]
+        self._local = np.stack(
+            [
+                capsule.ends @ frame.placement.rotation.T + frame.placement.translation
+                for capsule, frame in zip(self.capsules, frames, strict=True)
+            ]
+        )  # (r, 2, 3) in the frame of the joint that moves the link
+
+    def ends(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """(r, 2, 3) ends of every capsule's axis in the map [m].
+
+        Args:
+            pose_base_in_map: (3,) where the base stands [m, m, rad].
+            arm_positions: (2, 7) [rad].
+            head_pan: [rad].
+            gripper_opening: (2,) [m]; closed when omitted.
+        """
+        robot = self._kinematics
+        q = robot.configuration(pose_base_in_map, arm_positions, head_pan, gripper_opening)
+        pin.forwardKinematics(robot.model, robot.data, q)
+        places = [robot.data.oMi[joint] for joint in self._joints]
+        turns = np.array([place.rotation for place in places])
+        return self._local @ turns.transpose(0, 2, 1) + np.array([place.translation for place in places])[:, None]
+
+    def rows(self, ends: np.ndarray) -> np.ndarray:
+        """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""
+        return np.column_stack((ends.reshape(-1, 6), self.radii))
