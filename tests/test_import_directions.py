@@ -14,6 +14,7 @@ ALLOWED_SIM = {
     "errors",
     "command_line",
     "quantity",
+    "segments",
     "robot",
     "scripted",
     "faults",

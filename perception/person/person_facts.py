@@ -35,6 +35,10 @@ class PersonFacts(Quantities):
         "choice: friction holds an elbow that its owner cannot move, in a straight arm to an angle of 30 degrees",
     )
     crown_to_shoulder: float = quantity(0.31, "m", "along the body", _WINTER)
+    shoulders_headward: float = quantity(
+        0.55, "m", "of the shoulders from the middle of the bed", "choice: with the head on a pillow"
+    )
+    head_radius: float = quantity(0.10, "m", "of head and neck, with hair", "choice: an adult's")
     shoulder_half_width: float = quantity(0.20, "m", "from the midline to the shoulder joint", _WINTER)
     trunk_half_width: float = quantity(0.20, "m", "from the midline to the flank", _WINTER)
     head_height: float = quantity(
@@ -52,6 +56,7 @@ class PersonFacts(Quantities):
     )
     trunk_length: float = quantity(0.55, "m", "from the shoulders to the hips", "choice: an adult of 174 cm")
     leg_length: float = quantity(0.85, "m", "from the hips to the feet", "choice: an adult of 174 cm")
+    leg_radius: float = quantity(0.08, "m", "of legs that lie flat", "choice: an adult of 174 cm")
     axis_height: float = quantity(
         0.11, "m", "of the body's axis above the mattress", "choice: half the depth of a trunk that lies on its back"
     )

@@ -19,12 +19,12 @@ from ...perception.estimates import ArmPosture, Head
 from ...perception.image.projection import pixels_of
 from ...perception.image.surfaces import Surface, surfaces
 from ...perception.person.arm_fit import turned_about_shoulder
-from ...perception.person.person_facts import PERSON
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, Frame, Side
 from ..core.skill import Skill
 from ..geometry.arm_path import ArmPath
 from ..geometry.hold import Hold
+from ..geometry.person_zone import body_parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +58,7 @@ class PersonTrackingTuning(Quantities):
     near_distance: float = quantity(
         0.34, "m", "from the person's surface at which a hand is near", "choice: a little more than the guard's 0.30 m"
     )
-    arm_radius: float = quantity(0.05, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
-    trunk_radius: float = quantity(0.16, "m", "of trunk and legs, as the guard is told", "choice: half their width")
-    head_radius: float = quantity(0.11, "m", "of the head, as the guard is told", "choice: an adult's, with hair")
+    arm_radius: float = quantity(0.04, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
 
 
 PERSON_TRACKING = PersonTrackingTuning()
@@ -75,14 +73,12 @@ class Watch:
         seen: when that arm was last seen or felt [s].
         looked: when the camera was last asked [s].
         searched: when that arm was last looked for elsewhere than where it was [s].
-        parts: what the guard was told, chains of points (n, 3) with a radius [m].
     """
 
     arms: dict[Side, ArmPosture] = field(default_factory=dict)
     seen: dict[Side, float] = field(default_factory=dict)
     looked: float = -np.inf
     searched: dict[Side, float] = field(default_factory=dict)
-    parts: dict[str, tuple[np.ndarray, float]] = field(default_factory=dict)
 
 
 def watch_of(skill: Skill) -> Watch:
@@ -170,7 +166,7 @@ def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) 
         except PerceptionFailure:
             continue
     try:
-        _tell_body(skill, skill.context.senses.head(frame), tuning)
+        _tell_body(skill, skill.context.senses.head(frame))
     except PerceptionFailure:
         if not found:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "person") from None
@@ -192,28 +188,18 @@ def _keep(skill: Skill, side: Side, posture: ArmPosture, tuning: PersonTrackingT
     """Remember one arm as it was seen now and tell the guard."""
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
-    _tell(skill, f"{side} arm", posture.points_in_map, tuning.arm_radius)
+    skill.context.guard.update_person(posture.points_in_map, part=f"{side} arm", radius=tuning.arm_radius)
 
 
 def _held_at(skill: Skill, hold: Hold) -> np.ndarray:
     return skill.world.observe().pose_hand_in_map[SIDES.index(hold.hand), :3, 3]
 
 
-def _tell_body(skill: Skill, head: Head, tuning: PersonTrackingTuning) -> None:
-    """Tell the guard of head and trunk, the legs with it, as far as they follow from the head."""
-    crown, middle = head.crown_in_map, head.middle
-    level = skill.world.room.bed[1, 2] + PERSON.axis_height
-    shoulders = crown[1] + PERSON.crown_to_shoulder
-    along = (0.0, PERSON.trunk_length, PERSON.trunk_length + PERSON.leg_length)
-    trunk = np.array([(middle, shoulders + down, level) for down in along])
-    _tell(skill, "trunk", trunk, tuning.trunk_radius)
-    radius = tuning.head_radius
-    _tell(skill, "head", np.array((crown + (0.0, radius, 0.0), (middle, shoulders, level))), radius)
-
-
-def _tell(skill: Skill, part: str, points: np.ndarray, radius: float) -> None:
-    skill.context.guard.update_person(points, part=part, radius=radius)
-    watch_of(skill).parts[part] = points, radius
+def _tell_body(skill: Skill, head: Head) -> None:
+    """Tell the guard of head, trunk and legs, as far as they follow from the head."""
+    mattress = float(skill.world.room.bed[1, 2])
+    for part, (points, radius) in body_parts(head.middle, float(head.crown_in_map[1]), mattress).items():
+        skill.context.guard.update_person(points, part=part, radius=radius)
 
 
 def careful(
@@ -223,17 +209,9 @@ def careful(
 
     Planned with it, a motion is slow only where it must be; the guard would slow all of it.
     """
-    parts = list(watch_of(skill).parts.values())
+    zone = skill.context.guard.zone
 
     def limit(position: np.ndarray) -> float:
-        near = any(_gap(position, points) < radius + tuning.near_distance for points, radius in parts)
-        return min(fast, tuning.near_speed) if near or not parts else fast
+        return min(fast, tuning.near_speed) if zone.distance(position)[0] < tuning.near_distance else fast
 
     return limit
-
-
-def _gap(position: np.ndarray, points: np.ndarray) -> float:
-    """Distance from a position (3,) to a chain of points (n, 3) [m]."""
-    start, edge = points[:-1], np.diff(points, axis=0)
-    share = np.clip(np.einsum("ij,ij->i", position - start, edge) / np.maximum((edge**2).sum(axis=1), 1e-12), 0.0, 1.0)
-    return float(np.linalg.norm(start + share[:, None] * edge - position, axis=1).min())

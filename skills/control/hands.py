@@ -17,11 +17,13 @@ from typing import Literal
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
+from ...sim.robot.capsules import RobotCapsules
 from ...sim.robot.collision import CollisionChecker
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
 from ..core.reasons import Reason
 from ..core.skill import Skill
+from ..motion.clear_of_person import ClearOfPerson
 from ..motion.errors import MotionError
 from ..motion.ik import FreeAxis
 from ..motion.reach import plan_arms, plan_hand_line, plan_reach
@@ -56,9 +58,11 @@ def cloth_load(skill: Skill, side: Side) -> np.ndarray:
 
 
 def collision_checker(skill: Skill) -> CollisionChecker:
-    """The run's checker of the arms against the robot itself and the bed."""
-    bed = skill.world.room.bed
-    return skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
+    """The run's checker of the arms against the robot itself, the bed, and the person as it is tracked now."""
+    bed, guard = skill.world.room.bed, skill.context.guard
+    checker = skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
+    links = skill.context.memory.of(RobotCapsules, lambda: RobotCapsules(default_kinematics()))
+    return ClearOfPerson(checker, links, guard.zone, dict(guard.held_arms()))
 
 
 def until_load(

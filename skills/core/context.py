@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
 from ...sim.world import Clock, Command, Frame, Observation, RoomMap, Side
+from ..geometry.person_zone import PersonZone
 from .lease import MotionLease
 from .ports import Board
 from .reasons import Failure
@@ -45,7 +46,13 @@ class SafeWorld(Protocol):
 
 
 class Guard(Protocol):
-    """What a skill tells the guard, and asks it."""
+    """What a skill tells the guard, and asks it.
+
+    Attributes:
+        zone: where the person is, as skills have told.
+    """
+
+    zone: PersonZone
 
     def update_person(self, points_in_map: np.ndarray, *, part: str = "person", radius: float = 0.06) -> None:
         """Say where a part of the person is: (n, 3) points along its axis and its radius [m]."""
@@ -53,6 +60,10 @@ class Guard(Protocol):
 
     def declare_grip(self, side: Side, what: Grip) -> None:
         """Say what a hand holds: it decides which load and speed limits apply."""
+        ...
+
+    def held_arms(self) -> Mapping[Side, str]:
+        """By hand, the person's arm that it holds, as the zone names it."""
         ...
 
     def take_fault(self) -> Failure | None:

@@ -9,10 +9,11 @@ import numpy as np
 from py_trees.common import Status
 
 from ...sim.scripted.world import ScriptedWorld
-from ...sim.world import Command, Frame, Observation, World
+from ...sim.world import Command, Frame, Observation, Side, World
 from ..core.context import Context, Grip, Phase
 from ..core.reasons import Failure
 from ..core.skill import Skill
+from ..geometry.person_zone import PersonZone
 
 PERIOD = 1.0 / 15.0  # [s] between two ticks, as the command line runs trees
 STILL_JOINT, STILL_BASE = (
@@ -32,6 +33,7 @@ class OpenGuard:
     def __init__(self, inner: World) -> None:
         self.clock, self.room = inner.clock, inner.room
         self._inner = inner
+        self.zone = PersonZone(inner.room.bed)
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""
@@ -50,10 +52,15 @@ class OpenGuard:
         self._inner.stop()
 
     def update_person(self, points_in_map: np.ndarray, *, part: str = "person", radius: float = 0.06) -> None:
-        """Nothing is limited near the person."""
+        """Remembered for skills that ask; nothing is limited near the person."""
+        self.zone.update(points_in_map, part=part, radius=radius)
 
     def declare_grip(self, side: str, what: Grip) -> None:
         """Nothing is limited while an arm is held."""
+
+    def held_arms(self) -> dict[Side, str]:
+        """None is known of."""
+        return {}
 
     def take_fault(self) -> Failure | None:
         """There is never one."""

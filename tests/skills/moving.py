@@ -44,6 +44,7 @@ def robot(base=(2.5, -2.5, 0.0), *, deaf_to=(), **answers):
     """World and context of a robot that stands at `base` (3,), its arms ready; `answers` are those of its senses."""
     room = scripted_room()
     room.waypoints["start"] = base
+    room.bed[1, 2] = 0.6  # as in the simulated room: hands that are ready pass over the person's legs
     world = DeafWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
     world.deaf_to = deaf_to
     guard = GuardedWorld(world)

@@ -56,9 +56,9 @@ def test_an_arm_in_view_is_found_and_the_guard_knows_the_person():
     run.context.guard.update_person = lambda points, *, part="person", radius: told.update({part: (points, radius)})
     assert run.ended() is None
     assert run.skill.posture.points_in_map == pytest.approx(LIES["right"].points_in_map)
-    assert set(told) == {"right arm", "trunk", "head"}
+    assert set(told) == {"right arm", "trunk", "legs", "head"}
     assert told["right arm"][0] == pytest.approx(LIES["right"].points_in_map)
-    for part, width in {"right arm": 0.05, "head": 0.11, "trunk": 0.16}.items():
+    for part, width in {"right arm": 0.04, "head": 0.10, "trunk": 0.11, "legs": 0.08}.items():
         assert told[part][1] == pytest.approx(width, abs=0.02)  # [m]
     assert np.ptp(looks) == 0.0, "the head stands"
 

@@ -2,7 +2,8 @@
 
 The runner wraps every world in it, so that a task author cannot leave it out.  It
 
-- keeps a hand slow near the person, by scaling twists and base velocities and by stretching trajectories;
+- keeps every link slow near the person, by scaling twists and base velocities and by stretching trajectories;
+- keeps every link off the person (`keep_clear.py`);
 - scales pulling down as the cloth load grows, stops at the limit, and then lets only relieving motion pass;
 - caps the grip on an arm and the speed of a hand that holds one;
 - stops the run when the senses are stale, frozen or gone.
@@ -10,7 +11,7 @@ The runner wraps every world in it, so that a task author cannot leave it out.  
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -31,14 +32,17 @@ from ...sim.world import (
 )
 from ...skills.core.context import Grip
 from ...skills.core.reasons import Failure, Reason, SkillFailure
+from ...skills.geometry.person_zone import PersonZone
 from .hand_speed import hand_path, hand_positions_from, near_speed, near_speed_bound, stretched
+from .keep_clear import KeepClear
 from .limits import DEFAULT, Limits
-from .person_zone import PersonZone
+from .link_motion import LinkMotion
 from .watchdog import Watchdog
 
 LIFT_MIN = 0.05  # [m] shorter motions of a held arm are corrections, not lifts
 BOTH_MOVE = 0.7  # [m] further from the person than `near`, an arm may move fast while the base moves too
 OPENED = 0.01  # [m] a command that opens the fingers by this much lets go
+ARM_OPENING = 0.03  # [m] between fingers that hold an arm, at least: cloth is thinner, no adult's arm is
 
 
 class GuardedWorld:
@@ -46,9 +50,12 @@ class GuardedWorld:
 
     Args:
         inner: the world.  Where it has no kinematics, trajectories near the person are bounded by the arm's reach,
-            which is safe and slow.
+            which is safe and slow, and no link is kept off the person.
         limits: what to enforce.
         on_command: told of every command really sent.
+
+    Attributes:
+        zone: where the person is, as skills have told.
     """
 
     def __init__(
@@ -63,9 +70,14 @@ class GuardedWorld:
         self.clock = inner.clock
         self.room = inner.room
         self._inner = inner
-        self._zone = PersonZone(inner.room.bed, limits.person_above_bed)
+        self.zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
-        self._hand_positions = hand_positions_from(inner.kinematics if isinstance(inner, HasKinematics) else None)
+        kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
+        self._hand_positions = hand_positions_from(kinematics)
+        self._links = None if kinematics is None else LinkMotion(kinematics)
+        self._clear = None if self._links is None else KeepClear(self._links, self.zone)
+        self._held: dict[Side, str] = {}  # hand -> the arm that it holds
+        self._ends: np.ndarray | None = None
         self._grip: dict[Side, Grip] = {"left": "nothing", "right": "nothing"}
         self._over = {side: False for side in SIDES}
         self._fault: Failure | None = None
@@ -74,17 +86,25 @@ class GuardedWorld:
         self._arm_speed = {side: 0.0 for side in SIDES}
         self._last: Observation | None = None
         self._heavy_since: dict[Side, float | None] = {side: None for side in SIDES}
-        self._fast_since: dict[Side, float | None] = {side: None for side in SIDES}
+        self._fast_since: float | None = None
 
     # -- what skills tell and ask ------------------------------------------------------------------------
 
     def update_person(self, points_in_map: np.ndarray, *, part: str = "person", radius: float = 0.06) -> None:
         """Say where a part of the person is: a chain of points (n, 3) and its radius [m]."""
-        self._zone.update(points_in_map, part=part, radius=radius)
+        self.zone.update(points_in_map, part=part, radius=radius)
 
     def declare_grip(self, side: Side, what: Grip) -> None:
-        """Say what a hand holds; undeclared loads are taken as cloth."""
+        """Say what a hand holds; undeclared loads are taken as cloth, and so is an arm between closed fingers."""
         self._grip[side] = what
+        self._held.pop(side, None)
+        arm = self.zone.nearest_arm(self.observe().pose_hand_in_map[SIDES.index(side), :3, 3])
+        if what == "arm" and arm is not None:
+            self._held[side] = arm
+
+    def held_arms(self) -> Mapping[Side, str]:
+        """By hand, the person's arm that it holds, as the zone names it."""
+        return self._held
 
     def grip(self, side: Side) -> Grip:
         """What a hand was said to hold."""
@@ -124,7 +144,10 @@ class GuardedWorld:
         seen = self._inner.observe()
         self._watchdog.sample(seen, self.clock.now())
         self._judge_load(seen)
-        self._judge_speed(seen)
+        if self._last is None or seen.time > self._last.time:
+            for side, arm in self._held.items():  # it goes with the hand, seen or not
+                self.zone.move_arm(arm, seen.pose_hand_in_map[SIDES.index(side), :3, 3])
+            self._judge_speed(seen)
         self._last = seen
         return seen
 
@@ -196,7 +219,7 @@ class GuardedWorld:
 
     def _lasts(self, side: Side, load: float, time: float) -> bool:
         """Whether a load above the limit counts: the pull of a held arm has to last, or to be far above it."""
-        if self._grip[side] != "arm" or load >= self.limits.arm_load_peak:
+        if not self._holds_arm(side) or load >= self.limits.arm_load_peak:
             return True
         since = self._heavy_since[side]
         if since is None:
@@ -205,24 +228,37 @@ class GuardedWorld:
         return time - since > self.limits.arm_load_for
 
     def _judge_speed(self, seen: Observation) -> None:
+        """Hold a link that has been too fast near the person against the running skill."""
+        if self._links is None:
+            ends = np.repeat(seen.pose_hand_in_map[:, None, :3, 3], 2, axis=1)
+            names, radii = [f"{side} hand" for side in SIDES], np.zeros(len(SIDES))
+        else:
+            ends, radii = self._links.ends(seen), self._links.radii
+            names = [name.replace("_", " ") for name in self._links.names]
+        before, self._ends = self._ends, ends
         last = self._last
-        if last is None or seen.time <= last.time:
+        if last is None or before is None:
             return
-        hands, before = seen.pose_hand_in_map[:, :3, 3], last.pose_hand_in_map[:, :3, 3]
-        speed = np.linalg.norm(hands - before, axis=1) / (seen.time - last.time)
-        close = self._zone.distance(hands) < self.limits.near_person
-        for n, side in enumerate(SIDES):
-            if not close[n] or speed[n] <= self.limits.hand_speed * self.limits.overspeed_factor:
-                self._fast_since[side] = None
-            elif (since := self._fast_since[side]) is None:
-                self._fast_since[side] = last.time
-            elif seen.time - since > self.limits.overspeed_for:
-                self._fast_since[side] = None
-                self.stop()
-                self._fault = Failure(Reason.SPEED_LIMIT, f"{side} hand at {speed[n]:.2f} m/s", "guard")
+        speed = np.linalg.norm(ends - before, axis=2).max(axis=1) / (seen.time - last.time)
+        fast = speed > self.limits.hand_speed * self.limits.overspeed_factor
+        fast[fast] = self.zone.link_distance(ends[fast], radii[fast]) < self.limits.near_person
+        if not fast.any():
+            self._fast_since = None
+        elif self._fast_since is None:
+            self._fast_since = last.time
+        elif seen.time - self._fast_since > self.limits.overspeed_for:
+            self._fast_since = None
+            self.stop()
+            n = int(np.argmax(np.where(fast, speed, 0.0)))
+            self._fault = Failure(Reason.SPEED_LIMIT, f"{names[n]} at {speed[n]:.2f} m/s", "guard")
+
+    def _holds_arm(self, side: Side) -> bool:
+        """Whether a hand holds an arm: it was said to, and its fingers stand as far apart as an arm is thick."""
+        seen = self._last
+        return self._grip[side] == "arm" and (seen is None or seen.gripper_opening[SIDES.index(side)] > ARM_OPENING)
 
     def _load_stop(self, side: Side) -> float:
-        return self.limits.arm_load_stop if self._grip[side] == "arm" else self.limits.cloth_load_stop
+        return self.limits.arm_load_stop if self._holds_arm(side) else self.limits.cloth_load_stop
 
     def _ease(self, side: Side, motion: np.ndarray, seen: Observation, retreat: bool) -> float:
         """Factor 0 to 1 for a hand's `motion` (3,) under its present load; raises SkillFailure at the limit."""
@@ -230,12 +266,12 @@ class GuardedWorld:
         load, stop = float(np.linalg.norm(force)), self._load_stop(side)
         if retreat or not np.any(motion) or float(motion @ force) > 0.0:
             return 1.0  # the hand moves the way it is pulled, or away: relief must stay possible
-        if load >= stop and self._grip[side] == "arm" and not self._over[side]:
+        if load >= stop and self._holds_arm(side) and not self._over[side]:
             return 0.0  # it waits for the load to fall, or to have lasted too long
         if load >= stop:
             raise SkillFailure(Reason.FORCE_LIMIT, f"{load:.1f} N on the {side} hand, limit {stop:g} N")
         slow = self.limits.cloth_load_slow
-        if self._grip[side] == "arm" or load <= slow:
+        if self._holds_arm(side) or load <= slow:
             return 1.0
         return (stop - load) / (stop - slow)
 
@@ -253,13 +289,32 @@ class GuardedWorld:
         carried = self._carried(side, seen)
         speed = float(np.linalg.norm(twist[:3]))
         ahead = hand + np.linspace(0.0, command.duration, 5)[:, None] * twist[:3]
-        near = bool((self._zone.distance(ahead) < self.limits.near_person + carried * command.duration).any())
+        near = bool((self.zone.distance(ahead) < self.limits.near_person + carried * command.duration).any())
         if near or self._grip[side] == "arm":
             limit = max(self._speed_limit(side) - carried, 0.0)
             if speed > limit:
                 twist *= limit / speed
+        if self._links is not None and self._clear is not None:
+            twist = self._clear.twist(command, twist, seen, self._held)
+            after = self._links.after_twist(seen, side, twist, command.duration)
+            twist *= self._slow_links(seen, after, command.duration, carried)
         self._arm_moves(side, float(np.linalg.norm(twist[:3])), command.duration)
         return replace(command, twist_in_map=twist)
+
+    def _slow_links(self, seen: Observation, after: np.ndarray, duration: float, already: float = 0.0) -> float:
+        """Share of a motion, after which the links are at `after` (r, 2, 3), that keeps those near the person slow."""
+        assert self._links is not None
+        if duration <= 0.0:
+            return 1.0
+        here, radii = self._links.ends(seen), self._links.radii
+        speed = np.linalg.norm(after - here, axis=2).max(axis=1) / duration
+        limit = max(self._near_limit() - already, 0.0)
+        fast = speed > limit
+        if not fast.any():
+            return 1.0
+        gap = np.minimum(*(self.zone.link_distance(ends[fast], radii[fast]) for ends in (here, after)))
+        near = gap < self.limits.near_person + already * duration
+        return limit / float(speed[fast][near].max()) if near.any() else 1.0
 
     def _slow_trajectory(self, command: JointTrajectory, seen: Observation, retreat: bool) -> JointTrajectory:
         factor, fastest = 1.0, {}
@@ -269,7 +324,7 @@ class GuardedWorld:
                 if any(joint.startswith(f"{side}_") for joint in command.joints):
                     if np.linalg.norm(seen.wrench_hand_in_map[index, :3]) >= self._load_stop(side) and not retreat:
                         self._ease(side, -seen.wrench_hand_in_map[index, :3], seen, retreat)
-                    speed = near_speed_bound(command, side, seen, self._zone, self.limits.near_person)
+                    speed = near_speed_bound(command, side, seen, self.zone, self.limits.near_person)
                     factor = max(factor, speed / self._speed_limit(side))
                     fastest[side] = self._speed_limit(side)
                 continue
@@ -277,10 +332,13 @@ class GuardedWorld:
             if walked is None:
                 continue
             times, path = walked
+            assert self._links is not None  # where hands are known
+            rows = self._links.rows(side)
             ease = self._ease(side, path[-1] - path[0], seen, retreat)
             carried = self._carried(side, seen)
             reach = self.limits.near_person + (BOTH_MOVE if carried > 0.0 else 0.0)
-            speed = near_speed(times, path, self._zone, reach)
+            _, ends = self._links.along(command, seen)
+            speed = near_speed(times, ends[:, rows], self._links.radii[rows], self.zone, reach)
             steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
             fastest[side] = float((steps / np.maximum(np.diff(times), 1e-9)).max(initial=0.0))
             if self._grip[side] == "arm":
@@ -289,6 +347,8 @@ class GuardedWorld:
                     factor = max(factor, self.limits.lift_duration / max(float(times[-1]), 1e-9))
             limit = max(self._speed_limit(side) - carried, 1e-3)
             factor = max(factor, speed / limit, 1.0 / max(ease, 0.05))
+        if self._clear is not None:
+            self._clear.trajectory(command, seen, self._held)
         for side, speed in fastest.items():
             self._arm_moves(side, speed / factor, float(command.times[-1]) * factor)
         return stretched(command, factor) if factor > 1.0 else command
@@ -312,9 +372,14 @@ class GuardedWorld:
             own = self._arm_speed[side] if self.clock.now() < self._arm_until[side] else 0.0
             # an arm on its way was judged with the base at rest: moving both keeps further away
             reach = self.limits.near_person + (own * command.duration if own <= self._speed_limit(side) else BOTH_MOVE)
-            near = bool((self._zone.distance(ahead) < reach).any())
+            near = bool((self.zone.distance(ahead) < reach).any())
             if speed > 0 and (near or self._grip[side] == "arm"):
                 factor = min(factor, max(self._speed_limit(side) - own, 0.0) / speed)
+        if self._links is not None and self._clear is not None:
+            command = replace(command, velocity=factor * velocity)
+            factor *= self._clear.base(command, seen, self._held)
+            after = self._links.after_base(seen, factor * velocity, command.duration)
+            factor *= self._slow_links(seen, after, command.duration)
         velocity *= factor
         self._base_until = self.clock.now() + command.duration
         self._base_speed = np.array((np.linalg.norm(velocity[:2]), abs(velocity[2])))
@@ -331,7 +396,7 @@ class GuardedWorld:
         n = SIDES.index(command.side)
         if command.opening > seen.gripper_opening[n] + OPENED:
             self._grip[command.side] = "nothing"
-        near = self._zone.distance(seen.pose_hand_in_map[n, :3, 3])[0] < self.limits.near_person
+        near = self.zone.distance(seen.pose_hand_in_map[n, :3, 3])[0] < self.limits.near_person
         if near or self._grip[command.side] == "arm":
             return replace(command, force_limit=min(command.force_limit, self.limits.grip_force_arm))
         return command

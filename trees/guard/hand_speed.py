@@ -8,7 +8,7 @@ import numpy as np
 
 from ...sim.abilities import HandKinematics
 from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation, Side
-from .person_zone import PersonZone
+from ...skills.geometry.person_zone import PersonZone
 
 # hand_positions(side, joint_positions (k, 7) [rad], base_pose (3,)) -> (k, 3) in the map [m]
 HandPositions = Callable[[Side, np.ndarray, np.ndarray], np.ndarray]
@@ -52,14 +52,23 @@ def hand_path(
     return times, np.asarray(hand_positions(side, q, observation.pose_base_in_map), float)
 
 
-def near_speed(times: np.ndarray, path: np.ndarray, zone: PersonZone, near: float) -> float:
-    """Highest speed along a hand's path while either end of a step is near the person [m/s]; 0 when never."""
+def near_speed(times: np.ndarray, ends: np.ndarray, radii: np.ndarray, zone: PersonZone, near: float) -> float:
+    """Highest speed of links while either end of a step is near the person [m/s]; 0 when never.
+
+    Args:
+        times: (k,) [s].
+        ends: (k, r, 2, 3) of the links' axes [m].
+        radii: (r,) of the links [m].
+        zone: where the person is.
+        near: closer than this counts [m].
+    """
     if len(times) < 2:
         return 0.0
-    speed = np.linalg.norm(np.diff(path, axis=0), axis=1) / np.maximum(np.diff(times), 1e-9)
-    close = zone.distance(path) < near
-    touched = close[:-1] | close[1:]
-    return float(speed[touched].max(initial=0.0))
+    count, links = ends.shape[:2]
+    speed = np.linalg.norm(np.diff(ends, axis=0), axis=3).max(axis=2) / np.maximum(np.diff(times), 1e-9)[:, None]
+    gap = zone.link_distance(ends.reshape(-1, 2, 3), np.tile(radii, count)).reshape(count, links)
+    close = gap < near
+    return float(speed[close[:-1] | close[1:]].max(initial=0.0))
 
 
 def near_speed_bound(

@@ -5,7 +5,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import Frame
-from caretree.skills.belief.person_tracking import careful, visible_share, watch_arm, watch_of
+from caretree.skills.belief.person_tracking import careful, visible_share, watch_arm
 from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.hold import Hold
@@ -55,7 +55,7 @@ def test_one_look_serves_several_ticks():
         watch_arm(skill, "right")
         world.clock.wait_until(world.clock.now() + 1 / 15)
     assert 3 <= len(asked) <= 5
-    assert "right arm" in watch_of(skill).parts
+    assert skill.context.guard.zone.seen("right arm")
 
 
 def test_an_arm_in_front_of_where_it_was_is_not_hidden():
@@ -112,7 +112,7 @@ def test_an_arm_never_found_is_not_invented():
 
 def test_hands_are_slow_near_what_was_seen_and_fast_elsewhere():
     skill, _ = make(lying_posture("right"))
-    assert careful(skill, 0.5)(np.array((3.0, 3.0, 1.0))) == 0.13, "nobody seen yet"
+    assert careful(skill, 0.5)(np.array((0.0, 0.0, 1.0))) == 0.13, "nobody seen yet: the person may be here"
     watch_arm(skill, "right")
     limit = careful(skill, 0.5)
     assert limit(np.array((0.5, -0.2, 0.9))) == 0.13

@@ -343,6 +343,8 @@ def test_the_guard_passes_on_the_contract_and_nothing_else():
         "update_person",
         "declare_grip",
         "grip",
+        "zone",
+        "held_arms",
         "take_fault",
         "still",
         "check",
@@ -378,7 +380,7 @@ def test_no_mixture_of_commands_moves_a_hand_too_fast_near_the_person(seed):
     world = Watched(stopping_time=0.0)
     guard = GuardedWorld(world)
     arm = world.observe().pose_hand_in_map[0, :3, 3] + np.array(((-0.6, -0.9, 0), (-0.3, -0.7, 0), (-0.1, -0.8, 0.1)))
-    zone = guard._zone
+    zone = guard.zone
     guard.update_person(arm)
     for _ in range(250):
         side = ("left", "right")[rng.integers(2)]

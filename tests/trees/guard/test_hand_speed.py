@@ -5,6 +5,7 @@ import pytest
 from caretree.sim.scripted.linear_arm import LinearArms
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import JointTrajectory
+from caretree.skills.geometry.person_zone import PersonZone
 from caretree.trees.guard.hand_speed import (
     hand_path,
     hand_positions_from,
@@ -13,11 +14,13 @@ from caretree.trees.guard.hand_speed import (
     sampled,
     stretched,
 )
-from caretree.trees.guard.person_zone import PersonZone
 
 AHEAD = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 2.0)), positions=np.array(((0.0,), (0.8,))))
 TIMES = np.array((0.0, 1.0, 2.0, 3.0))  # [s]
 PATH = np.array(((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.2, 0.0, 0.0), (4.2, 0.0, 0.0)))  # [m]: 1.0, 0.2, 3.0 m/s
+
+
+THIN = np.zeros(1)  # one link that is a point
 
 
 def zone_at(place):
@@ -43,17 +46,23 @@ def test_samples_are_close_together_and_hold_every_knot():
     assert positions[np.flatnonzero(np.isclose(times, 0.33))] == pytest.approx(np.array([[1.0, 2.0]]))
 
 
+def ends_of(path):
+    return np.repeat(path[:, None, None], 2, axis=2)
+
+
 def test_only_steps_near_the_person_count():
-    assert near_speed(TIMES, PATH, zone_at((1.1, 0.0, 0.0)), near=0.15) == pytest.approx(3.0)  # leaves at 3 m/s
-    assert near_speed(TIMES, PATH, zone_at((0.0, 0.1, 0.0)), near=0.15) == pytest.approx(1.0)
-    assert near_speed(TIMES, PATH, zone_at((0.0, 9.0, 0.0)), near=0.15) == 0.0
+    assert near_speed(TIMES, ends_of(PATH), THIN, zone_at((1.1, 0.0, 0.0)), near=0.15) == pytest.approx(
+        3.0
+    )  # leaves at 3 m/s
+    assert near_speed(TIMES, ends_of(PATH), THIN, zone_at((0.0, 0.1, 0.0)), near=0.15) == pytest.approx(1.0)
+    assert near_speed(TIMES, ends_of(PATH), THIN, zone_at((0.0, 9.0, 0.0)), near=0.15) == 0.0
 
 
 def test_without_kinematics_the_speed_is_never_underestimated():
     seen = ScriptedWorld().observe()
     there = zone_at(seen.pose_hand_in_map[0, :3, 3])
     times, path = hand_path(AHEAD, "left", seen, hand_positions_from(LinearArms()))
-    assert near_speed_bound(AHEAD, "left", seen, there, 0.3) >= near_speed(times, path, there, 0.3) > 0.0
+    assert near_speed_bound(AHEAD, "left", seen, there, 0.3) >= near_speed(times, ends_of(path), THIN, there, 0.3) > 0.0
     assert near_speed_bound(AHEAD, "right", seen, there, 0.3) == 0.0
     assert near_speed_bound(AHEAD, "left", seen, zone_at((9.0, 9.0, 9.0)), 0.3) == 0.0
 

@@ -1,0 +1,95 @@
+"""How near each link of the robot may come to each part of the person."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...sim.quantity import Quantities, quantity
+from ...sim.world import Side
+from .person_zone import HEAD, PersonZone
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClearanceTuning(Quantities):
+    """Least gaps between a link and a part of the person as it is tracked; below 0 they may touch.
+
+    Fingers work at cloth that lies on the person, and close round arms; nothing else comes to the skin, and nothing at
+    all to head and neck.
+    """
+
+    fingers_head: float = quantity(0.02, "m", "of fingers to head and neck", "choice: the head is seen to 1 cm")
+    fingers_trunk: float = quantity(-0.01, "m", "of fingers to trunk and legs", "choice: cloth lies there")
+    fingers_arm: float = quantity(-0.02, "m", "of fingers to arms", "choice: an arm is tracked to 1 or 2 cm")
+    palm_head: float = quantity(0.02, "m", "of palm and wrist to head and neck", "choice: the head is seen to 1 cm")
+    palm_trunk: float = quantity(0.01, "m", "of palm and wrist to trunk and legs", "choice: the trunk is seen to 1 cm")
+    palm_arm: float = quantity(
+        0.0, "m", "of palm and wrist to arms", "design: fingers of 6 cm leave it 1.5 cm over an arm that they take"
+    )
+    link_head: float = quantity(0.03, "m", "of other links to head and neck", "choice: they have no business there")
+    link_trunk: float = quantity(0.02, "m", "of other links to trunk and legs", "choice: they have no business there")
+    link_arm: float = quantity(0.01, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
+    planned: float = quantity(
+        0.01, "m", "more than that where a motion is planned", "choice: the guard must not stop what was planned"
+    )
+
+
+CLEARANCE = ClearanceTuning()
+
+
+class LinkClearance:
+    """What each link of one robot has to keep from each part of the person.
+
+    Args:
+        names: (r,) of the links' capsules (`sim/robot/capsules.py`).
+        radii: (r,) of them [m].
+        tuning: the least gaps.
+    """
+
+    def __init__(self, names: tuple[str, ...], radii: np.ndarray, *, tuning: ClearanceTuning = CLEARANCE) -> None:
+        self.names, self.radii, self.tuning = names, radii, tuning
+        self._kinds = [link_kind(name) for name in names]
+
+    def room(
+        self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str], *, planned: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What is left of each gap: below 0 a link is too near.
+
+        Args:
+            ends_in_map: (r, 2, 3) of the links' axes [m].
+            zone: where the person is.
+            held: hand -> the arm that it holds, which its fingers and palm may touch.
+            planned: with the room that planning adds.
+
+        Returns:
+            (r, m) room [m] and (r, m, 3) directions from the person to the link.
+        """
+        gaps, away = zone.gaps(ends_in_map, self.radii)
+        return gaps - self._least(zone.names, held) - (self.tuning.planned if planned else 0.0), away
+
+    def _least(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
+        """(r, m) least gaps [m]."""
+        tuning = self.tuning
+        table = {
+            "fingers": (tuning.fingers_head, tuning.fingers_trunk, tuning.fingers_arm),
+            "palm": (tuning.palm_head, tuning.palm_trunk, tuning.palm_arm),
+            "link": (tuning.link_head, tuning.link_trunk, tuning.link_arm),
+        }
+        columns = [0 if part == HEAD else 2 if part.endswith("arm") else 1 for part in parts]
+        least = np.array([[table[kind][column] for column in columns] for kind in self._kinds]).reshape(
+            len(self.names), len(parts)
+        )
+        for side, arm in held.items():
+            for row, name in enumerate(self.names):
+                if name.startswith(side) and self._kinds[row] != "link":
+                    least[row, [part == arm for part in parts]] = -np.inf
+        return least
+
+
+def link_kind(name: str) -> str:
+    """Of a link's capsule by its name: `fingers`, `palm` (the last of the wrist with it) or `link`."""
+    if "finger" in name:
+        return "fingers"
+    return "palm" if "palm" in name or "wrist_2" in name else "link"

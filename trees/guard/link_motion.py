@@ -1,0 +1,83 @@
+"""Where commands bring the robot's links, so that all of them are kept from the person, not only the fingertips."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...sim.abilities import HandKinematics
+from ...sim.robot.capsules import RobotCapsules
+from ...sim.robot.kinematics import Kinematics
+from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation, Side
+from .hand_speed import sampled
+
+DAMPING = 0.02  # [m] of the step from a hand's motion to its joints', so that it stays small at a stretched arm
+
+
+class LinkMotion:
+    """The links of a robot as capsules, now and after a command.
+
+    Args:
+        kinematics: of the robot; of another than the real one only the points between the fingertips are known.
+
+    Attributes:
+        names: (r,) of the capsules.
+        radii: (r,) [m].
+    """
+
+    def __init__(self, kinematics: HandKinematics) -> None:
+        self._kinematics: Any = kinematics
+        self._links = RobotCapsules(kinematics) if isinstance(kinematics, Kinematics) else None
+        if self._links is not None:
+            self.names, self.radii = self._links.names, self._links.radii
+        else:
+            self.names, self.radii = tuple(f"{side}_hand" for side in SIDES), np.zeros(2)
+        self._rows = {side: np.array([name.startswith(side) for name in self.names]) for side in SIDES}
+
+    @property
+    def knows_links(self) -> bool:
+        """Whether these are the links, and not only the points between the fingertips."""
+        return self._links is not None
+
+    def rows(self, side: Side) -> np.ndarray:
+        """(r,) bool: the capsules of one arm."""
+        return self._rows[side]
+
+    def ends(self, seen: Observation, arm_positions: np.ndarray | None = None) -> np.ndarray:
+        """(r, 2, 3) ends of all capsules in the map [m], with other angles (2, 7) [rad] when given."""
+        arms = seen.arm_positions if arm_positions is None else arm_positions
+        if self._links is not None:
+            return self._links.ends(seen.pose_base_in_map, arms, seen.head_pan, seen.gripper_opening)
+        base, place = seen.pose_base_in_map, self._kinematics.pose_hand_in_map
+        points = np.array([place(side, arms[n], base)[:3, 3] for n, side in enumerate(SIDES)])
+        return np.stack((points, points), axis=1)
+
+    def after_twist(self, seen: Observation, side: Side, twist_in_map: np.ndarray, duration: float) -> np.ndarray:
+        """(r, 2, 3) ends once a hand has moved with a twist (6,) for `duration` [s], the base at rest."""
+        n, arms = SIDES.index(side), np.array(seen.arm_positions, float)
+        jacobian = self._kinematics.jacobian_hand_in_map(side, arms[n], seen.pose_base_in_map)
+        square = jacobian @ jacobian.T + DAMPING**2 * np.eye(6)
+        arms[n] += duration * jacobian.T @ np.linalg.solve(square, twist_in_map)
+        return self.ends(seen, arms)
+
+    def after_base(self, seen: Observation, velocity: np.ndarray, duration: float) -> np.ndarray:
+        """(r, 2, 3) ends once the base has moved with a velocity (3,) in its frame for `duration` [s]."""
+        ends = self.ends(seen)
+        x, y, yaw = seen.pose_base_in_map
+        turn = velocity[2] * duration
+        c, s = np.cos(turn), np.sin(turn)
+        rotation = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+        heading = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
+        foot, moved = np.array((x, y, 0.0)), np.append(heading @ velocity[:2], 0.0) * duration
+        return (ends - foot) @ rotation.T + foot + moved
+
+    def along(self, trajectory: JointTrajectory, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
+        """Times (k,) [s] and ends (k, r, 2, 3) [m] along a trajectory, the base at rest."""
+        times, positions = sampled(trajectory)
+        arms = np.tile(np.asarray(seen.arm_positions, float), (len(times), 1, 1))
+        for column, joint in enumerate(trajectory.joints):
+            side, _, name = joint.partition("_")
+            if side in SIDES and name in ARM_JOINTS:
+                arms[:, SIDES.index(side), ARM_JOINTS.index(name)] = positions[:, column]
+        return times, np.array([self.ends(seen, each) for each in arms])
