@@ -21,11 +21,18 @@ class ClearOfPerson(CollisionChecker):
         links: of the robot.
         zone: where the person is.
         held: hand -> the arm that it holds, which its fingers and palm may touch.
+        gripper_opening: (2,) of the hands while they move [m].
     """
 
     def __init__(
-        self, checker: CollisionChecker, links: RobotCapsules, zone: PersonZone, held: Mapping[Side, str]
+        self,
+        checker: CollisionChecker,
+        links: RobotCapsules,
+        zone: PersonZone,
+        held: Mapping[Side, str],
+        gripper_opening: np.ndarray,
     ) -> None:
+        self._opening = gripper_opening
         self._checker, self._links, self._zone, self._held = checker, links, zone, held
         self._clearance = LinkClearance(links.names, links.radii)
 
@@ -46,4 +53,5 @@ class ClearOfPerson(CollisionChecker):
         return [*dict.fromkeys(near), *self._checker.collisions(pose_base_in_map, arm_positions, head_pan)]
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:
-        return self._clearance.room(self._links.ends(base, arms, head_pan), self._zone, self._held, planned=True)[0]
+        ends = self._links.ends(base, arms, head_pan, self._opening)
+        return self._clearance.room(ends, self._zone, self._held, planned=True)[0]

@@ -1,0 +1,60 @@
+"""Planning sees the person: postures that come too near are not free, and motions go round."""
+
+import numpy as np
+import pytest
+from caretree.sim.robot import model
+from caretree.sim.robot.capsules import RobotCapsules
+from caretree.sim.robot.collision import CollisionChecker
+from caretree.sim.robot.kinematics import default_kinematics
+from caretree.skills.geometry.person_zone import PersonZone
+from caretree.skills.motion.clear_of_person import ClearOfPerson
+from caretree.skills.motion.errors import MotionBlocked
+from caretree.skills.motion.reach import plan_hand_line, plan_reach
+
+BASE = np.zeros(3)
+
+
+@pytest.fixture
+def zone():
+    return PersonZone(np.zeros((2, 3)))
+
+
+def checker(zone, held=None, opening=0.085):
+    robot = default_kinematics()
+    return ClearOfPerson(CollisionChecker(robot), RobotCapsules(robot), zone, held or {}, np.full(2, opening))
+
+
+def hand():
+    return default_kinematics().pose_hand_in_map("left", model.READY[0], BASE)
+
+
+def test_a_posture_in_the_head_is_not_free_and_says_what_touches(zone):
+    made = checker(zone)
+    assert made.free(BASE, model.READY)
+    zone.update(hand()[:3, 3][None], part="head", radius=0.09)
+    assert not made.free(BASE, model.READY)
+    assert ("left_finger_1", "the person's head") in made.collisions(BASE, model.READY)
+
+
+def test_open_fingers_stand_on_either_side_of_an_arm_and_closed_ones_in_it(zone):
+    pose = hand()
+    along = pose[:3, 0]
+    arm = pose[:3, 3] + np.array((-0.3, 0.0, 0.3))[:, None] * along + 0.005 * -pose[:3, 2]
+    zone.update(arm, part="right arm", radius=0.04)
+    assert checker(zone).free(BASE, model.READY)
+    assert not checker(zone, opening=0.0).free(BASE, model.READY)
+    assert checker(zone, {"left": "right arm"}, opening=0.0).free(BASE, model.READY), "it holds that arm"
+
+
+def test_a_line_through_the_head_is_blocked_and_another_way_goes_round(zone):
+    start = hand()
+    goal = start.copy()
+    goal[:3, 3] += (0.0, 0.30, 0.05)
+    zone.update((start[:3, 3] + (0.02, 0.15, -0.02))[None], part="head", radius=0.05)
+    with pytest.raises(MotionBlocked, match="the person's head"):
+        plan_hand_line(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone))
+    found = plan_reach(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone))
+    arms = model.READY.copy()
+    for q in found.positions[:: max(1, len(found.positions) // 40)]:
+        arms[0] = q
+        assert not [pair for pair in checker(zone).collisions(BASE, arms) if "head" in pair[1]]
