@@ -62,8 +62,7 @@ def collision_checker(skill: Skill) -> CollisionChecker:
     bed, guard = skill.world.room.bed, skill.context.guard
     checker = skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
     links = skill.context.memory.of(RobotCapsules, lambda: RobotCapsules(default_kinematics()))
-    opening = skill.world.observe().gripper_opening
-    return ClearOfPerson(checker, links, guard.zone, dict(guard.held_arms()), opening)
+    return ClearOfPerson(checker, links, guard.zone, dict(guard.held_arms()), skill.world.observe())
 
 
 def until_load(

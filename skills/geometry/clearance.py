@@ -32,7 +32,10 @@ class ClearanceTuning(Quantities):
     link_trunk: float = quantity(0.02, "m", "of other links to trunk and legs", "choice: they have no business there")
     link_arm: float = quantity(0.01, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
     planned: float = quantity(
-        0.01, "m", "more than that where a motion is planned", "choice: the guard must not stop what was planned"
+        0.005, "m", "more than that where a motion is planned", "choice: the guard must not stop what was planned"
+    )
+    detour: float = quantity(
+        0.01, "m", "more again where a way round is searched", "choice: a smooth motion cuts the corners of its path"
     )
 
 

@@ -8,20 +8,22 @@ import numpy as np
 
 from ...sim.robot.capsules import RobotCapsules
 from ...sim.robot.collision import CollisionChecker
-from ...sim.world import Side
-from ..geometry.clearance import LinkClearance
+from ...sim.world import Observation, Side
+from ..geometry.clearance import CLEARANCE, LinkClearance
 from ..geometry.person_zone import PersonZone
 
 
 class ClearOfPerson(CollisionChecker):
     """A collision checker that also keeps all links off the person.
 
+    A link that is too near where the motion begins may stay as near, but come no nearer.
+
     Args:
         checker: of the arms against the robot and the room.
         links: of the robot.
         zone: where the person is.
         held: hand -> the arm that it holds, which its fingers and palm may touch.
-        gripper_opening: (2,) of the hands while they move [m].
+        begins: where the motion begins, with the fingers as they stay.
     """
 
     def __init__(
@@ -30,26 +32,26 @@ class ClearOfPerson(CollisionChecker):
         links: RobotCapsules,
         zone: PersonZone,
         held: Mapping[Side, str],
-        gripper_opening: np.ndarray,
+        begins: Observation,
     ) -> None:
-        self._opening = gripper_opening
         self._checker, self._links, self._zone, self._held = checker, links, zone, held
-        self._clearance = LinkClearance(links.names, links.radii)
+        self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
+        room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
+        self._least = np.minimum(room - CLEARANCE.detour, 0.0)
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
-        """Whether arms (2, 7) at these angles touch nothing and come too near to nobody."""
+        """Whether arms (2, 7) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         room = self._room(pose_base_in_map, arm_positions, head_pan)
-        return not (room < 0.0).any() and self._checker.free(pose_base_in_map, arm_positions, head_pan)
+        near = (room < self._least + CLEARANCE.detour).any()
+        return not near and self._checker.free(pose_base_in_map, arm_positions, head_pan)
 
     def collisions(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
         room = self._room(pose_base_in_map, arm_positions, head_pan)
-        near = [
-            (self._links.names[link], f"the person's {self._zone.names[part]}")
-            for link, part in np.argwhere(room < 0.0)
-        ]
+        links, parts = self._links.names, self._zone.names
+        near = [(links[n], f"the person's {parts[m]}") for n, m in np.argwhere(room < self._least)]
         return [*dict.fromkeys(near), *self._checker.collisions(pose_base_in_map, arm_positions, head_pan)]
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:

@@ -1,5 +1,7 @@
 """Planning sees the person: postures that come too near are not free, and motions go round."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from caretree.sim.robot import model
@@ -12,6 +14,7 @@ from caretree.skills.motion.errors import MotionBlocked
 from caretree.skills.motion.reach import plan_hand_line, plan_reach
 
 BASE = np.zeros(3)
+AWAY = model.READY + np.array(((-0.8, 0, 0, 0, 0, 0, 0), (0.8, 0, 0, 0, 0, 0, 0)))  # arms spread
 
 
 @pytest.fixture
@@ -19,9 +22,12 @@ def zone():
     return PersonZone(np.zeros((2, 3)))
 
 
-def checker(zone, held=None, opening=0.085):
+def checker(zone, held=None, opening=0.085, arms=AWAY):
     robot = default_kinematics()
-    return ClearOfPerson(CollisionChecker(robot), RobotCapsules(robot), zone, held or {}, np.full(2, opening))
+    begins = SimpleNamespace(
+        pose_base_in_map=BASE, arm_positions=arms, head_pan=0.0, gripper_opening=np.full(2, opening)
+    )
+    return ClearOfPerson(CollisionChecker(robot), RobotCapsules(robot), zone, held or {}, begins)
 
 
 def hand():
@@ -52,9 +58,18 @@ def test_a_line_through_the_head_is_blocked_and_another_way_goes_round(zone):
     goal[:3, 3] += (0.0, 0.30, 0.05)
     zone.update((start[:3, 3] + (0.02, 0.15, -0.02))[None], part="head", radius=0.05)
     with pytest.raises(MotionBlocked, match="the person's head"):
-        plan_hand_line(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone))
-    found = plan_reach(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone))
-    arms = model.READY.copy()
+        plan_hand_line(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY))
+    found = plan_reach(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY))
+    arms, made = model.READY.copy(), checker(zone, arms=model.READY)
     for q in found.positions[:: max(1, len(found.positions) // 40)]:
         arms[0] = q
-        assert not [pair for pair in checker(zone).collisions(BASE, arms) if "head" in pair[1]]
+        assert not [pair for pair in made.collisions(BASE, arms) if "head" in pair[1]]
+
+
+def test_where_a_motion_begins_too_near_it_may_leave_but_come_no_nearer(zone):
+    place = hand()[:3, 3] + (0.0, 0.0, -0.08)
+    zone.update(place[None], part="head", radius=0.09)
+    made = checker(zone, arms=model.READY)
+    assert not made.collisions(BASE, model.READY), "it stands there already"
+    zone.update((place + (0.0, 0.0, 0.03))[None], part="head", radius=0.09)
+    assert made.collisions(BASE, model.READY), "nearer than where it began"

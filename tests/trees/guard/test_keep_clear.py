@@ -63,7 +63,7 @@ def test_a_hand_slides_along_the_head_instead_of_standing():
 
 
 def test_away_from_the_head_nothing_is_held_back():
-    world, guard, _ = beside(np.array((0.15, 0.0, 0.0)))
+    _, guard, _ = beside(np.array((0.15, 0.0, 0.0)))
     sent = guard.send(HandTwist(side="left", twist_in_map=np.array((-0.1, 0.0, 0.0, 0.0, 0.0, 0.0))))
     assert sent.twist_in_map[:3] == pytest.approx((-0.1, 0.0, 0.0), abs=1e-9)
 
@@ -87,7 +87,7 @@ def trajectory_to(world, positions):
 def test_a_trajectory_through_the_head_is_refused_with_link_and_part():
     world, guard, _ = beside(np.array((0.0, 0.15, 0.0)))
     swung = model.READY[0] + np.array((0.6, 0, 0, 0, 0, 0, 0))
-    with pytest.raises(SkillFailure, match="the left .* would come too near to the person's head") as refused:
+    with pytest.raises(SkillFailure, match=r"the left .* would come too near to the person's head") as refused:
         guard.send(trajectory_to(world, swung))
     assert refused.value.reason == Reason.MOTION_BLOCKED
     away = model.READY[0] - np.array((0.3, 0, 0, 0, 0, 0, 0))
