@@ -32,10 +32,7 @@ class ClearanceTuning(Quantities):
     link_trunk: float = quantity(0.02, "m", "of other links to trunk and legs", "choice: they have no business there")
     link_arm: float = quantity(0.01, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
     planned: float = quantity(
-        0.005, "m", "more than that where a motion is planned", "choice: the guard must not stop what was planned"
-    )
-    detour: float = quantity(
-        0.01, "m", "more again where a way round is searched", "choice: a smooth motion cuts the corners of its path"
+        0.008, "m", "more than that where a way is searched", "choice: a smooth motion cuts the corners of its path"
     )
 
 
@@ -56,7 +53,7 @@ class LinkClearance:
         self._kinds = [link_kind(name) for name in names]
 
     def room(
-        self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str], *, planned: bool = False
+        self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str]
     ) -> tuple[np.ndarray, np.ndarray]:
         """What is left of each gap: below 0 a link is too near.
 
@@ -64,13 +61,12 @@ class LinkClearance:
             ends_in_map: (r, 2, 3) of the links' axes [m].
             zone: where the person is.
             held: hand -> the arm that it holds, which its fingers and palm may touch.
-            planned: with the room that planning adds.
 
         Returns:
             (r, m) room [m] and (r, m, 3) directions from the person to the link.
         """
         gaps, away = zone.gaps(ends_in_map, self.radii)
-        return gaps - self._least(zone.names, held) - (self.tuning.planned if planned else 0.0), away
+        return gaps - self._least(zone.names, held), away
 
     def _least(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
         """(r, m) least gaps [m]."""

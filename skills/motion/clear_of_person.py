@@ -12,6 +12,8 @@ from ...sim.world import Observation, Side
 from ..geometry.clearance import CLEARANCE, LinkClearance
 from ..geometry.person_zone import PersonZone
 
+EPSILON = 1e-6  # [m] a posture is as near as itself
+
 
 class ClearOfPerson(CollisionChecker):
     """A collision checker that also keeps all links off the person.
@@ -37,12 +39,12 @@ class ClearOfPerson(CollisionChecker):
         self._checker, self._links, self._zone, self._held = checker, links, zone, held
         self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
-        self._least = np.minimum(room - CLEARANCE.detour, 0.0)
+        self._least = np.minimum(room, 0.0) - EPSILON
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
         """Whether arms (2, 7) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         room = self._room(pose_base_in_map, arm_positions, head_pan)
-        near = (room < self._least + CLEARANCE.detour).any()
+        near = (room < self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)).any()
         return not near and self._checker.free(pose_base_in_map, arm_positions, head_pan)
 
     def collisions(
@@ -56,4 +58,4 @@ class ClearOfPerson(CollisionChecker):
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:
         ends = self._links.ends(base, arms, head_pan, self._opening)
-        return self._clearance.room(ends, self._zone, self._held, planned=True)[0]
+        return self._clearance.room(ends, self._zone, self._held)[0]

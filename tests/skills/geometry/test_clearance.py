@@ -44,11 +44,6 @@ def test_a_hand_may_touch_the_arm_that_it_holds_and_no_other_part():
     assert (room_at((1.0, 0.0, 0.05), held={"left": "right arm"})[0][:, 1] < 0.0).all()
 
 
-def test_planning_keeps_a_little_more():
-    near, planned = room_at((0.0, 0.0, 0.3))[0], room_at((0.0, 0.0, 0.3), planned=True)[0]
-    assert near - planned == pytest.approx(np.full((4, 3), CLEARANCE.planned))
-
-
 @pytest.mark.parametrize(
     ("name", "kind"),
     [("left_finger_2", "fingers"), ("right_wrist_2", "palm"), ("right_wrist_1", "link"), ("torso_1", "link")],
