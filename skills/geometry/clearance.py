@@ -37,6 +37,7 @@ class ClearanceTuning(Quantities):
 
 
 CLEARANCE = ClearanceTuning()
+MAY_TOUCH = -10.0  # [m] a least gap that no link can miss; finite, as differences are taken
 
 
 class LinkClearance:
@@ -83,7 +84,7 @@ class LinkClearance:
         for side, arm in held.items():
             for row, name in enumerate(self.names):
                 if name.startswith(side) and self._kinds[row] != "link":
-                    least[row, [part == arm for part in parts]] = -np.inf
+                    least[row, [part == arm for part in parts]] = MAY_TOUCH
         return least
 
 

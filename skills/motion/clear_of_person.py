@@ -44,6 +44,7 @@ class ClearOfPerson(CollisionChecker):
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
         """Whether arms (2, 7) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         room = self._room(pose_base_in_map, arm_positions, head_pan)
+        assert room.shape == self._least.shape, "one checker serves one plan: the person must not change meanwhile"
         near = (room < self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)).any()
         return not near and self._checker.free(pose_base_in_map, arm_positions, head_pan)
 

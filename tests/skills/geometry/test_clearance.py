@@ -39,7 +39,7 @@ def test_nothing_may_touch_the_head():
 
 def test_a_hand_may_touch_the_arm_that_it_holds_and_no_other_part():
     inside = room_at((2.0, 0.0, 0.05), held={"left": "right arm"})[0]
-    assert np.isinf(inside[:2, 2]).all()
+    assert (inside[:2, 2] > 1.0).all()
     assert (inside[2:, 2] < 0.0).all(), "neither its own forearm nor the other hand"
     assert (room_at((1.0, 0.0, 0.05), held={"left": "right arm"})[0][:, 1] < 0.0).all()
 

@@ -35,9 +35,9 @@ def hand():
 
 
 def test_a_posture_in_the_head_is_not_free_and_says_what_touches(zone):
-    made = checker(zone)
-    assert made.free(BASE, model.READY)
+    assert checker(zone).free(BASE, model.READY)
     zone.update(hand()[:3, 3][None], part="head", radius=0.09)
+    made = checker(zone)
     assert not made.free(BASE, model.READY)
     assert ("left_finger_1", "the person's head") in made.collisions(BASE, model.READY)
 
