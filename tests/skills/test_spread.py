@@ -13,7 +13,7 @@ from caretree.skills.spread import Spread
 from .bench import PATH, LeafBench, beside_bed, pulls
 
 STAND = (0.97, -0.62, np.pi)  # beside the right shoulder, facing the bed [m, m, rad]
-COLLAR = np.array((0.14, -0.50, 0.80))  # [m]
+COLLAR = np.array((0.14, -0.50, 0.83))  # on the chest [m]
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 

@@ -36,7 +36,7 @@ def test_a_swing_past_the_person_is_slowed_to_the_limit(kinematics):
     while world.clock.now() < sent.times[-1]:
         world.clock.wait_until(world.clock.now() + 0.02)
         hand = world.observe().pose_hand_in_map[0, :3, 3]
-        if guard._zone.distance(before)[0] < DEFAULT.near_person:
+        if guard.zone.distance(before)[0] < DEFAULT.near_person:
             fastest.append(np.linalg.norm(hand - before) / 0.02)
         before = hand
     assert 0.1 < max(fastest) <= DEFAULT.hand_speed
