@@ -54,8 +54,14 @@ class CarryAcrossTuning(Quantities):
         "load, weight and all, from which the sleeve goes no farther",
         "choice: the other sleeve is on its arm",
     )
-    laid_place: tuple[float, float, float] = quantity(
-        (0.33, 0.16, 0.06), "m", "where it is laid down: outwards, feetward, upwards", "choice: beyond the arm's hand"
+    laid_place: tuple[float, float] = quantity(
+        (0.33, 0.16), "m", "where it is laid down: outwards, feetward", "choice: beyond the arm's hand"
+    )
+    laid_heights: tuple[float, ...] = quantity(
+        (0.06, 0.14, 0.22),
+        "m",
+        "of the hand above the mattress when it lets go, the first that is free",
+        "choice: an arm that reaches across keeps off the trunk",
     )
     back_off_distance: float = quantity(
         0.3, "m", "of the base from the sleeve it has laid down", "choice: the arms then turn freely"
@@ -97,6 +103,13 @@ class CarryAcross(Skill):
         back = self.tuning.back_off_distance * np.append(HEADWARD[:2], 0.0)
         yield from drive_to(self, lane - back, straight=True, retreat=True)
 
+    def _go(self, hand: Side, there: np.ndarray) -> Iterator[None]:
+        """Bring what the hand holds to a position (3,), as far as it goes."""
+        pose = hand_now(self, hand)
+        pose[:3, 3] = there
+        motion = move_hands(self, {hand: pose}, speed=careful(self, self.tuning.speed), free="any", way="either")
+        yield from until_load(self, hand, self.tuning.max_load, motion)
+
     def _place(self, out: float, feetward: float, above: float) -> np.ndarray:
         """(3,) from the middle of the mattress [m]."""
         bed = self.world.room.bed
@@ -123,16 +136,13 @@ class CarryAcross(Skill):
         memory = self.context.memory.of(SleeveMemory, SleeveMemory)
         memory.sleeves.pop(self.side, None)
         tuning = self.tuning
-        out, feetward, above = tuning.laid_place
-        for there in (
-            hand_now(self, hand)[:3, 3] + tuning.height * UP,
-            self._place(out, feetward, above + tuning.height),
-            self._place(out, feetward, above),
-        ):
-            pose = hand_now(self, hand)
-            pose[:3, 3] = there
-            motion = move_hands(self, {hand: pose}, speed=careful(self, tuning.speed), free="any", way="either")
-            yield from until_load(self, hand, tuning.max_load, motion)
+        place = tuning.laid_place
+        yield from self._go(hand, hand_now(self, hand)[:3, 3] + tuning.height * UP)
+        yield from self._go(hand, self._place(*place, tuning.laid_heights[0] + tuning.height))
+        for above in tuning.laid_heights:
+            with suppress(MotionError):
+                yield from self._go(hand, self._place(*place, above))
+                break
         memory.last[self.side] = hand_now(self, hand)[:3, 3]
         yield from open_gripper(self, hand)
         with suppress(MotionError):  # it is open, and the next motion begins with a way out
