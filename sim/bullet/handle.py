@@ -7,12 +7,12 @@ read in the cloth itself (`Cloth.load`).
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from .soft_world import GRAVITY
 from .units import ROOM
@@ -28,6 +28,10 @@ _AXES = (
     ("revolute", "1 0 0"),
 )
 _LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
+_ROUND = 2 * math.pi  # [rad]
+_JOINTS = tuple(range(6))
+_POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
+_FORCES = (ROOM.force(300.0),) * 3 + (ROOM.force(20.0),) * 3  # of the motors, 300 N and 20 N m
 _SMOOTHING = 0.05  # share of a new reading: about 40 ms at a 2 ms step
 
 
@@ -69,17 +73,16 @@ class Handle:
 
     def follow(self, pose_in_map: np.ndarray) -> None:
         """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
-        turn = pose_in_map[:3, :3] @ self._turn_at_reset.T
-        angles = _nearest(Rotation.from_matrix(turn).as_euler("ZYX"), self._target[3:])
-        self._target = np.concatenate([pose_in_map[:3, 3], angles])
+        angles = _nearest(_turns(pose_in_map[:3, :3] @ self._turn_at_reset.T), self._target[3:])
+        self._target = np.array((*pose_in_map[:3, 3], *angles))
         self.client.setJointMotorControlArray(
             self.body,
-            range(6),
+            _JOINTS,
             self.client.POSITION_CONTROL,
             targetPositions=self._target.tolist(),
-            positionGains=[0.3] * 6,
-            velocityGains=[1.0] * 6,
-            forces=[ROOM.force(300.0)] * 3 + [ROOM.force(20.0)] * 3,
+            positionGains=_POSITION_GAINS,
+            velocityGains=_VELOCITY_GAINS,
+            forces=_FORCES,
         )
 
     def feel(self) -> None:
@@ -98,11 +101,24 @@ class Handle:
         return np.array(self.client.getLinkState(self.body, self.link)[4])
 
 
-def _nearest(angles: np.ndarray, last: np.ndarray) -> np.ndarray:
+def _turns(matrix: np.ndarray) -> tuple[float, float, float]:
+    """Angles about z, then the new y, then the new x of a rotation (3, 3) [rad]; scipy takes ten times as long."""
+    (a, _, _), (b, _, _), (c, d, e) = matrix.tolist()
+    return math.atan2(b, a), math.asin(min(1.0, max(-1.0, -c))), math.atan2(d, e)
+
+
+def _nearest(angles: tuple[float, float, float], last: np.ndarray) -> tuple[float, ...]:
     """The turn of `angles` (3,) about z, y, x without a jump from `last`: the motors would spin the cloth round."""
-    ways = [angles, np.array((angles[0] + np.pi, np.pi - angles[1], angles[2] + np.pi))]
-    ways = [way + 2 * np.pi * np.round((last - way) / (2 * np.pi)) for way in ways]
-    return min(ways, key=lambda way: float(np.abs(way - last).max()))
+    z, y, x = angles
+    best, least = angles, math.inf
+    for way in (angles, (z + math.pi, math.pi - y, x + math.pi)):
+        whole = tuple(
+            angle + _ROUND * round((before - angle) / _ROUND) for angle, before in zip(way, last, strict=True)
+        )
+        apart = max(abs(angle - before) for angle, before in zip(whole, last, strict=True))
+        if apart < least:
+            best, least = whole, apart
+    return best
 
 
 def _urdf() -> str:
