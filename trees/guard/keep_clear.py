@@ -76,7 +76,7 @@ class KeepClear:
         """
         if not self._motion.knows_links:
             return
-        sides = [side for side in SIDES if any(joint.startswith(side) for joint in command.joints)]
+        sides: list[Side] = [side for side in SIDES if any(joint.startswith(side) for joint in command.joints)]
         if not sides:
             return
         _, ends = self._motion.along(command, seen)
