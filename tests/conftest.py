@@ -62,7 +62,8 @@ def frame(static: TruthStatic, index: int) -> TruthFrame:
     """The gown slides 2 m along the arms, then stays."""
     left = max(0.0, 1.0 - index / MOVE)
     arms = np.array([[[x, y, 0.0] for y in (0.0, 0.3, 0.55, 0.72)] for x in (-ARM_X, ARM_X)])
-    x, y = np.meshgrid(np.linspace(-0.15, 0.15, 10), np.linspace(0.0, 0.55, 12))
+    # beside the sheet's own lines, on which one layer counts for the triangles on either side
+    x, y = np.meshgrid(np.linspace(-0.143, 0.157, 10), np.linspace(0.012, 0.562, 12))
     torso = np.stack([x.ravel(), y.ravel(), np.zeros(x.size), *np.zeros((2, x.size)), np.ones(x.size)], axis=1)
     held = index < MOVE + 3
     pose = np.array([[x, 0.1 + 2 * left, 0.15, 0, 0, 0, 1] for x in (-0.2, 0.2)])

@@ -18,7 +18,7 @@ from .run.worlds import WORLDS
 
 SELF_PARSED = {
     "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
-    "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed"),
+    "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed and unharmed"),
 }
 # said by --help, which must not import what knows them; a test compares
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"

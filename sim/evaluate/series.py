@@ -9,8 +9,12 @@ import numpy as np
 
 from ..errors import RecordError
 from ..world import SIDES
+from .arrays_file import read_arrays
+from .clearance import clearance
+from .harm import wrists_above_bed
 from .plausibility import motion
-from .truth_file import Truth, read_arrays, read_truth
+from .truth_file import Truth, read_truth
+from .unharmed_rows import UnharmedRows
 from .verdict import sleeves_of
 
 CHUNK = 256  # frames looked at in one go, to bound memory
@@ -32,6 +36,9 @@ class Series:
         upper_arm: (T, 2) way of the left and right armhole up the upper arm, 0 elbow or off, 1 shoulder.
         stretch_p99: (T,) 99th percentile of edge length over rest length.
         stretch_max: (T,) longest edge over its rest length.
+        clearance: (T, 2) from the nearest link of the robot to head and neck, and to the rest of the body [m], negative
+            inside; None where the record does not tell.
+        wrists: (T, 2) height of the left and right wrist above the mattress [m]; None where the record does not tell.
     """
 
     t: np.ndarray
@@ -44,6 +51,8 @@ class Series:
     upper_arm: np.ndarray
     stretch_p99: np.ndarray
     stretch_max: np.ndarray
+    clearance: np.ndarray | None = None
+    wrists: np.ndarray | None = None
 
 
 def read_series(directory: Path) -> Series:
@@ -72,6 +81,8 @@ def read_series(directory: Path) -> Series:
             upper_arm=_upper_arm(truth),
             stretch_p99=moved.stretch_p99,
             stretch_max=moved.stretch_max,
+            clearance=None if truth.unharmed is None else _clearance(truth, truth.unharmed),
+            wrists=None if truth.unharmed is None else wrists_above_bed(truth, truth.unharmed),
         )
 
 
@@ -102,6 +113,12 @@ def _distance(truth: Truth, hands: np.ndarray) -> np.ndarray:
         for frames in _chunks(len(hands))
     ]
     return np.maximum(np.minimum(np.min(gaps, axis=0), np.concatenate(torso)), 0.0)
+
+
+def _clearance(truth: Truth, rows: UnharmedRows) -> np.ndarray:
+    """(T, 2) to head and neck, and elsewhere [m]."""
+    near = clearance(truth, rows)
+    return np.stack([near.least(near.head), near.least(~near.head)], axis=1)
 
 
 def _speed(t: np.ndarray, hands: np.ndarray) -> np.ndarray:

@@ -1,9 +1,7 @@
-"""Reads truth.npz and rejects what could not be evaluated."""
+"""What of truth.npz decides."""
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,11 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import RecordError
-from ..record.record import SPOOL_FOLDER, TRUTH_FILE
+from ..record.record import TRUTH_FILE
 from ..record.truth import LOOPS
+from .arrays_file import Shape, check_indices, check_shapes, read_arrays
+from .unharmed_rows import ROWS, UnharmedRows, read_unharmed_rows
 
-# T frames, V vertices; None is free
-SHAPES: dict[str, tuple[str | int | None, ...]] = {
+# T frames, V vertices
+SHAPES: dict[str, Shape] = {
     "t": ("T",),
     "vertices": ("T", "V", 3),
     "faces": (None, 3),
@@ -27,7 +27,6 @@ SHAPES: dict[str, tuple[str | int | None, ...]] = {
     "gripper_closed": ("T", 2),
     "gripper_load": ("T", 2, 3),
 }
-DAMAGED = (OSError, ValueError, EOFError, AttributeError, NotImplementedError, zipfile.BadZipFile, zlib.error)
 INDICES = ("faces", *(f"loop_{name}" for name in LOOPS))
 
 
@@ -36,6 +35,8 @@ class Truth:
     """The arrays of truth.npz that decide, as DESIGN.md names and shapes them; see `TruthFrame`.
 
     loops: name in `LOOPS` -> (n,) int.
+    unharmed: what tells whether the person is unharmed; None where the record lacks all or some of it.
+    lacks: names of the rows "unharmed" that are missing where others are there.
     """
 
     t: np.ndarray
@@ -48,28 +49,8 @@ class Truth:
     torso_front: np.ndarray
     gripper_closed: np.ndarray
     gripper_load: np.ndarray
-
-
-def read_arrays(directory: Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The named arrays of `directory`/truth.npz.
-
-    Raises:
-        RecordError: the file is missing, cut short or damaged, or lacks an array.
-    """
-    path = directory / TRUTH_FILE
-    if not path.exists():
-        if (directory / SPOOL_FOLDER).exists():
-            raise RecordError(f"{directory} was cut short: its frames are in {SPOOL_FOLDER}, not in {TRUTH_FILE}")
-        raise RecordError(f"{directory} holds no {TRUTH_FILE}, so nothing is known of the gown")
-    try:
-        # opened here: numpy leaves its own file open when the archive is damaged
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            missing = [name for name in names if name not in stored.files]
-            if missing:
-                raise RecordError(f"{path} lacks {', '.join(missing)}")
-            return {name: stored[name] for name in names}
-    except DAMAGED as error:
-        raise RecordError(f"{path} is damaged and cannot be read: {error}") from error
+    unharmed: UnharmedRows | None = None
+    lacks: tuple[str, ...] = ()
 
 
 def read_truth(directory: Path) -> Truth:
@@ -78,28 +59,17 @@ def read_truth(directory: Path) -> Truth:
     Raises:
         RecordError: one of these is wrong, or there are fewer than two frames.
     """
-    arrays = read_arrays(directory, tuple(SHAPES))
+    path = directory / TRUTH_FILE
+    arrays = read_arrays(directory, tuple(SHAPES), optional=ROWS)
     sizes: dict[str, int] = {}
-    for name, shape in SHAPES.items():
-        given = arrays[name].shape
-        fits = len(given) == len(shape) and all(
-            want is None or got == (want if isinstance(want, int) else sizes.setdefault(want, got))
-            for want, got in zip(shape, given, strict=True)
-        )
-        if not fits:
-            asked = ", ".join("any" if want is None else str(sizes.get(str(want), want)) for want in shape)
-            raise RecordError(f"{directory / TRUTH_FILE}: {name} has shape {given}, but ({asked}) is asked for")
-        if arrays[name].dtype.kind not in "biuf":
-            raise RecordError(f"{directory / TRUTH_FILE}: {name} holds {arrays[name].dtype}, but numbers are asked for")
-    for name in INDICES:
-        index = arrays[name]
-        if index.dtype.kind not in "iu" or (index.size and not 0 <= index.min() <= index.max() < sizes["V"]):
-            raise RecordError(
-                f"{directory / TRUTH_FILE}: {name} holds something else than vertex numbers from 0 to {sizes['V'] - 1}"
-            )
+    check_shapes(path, arrays, SHAPES, sizes)
+    check_indices(path, arrays, INDICES, sizes["V"])
     if sizes["T"] < 2:
-        raise RecordError(f"{directory / TRUTH_FILE} holds {sizes['T']} frames, but at least 2 are asked for")
+        raise RecordError(f"{path} holds {sizes['T']} frames, but at least 2 are asked for")
     if not sizes["V"] or not len(arrays["faces"]):
-        raise RecordError(f"{directory / TRUTH_FILE} holds a garment without vertices or faces")
+        raise RecordError(f"{path} holds a garment without vertices or faces")
+    rows = {name: arrays.pop(name) for name in ROWS if name in arrays}
     loops = {name: arrays.pop(f"loop_{name}") for name in LOOPS}
-    return Truth(loops=loops, **arrays)
+    lacks = tuple(name for name in ROWS if name not in rows) if rows else ()
+    unharmed = read_unharmed_rows(directory, rows, sizes) if rows and not lacks else None
+    return Truth(loops=loops, unharmed=unharmed, lacks=lacks, **arrays)

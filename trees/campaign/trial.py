@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,7 @@ class Trial:
         outcome: `success`, `failure` or `safe_stop` as the tree said; `crash` or `timeout` if it said nothing.
         reason: one sentence.
         dressed: what the evaluator found in the geometry; None where there is none or the task dresses nobody.
+        unharmed: the same, dressed or not; None where the record does not tell.
         problems: of the evaluator.
         numbers: of the evaluator.
         stages: stage name -> status, as the tree said, in order.
@@ -48,6 +49,7 @@ class Trial:
     outcome: str
     reason: str
     dressed: bool | None = None
+    unharmed: bool | None = None
     problems: tuple[str, ...] = ()
     numbers: Mapping[str, float] = field(default_factory=dict)
     stages: Mapping[str, str] = field(default_factory=dict)
@@ -63,7 +65,9 @@ class Trial:
         """How it went in one line; one stage alone cannot be dressed, so `whole=False` leaves the verdict out."""
         told = self.outcome.replace("_", " ")
         if whole and self.dressed is not None:
-            told = ("dressed" if self.dressed else "not dressed") + ("" if self._believed() else f" (tree: {told})")
+            harm = {None: "", True: ", unharmed", False: ", HARMED"}[self.unharmed]
+            word = "dressed" if self.dressed else "not dressed"
+            told = word + harm + ("" if self._believed() else f" (tree: {told})")
         why = self.reason if self.outcome != "success" else "; ".join(self.problems[:2]) if whole else ""
         took = ""
         if self.sim_time_s is not None and self.wall_time_s is not None:
@@ -117,14 +121,14 @@ def judge_run(directory: Path, seed: int) -> Trial:
     try:
         verdict = evaluate(directory)
     except RecordError as error:  # a run that cannot be judged has not dressed anybody
-        return Trial(**(_fields(told) | {"dressed": False, "problems": (str(error),)}))
-    return Trial(
-        **(_fields(told) | {"dressed": verdict.dressed, "problems": verdict.problems, "numbers": dict(verdict.numbers)})
+        return replace(told, dressed=False, problems=(str(error),))
+    return replace(
+        told,
+        dressed=verdict.dressed,
+        unharmed=verdict.unharmed,
+        problems=verdict.problems,
+        numbers=dict(verdict.numbers),
     )
-
-
-def _fields(trial: Trial) -> dict[str, Any]:
-    return {name: getattr(trial, name) for name in Trial.__dataclass_fields__}
 
 
 def run_trial(

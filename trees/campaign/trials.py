@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -20,8 +20,9 @@ from typing import Any
 
 from ...sim.errors import CaretreeError
 from ...sim.record.spool import disk_error
+from .success_rate import SuccessRate
 from .trial import Trial, read_trial, run_trial
-from .trials_table import OVERALL, STAGE, collect, rates, table
+from .trials_table import OVERALL, STAGE, collect, rates, table, whole_runs
 
 FILE, TABLE = "trials.json", "table.txt"
 
@@ -145,14 +146,8 @@ def write_table(directory: Path) -> None:
     try:
         claim = json.loads(path.read_text(encoding="utf-8"))
         trials = collect(directory)
-        counted = {
-            row: {
-                name: {"successes": rate.successes, "trials": rate.trials, "interval": rate.interval()}
-                for name, rate in of_row.items()
-            }
-            for row, of_row in rates(trials).items()
-        }
-        claim["table"] = counted
+        claim["table"] = {row: _counted(of_row) for row, of_row in rates(trials).items()}
+        claim["whole_runs"] = _counted(whole_runs(trials))
         claim["trials"] = {kind: [asdict(trial) for trial in many] for kind, many in trials.items()}
         part = path.with_name(f"{FILE}.part")
         part.write_text(json.dumps(claim, indent=1) + "\n", encoding="utf-8")
@@ -160,3 +155,10 @@ def write_table(directory: Path) -> None:
         (directory / TABLE).write_text(table(trials), encoding="utf-8")
     except OSError as error:
         raise disk_error(error, f"writing {path}") from error
+
+
+def _counted(rates: Mapping[str, SuccessRate]) -> dict[str, Any]:
+    return {
+        name: {"successes": rate.successes, "trials": rate.trials, "interval": rate.interval()}
+        for name, rate in rates.items()
+    }

@@ -45,6 +45,25 @@ def rates(trials: dict[str, list[Trial]]) -> dict[str, dict[str, SuccessRate]]:
     return {"independent": alone, "overall": together}
 
 
+def whole_runs(trials: dict[str, list[Trial]]) -> dict[str, SuccessRate]:
+    """Runs of the whole task: dressed and unharmed, unharmed whether dressed or not, claimed, and wrongly claimed.
+
+    A run of which nobody knows whether the person is unharmed (it crashed) counts as one that is not.  Rows of which no
+    run tells anything are left out.
+    """
+    whole = trials.get(OVERALL, [])
+    counts: dict[str, int] = {}
+    if any(trial.unharmed is not None for trial in whole):
+        counts["dressed and unharmed"] = sum(bool(trial.dressed and trial.unharmed) for trial in whole)
+        counts["unharmed"] = sum(bool(trial.unharmed) for trial in whole)
+    elif any(trial.dressed is not None for trial in whole):
+        counts["dressed"] = sum(bool(trial.dressed) for trial in whole)
+    counts["claimed"] = sum(trial.outcome == "success" for trial in whole)
+    if any(trial.dressed is not None for trial in whole):
+        counts["wrongly claimed"] = sum(trial.outcome == "success" and trial.dressed is False for trial in whole)
+    return {name: SuccessRate(successes=count, trials=len(whole)) for name, count in counts.items()}
+
+
 def _stages(trials: Iterable[Trial]) -> list[str]:
     """Names of the stages that these trials have recorded, in order."""
     return list(dict.fromkeys(name for trial in trials for name in trial.stages))
@@ -65,6 +84,8 @@ def table(trials: dict[str, list[Trial]]) -> str:
     wrong = [trial.seed for trial in whole if trial.dressed not in (None, trial.outcome == "success")]
     judged = any(trial.dressed is not None for trial in whole)
     source = "by the evaluator, from the geometry alone" if judged else "as the tree says too"
+    if whole:
+        lines += ["", "whole runs", *(f"  {name}: {rate}" for name, rate in whole_runs(trials).items())]
     lines += ["", f"Stages as the tree says; overall {source}.  Brackets: 95 % Wilson intervals."]
     if wrong:
         lines.append(f"The tree and the evaluator disagree on seeds {', '.join(map(str, wrong))}.")

@@ -1,4 +1,4 @@
-"""`caretree evaluate DIR`: is the person dressed?  Decided from the recorded geometry alone."""
+"""`caretree evaluate DIR`: is the person dressed, and unharmed?  Decided from the recorded geometry alone."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the command to the command line; `main` runs it."""
     parser = subparsers.add_parser(
         "evaluate",
-        help="say from the record alone whether the person is dressed",
-        description="Decide from DIR/truth.npz alone whether the person is dressed.  Exit status 0: dressed, 1: not, "
-        "2: the record cannot be read.",
+        help="say from the record alone whether the person is dressed and unharmed",
+        description="Decide from DIR/truth.npz alone whether the person is dressed and, where the record tells, "
+        "unharmed.  Exit status 0: both, 1: not, 2: the record cannot be read.",
     )
     parser.add_argument("directory", type=Path, metavar="DIR")
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
@@ -21,7 +21,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def main(args: argparse.Namespace) -> int:
-    """Print the verdict; 0 dressed, 1 not.
+    """Print the verdict; 0 dressed and not harmed, 1 not.
 
     Raises:
         RecordError: the record cannot be read.

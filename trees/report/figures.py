@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...sim.evaluate.limits import STRETCH_MAX, STRETCH_P99_MAX, UPPER_ARM_MIN
+from ...sim.evaluate.limits import (
+    ROBOT_DEPTH_HEAD_MAX,
+    ROBOT_DEPTH_MAX,
+    STRETCH_MAX,
+    STRETCH_P99_MAX,
+    UPPER_ARM_MIN,
+    WRIST_ABOVE_BED_MAX,
+)
 from ...sim.world import SIDES
 from ..guard.limits import DEFAULT
 
@@ -116,8 +123,9 @@ def _legend(axis: Axes) -> None:
 
 
 def curves(series: Series) -> bytes:
-    """Loads, forces, hands, sleeves and stretch over time, with the limits drawn (PNG)."""
-    figure, (load, force, distance, speed, sleeves, stretch) = _figure(6, 9.6)
+    """Loads, forces, hands, sleeves, stretch and, where recorded, harm over time, with the limits drawn (PNG)."""
+    told = series.clearance is not None and series.wrists is not None
+    figure, (load, force, distance, speed, sleeves, stretch, *harm) = _figure(8 if told else 6, 12.8 if told else 9.6)
     t = series.t
     _both(load, t, np.where(series.holds, series.load, np.nan))
     load.set_ylabel("cloth load [N]", fontsize=8)
@@ -161,10 +169,30 @@ def curves(series: Series) -> bytes:
     _line(stretch, STRETCH_MAX, "longest at most")
     stretch.set_ylim(0.9, 1.12 * max(STRETCH_MAX, float(np.nanmax(series.stretch_max, initial=0.0))))
     _legend(stretch)
-    stretch.set_xlabel("time [s]", fontsize=8)
-    stretch.set_xlim(0, max(float(t[-1]), 1e-3))
+
+    if series.clearance is not None and series.wrists is not None:
+        _clearance(harm[0], t, series.clearance)
+        _both(harm[1], t, series.wrists)
+        harm[1].set_ylabel("wrist above\nmattress [m]", fontsize=8)
+        _line(harm[1], WRIST_ABOVE_BED_MAX, "at the end")
+        harm[1].set_ylim(0, max(1.5 * WRIST_ABOVE_BED_MAX, 1.1 * float(np.nanmax(series.wrists, initial=0.0))))
+    last = harm[-1] if harm else stretch
+    last.set_xlabel("time [s]", fontsize=8)
+    last.set_xlim(0, max(float(t[-1]), 1e-3))
     figure.align_ylabels()
     return _png(figure)
+
+
+def _clearance(axis: Axes, t: np.ndarray, gaps: np.ndarray) -> None:
+    """From the robot to head and neck, and to the rest of the body, below the skin too."""
+    for k, (name, colour, limit) in enumerate(
+        (("head and neck", "#7b3fa0", ROBOT_DEPTH_HEAD_MAX), ("rest of the body", "#566573", ROBOT_DEPTH_MAX))
+    ):
+        axis.plot(t, 1000 * gaps[:, k], color=colour, linewidth=1.0, label=name)
+        _line(axis, -1000 * limit, "" if k else "deepest")
+    axis.set_ylabel("robot to person\n[mm]", fontsize=8)
+    axis.set_ylim(min(-1.5 * 1000 * ROBOT_DEPTH_MAX, 1100 * float(np.nanmin(gaps, initial=0.0))), 100)
+    _legend(axis)
 
 
 def jpeg(image: np.ndarray) -> bytes:

@@ -27,19 +27,31 @@ EVERY, WITHIN = 30.0, 4  # a stage is shown once more for each so many seconds o
 APART = 1.0  # pictures closer together than this are alike [s]
 SENTENCES = {"success": "success", "failure": "failure", "safe_stop": "safe stop"}
 CLASSES = {"success": "good", "failure": "bad", "safe_stop": "warn"}
-BOUNDS: tuple[tuple[str, str, str, str, float], ...] = (
-    ("upper_arm_left", "left armhole up the upper arm", "", "≥", limits.UPPER_ARM_MIN),
-    ("upper_arm_right", "right armhole up the upper arm", "", "≥", limits.UPPER_ARM_MIN),
-    ("coverage", "torso front covered", "", "≥", limits.COVERAGE_MIN),
-    ("outside_out", "of that, outside out", "", "≥", limits.OUTSIDE_MIN),
-    ("gripper_load_max_n", "largest cloth load", "N", "≤", limits.LOAD_MAX),
-    ("stretch_p99", "edge stretch, 99th percentile", "", "≤", limits.STRETCH_P99_MAX),
-    ("stretch_max", "edge stretch, longest", "", "≤", limits.STRETCH_MAX),
-    ("vertex_speed_max_m_per_s", "fastest vertex", "m/s", "≤", limits.VERTEX_SPEED_MAX),
-    ("arm_depth_max_m", "deepest vertex in an arm", "m", "≤", limits.DEPTH_MAX),
-    ("frame_gap_max_s", "longest gap between frames", "s", "≤", limits.FRAME_GAP_MAX),
-    ("gown_travel_m", "way of the gown", "m", "≥", limits.TRAVEL_MIN),
-)
+Bound = tuple[str, str, float | None, float | None]  # what it is, unit, at least, at most
+BOUNDS: dict[str, Bound] = {
+    "upper_arm_left": ("left armhole up the upper arm", "", limits.UPPER_ARM_MIN, None),
+    "upper_arm_right": ("right armhole up the upper arm", "", limits.UPPER_ARM_MIN, None),
+    "coverage": ("torso front covered", "", limits.COVERAGE_MIN, None),
+    "outside_out": ("of that, outside out", "", limits.OUTSIDE_MIN, None),
+    "gripper_load_max_n": ("largest cloth load", "N", None, limits.LOAD_MAX),
+    "stretch_p99": ("edge stretch, 99th percentile", "", None, limits.STRETCH_P99_MAX),
+    "stretch_max": ("edge stretch, longest", "", None, limits.STRETCH_MAX),
+    "vertex_speed_max_m_per_s": ("fastest vertex", "m/s", None, limits.VERTEX_SPEED_MAX),
+    "arm_depth_max_m": ("deepest vertex in an arm", "m", None, limits.DEPTH_MAX),
+    "frame_gap_max_s": ("longest gap between frames", "s", None, limits.FRAME_GAP_MAX),
+    "gown_travel_m": ("way of the gown", "m", limits.TRAVEL_MIN, None),
+}
+UNHARMED_BOUNDS: dict[str, Bound] = {  # where the record tells
+    "outside_out": ("of that, outside out", "", limits.OUTSIDE_NEAT_MIN, None),
+    "robot_depth_head_m": ("robot inside head or neck", "m", None, limits.ROBOT_DEPTH_HEAD_MAX),
+    "robot_depth_elsewhere_m": ("robot inside another part", "m", None, limits.ROBOT_DEPTH_MAX),
+    "wrist_left_above_bed_m": ("left wrist above the mattress at the end", "m", None, limits.WRIST_ABOVE_BED_MAX),
+    "wrist_right_above_bed_m": ("right wrist above the mattress at the end", "m", None, limits.WRIST_ABOVE_BED_MAX),
+    "face_covered_s": ("cloth on the face", "s", None, limits.FACE_COVERED_MAX),
+    "three_layers": ("torso front under three and more layers", "", None, limits.LAYERS_SHARE_MAX),
+    "neckline_along_m": ("middle of the neckline towards the feet", "m", *limits.COLLAR_ALONG),
+    "neckline_aside_m": ("middle of the neckline aside", "m", -limits.COLLAR_ASIDE_MAX, limits.COLLAR_ASIDE_MAX),
+}
 
 
 def write_report(directory: Path | str) -> Path:
@@ -150,26 +162,49 @@ def _verdict(directory: Path, run: Mapping[str, Any]) -> str:
 
 def _judged(verdict: Verdict) -> str:
     kind, word = ("good", "dressed") if verdict.dressed else ("bad", "not dressed")
+    badges = f'<span class="badge {kind}">{word}</span>'
+    if verdict.unharmed is not None:
+        kind, word = ("good", "unharmed") if verdict.unharmed else ("bad", "harmed")
+        badges += f' <span class="badge {kind}">{word}</span>'
     says = "Decided from the recorded geometry alone, whatever the tree says of itself."
     if not verdict.agrees:
         says += f" The tree claimed {SENTENCES.get(verdict.claimed or '', 'nothing')}."
     problems = "".join(f"<li>{_text(problem)}</li>" for problem in verdict.problems)
+    bounds = BOUNDS if verdict.unharmed is None else BOUNDS | UNHARMED_BOUNDS | _force_bounds(verdict)
     rows = []
-    for key, label, unit, sense, bound in BOUNDS:
+    for key, (label, unit, low, high) in bounds.items():
         if key in verdict.numbers:
             value = verdict.numbers[key]
-            kept = value >= bound if sense == "≥" else value <= bound
+            kept = (low is None or value >= low) and (high is None or value <= high)
             rows.append(
                 (
-                    label,
+                    _text(label),
                     f"{value:.3g} {unit}",
-                    f"{sense} {bound:g} {unit}",
+                    f"{_asked(low, high)} {unit}",
                     '<span class="yes">kept</span>' if kept else '<span class="no">broken</span>',
+                    f'<span class="soft">{_text(verdict.places.get(key, ""))}</span>',
                 )
             )
-    table = _table(("number", "value", "bound", ""), rows, numeric=(1, 2)) if rows else ""
-    head = f'<p><span class="badge {kind}">{word}</span> <span class="soft">{_text(says)}</span></p>'
+    table = _table(("number", "value", "bound", "", "where, when"), rows, numeric=(1, 2)) if rows else ""
+    head = f'<p>{badges} <span class="soft">{_text(says)}</span></p>'
     return head + (f"<ul>{problems}</ul>" if problems else "") + table
+
+
+def _asked(low: float | None, high: float | None) -> str:
+    """A bound as people write it."""
+    if low is not None and high is not None:
+        return f"{low:g} to {high:g}"
+    return f"≤ {high:g}" if low is None else f"≥ {low:g}"
+
+
+def _force_bounds(verdict: Verdict) -> dict[str, Bound]:
+    """Of the forces on the person, those with a limit."""
+    parts = (key.removeprefix("force_").removesuffix("_n") for key in verdict.numbers if key.startswith("force_"))
+    limited = {part: limit for part in parts if (limit := limits.force_limit(part)) is not None}
+    return {
+        f"force_{part}_n": (f"largest force on the {part.replace('_', ' ')}", "N", None, limit)
+        for part, limit in limited.items()
+    }
 
 
 def _stages(stages: Sequence[Mapping[str, Any]]) -> str:

@@ -19,3 +19,15 @@ def test_curves_of_a_known_run(make_record, tmp_path):
     np.testing.assert_allclose(series.stretch_max, 1.0, atol=1e-4)
     assert series.load[0, 0] == pytest.approx(np.hypot(3.0, 1.0))
     assert not series.holds[-1].any()
+    # the palms stay 0.3 m past the head and 1 m over it, at x = 0.5 m; the head's axis ends at y = -0.25 m
+    assert series.clearance is not None
+    np.testing.assert_allclose(series.clearance[:, 0], np.sqrt(0.5**2 + 0.25**2 + 1.0) - 0.08 - 0.05, atol=1e-6)
+    assert (series.clearance[:, 1] > 1.0).all()
+    np.testing.assert_allclose(series.wrists, 0.1, atol=1e-6)
+
+
+def test_old_records_have_the_other_curves(damaged_record):
+    series = read_series(damaged_record(lambda z: z.pop("bed_top")))
+    assert series.clearance is None
+    assert series.wrists is None
+    assert len(series.load) == len(series.t)

@@ -137,6 +137,7 @@ def test_stuck_run_counts_as_timeout(monkeypatch, tmp_path):
 def test_bullet_run_is_judged_by_its_geometry(make_record, tmp_path):
     directory = make_record(tmp_path / "run", seed=5)
     assert judge_run(directory, 5).dressed is True
+    assert judge_run(directory, 5).unharmed is True
     (directory / "truth.npz").unlink()
     found = judge_run(directory, 5)
     assert found.dressed is False

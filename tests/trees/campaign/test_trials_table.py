@@ -1,11 +1,17 @@
 """What the success table counts."""
 
 from caretree.trees.campaign.trial import Trial
-from caretree.trees.campaign.trials_table import rates, table
+from caretree.trees.campaign.trials_table import rates, table, whole_runs
 
 
-def trial(seed, outcome, dressed=None, **stages):
-    return Trial(seed=seed, outcome=outcome, reason="", stages=stages, dressed=dressed)
+def trial(seed, outcome, dressed=None, unharmed=None, **stages):
+    return Trial(seed=seed, outcome=outcome, reason="", stages=stages, dressed=dressed, unharmed=unharmed)
+
+
+def counts(*trials):
+    found = whole_runs({"overall": list(trials)})
+    assert {rate.trials for rate in found.values()} == {len(trials)}
+    return {name: rate.successes for name, rate in found.items()}
 
 
 def test_trials_that_never_reach_a_stage_do_not_count_for_it():
@@ -35,3 +41,23 @@ def test_the_geometry_decides_over_the_tree_and_the_disagreement_is_told():
     whole = rates(found)["overall"]["overall"]
     assert (whole.successes, whole.trials) == (1, 2)
     assert "disagree on seeds 5." in table(found)
+
+
+def test_dressed_unharmed_and_claimed_are_counted_apart():
+    found = [
+        trial(0, "success", dressed=True, unharmed=True),
+        trial(1, "success", dressed=False, unharmed=False),
+        trial(2, "failure", dressed=False, unharmed=True),
+        trial(3, "crash"),
+        trial(4, "failure", dressed=True, unharmed=True),
+    ]
+    assert counts(*found) == {"dressed and unharmed": 2, "unharmed": 3, "claimed": 2, "wrongly claimed": 1}
+    text = table({"overall": found})
+    assert "  unharmed: 3/5 = 60%" in text
+    assert "seed 1 not dressed, HARMED (tree: success)" in text
+    assert found[0].sentence().startswith("seed 0 dressed, unharmed")
+
+
+def test_rows_of_which_no_run_tells_are_left_out():
+    assert counts(trial(0, "success", dressed=True)) == {"dressed": 1, "claimed": 1, "wrongly claimed": 0}
+    assert counts(trial(0, "success"), trial(1, "failure")) == {"claimed": 1}

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
+from caretree.sim.evaluate.unharmed_rows import ROWS
 from caretree.trees.commands.evaluate import add_parser
 
 
@@ -19,7 +20,7 @@ def evaluate(*arguments: str) -> int:
 def test_dressed_and_not(make_record, tmp_path, capsys):
     directory = make_record(tmp_path / "run")
     assert evaluate(str(directory)) == 0
-    assert capsys.readouterr().out == "dressed\n"
+    assert capsys.readouterr().out == "dressed, unharmed\n"
     with np.load(directory / "truth.npz") as stored:
         arrays = {name: stored[name] for name in stored.files}
     arrays["gripper_closed"][-1] = True
@@ -28,6 +29,23 @@ def test_dressed_and_not(make_record, tmp_path, capsys):
     verdict = json.loads(capsys.readouterr().out)
     assert verdict["problems"] == ["a gripper still holds cloth in the last 2 s"]
     assert verdict["agrees"] is False
+    assert verdict["unharmed"] is True
+
+
+def test_harmed_and_unknown(make_record, tmp_path, capsys):
+    directory = make_record(tmp_path / "run")
+    with np.load(directory / "truth.npz") as stored:
+        arrays = {name: stored[name] for name in stored.files}
+    np.savez(directory / "truth.npz", **(arrays | {"bed_top": np.array(-0.5)}))
+    assert evaluate(str(directory)) == 1
+    head, *problems = capsys.readouterr().out.splitlines()
+    assert head == "NOT dressed, HARMED"
+    assert [problem.split(" ends ")[0] for problem in problems] == ["  - the left wrist", "  - the right wrist"]
+    for name in ROWS:
+        arrays.pop(name)
+    np.savez(directory / "truth.npz", **arrays)
+    assert evaluate(str(directory)) == 0
+    assert capsys.readouterr().out == "dressed, unharmed: unknown\n"
 
 
 def test_unreadable_is_one_sentence(tmp_path):

@@ -4,8 +4,10 @@ import json
 import re
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
+from caretree.sim.evaluate.unharmed_rows import ROWS
 from caretree.sim.record.folder_claim import FolderClaim
 from caretree.sim.record.record import RunResult
 from caretree.sim.record.recorder import Recorder
@@ -47,6 +49,10 @@ def test_whole_page(make_record, tmp_path):
     assert "dressing · seed 7 · world bullet" in page
     assert "sleeve caught on the hand" in page
     assert re.search(r"left armhole up the upper arm</td><td class=n>0\.833", page)
+    assert ">unharmed</span>" in page
+    assert re.search(r"left wrist above the mattress at the end</td><td class=n>0\.1 m</td><td class=n>≤ 0\.2 m", page)
+    assert "-0.1 to 0.08 m" in page
+    assert re.search(r"largest force on the torso</td><td class=n>0\.5 N</td><td class=n>≤ 140 N", page)
     assert "physics" in page
     assert "real-time factor" in page
     assert re.search(r"<b>\d+ MB</b><span>peak memory", page)
@@ -119,6 +125,32 @@ def test_claim_against_the_geometry_is_shown(make_record, tmp_path):
     parsed(page)
     assert "The tree claimed failure" in page
     assert "It &lt;b&gt;seems&lt;/b&gt; off." in page
+
+
+def test_a_harmed_person_is_shown_with_the_link_and_the_time(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    with np.load(directory / "truth.npz") as stored:
+        arrays = {name: stored[name] for name in stored.files}
+    arrays["robot_capsules"][20, 1] = (0.0, -0.2, 0.12, 0.0, -0.2, 0.13, 0.05)  # 1 cm in the head
+    np.savez(directory / "truth.npz", **arrays)
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert ">harmed</span>" in page
+    assert ">unharmed</span>" not in page
+    assert re.search(r"robot inside head or neck</td><td class=n>0\.01 m</td><td class=n>≤ 0\.002 m", page)
+    assert "right palm of the robot in the neck head, 1.6 s" in page
+
+
+def test_an_old_record_is_drawn_without_harm(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    with np.load(directory / "truth.npz") as stored:
+        arrays = {name: stored[name] for name in stored.files if name not in ROWS}
+    np.savez(directory / "truth.npz", **arrays)
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert ">dressed</span>" in page
+    assert "harmed" not in page
+    assert "Not available" not in page
 
 
 def test_record_without_truth_or_video(tmp_path):
