@@ -6,7 +6,7 @@ does not have it, or does without.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
@@ -48,8 +48,14 @@ class HasTiming(Protocol):
 class SupportsRecording(Protocol):
     """A world with a ground truth and a spectator's camera, both for the record only."""
 
-    def attach_recorder(self, recorder: Recorder) -> None:
-        """Give every frame from now on to `recorder`."""
+    def attach_recorder(self, recorder: Recorder, on_error: Callable[[Exception], None]) -> None:
+        """Give every frame from now on to `recorder`.
+
+        Args:
+            recorder: of the run.
+            on_error: told once when recording fails, or the display (`DisplayError`): the world's time goes on, as
+                the robot may hold a person's arm.
+        """
         ...
 
 

@@ -6,6 +6,7 @@ Nothing heavy is imported here: `--help` answers at once.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 from collections.abc import Callable
@@ -52,6 +53,19 @@ def seed(text: str) -> int:
     return int(text)
 
 
+def drop_output() -> None:
+    """Send what is still printed nowhere, as its reader has gone: printing it must not fail again."""
+    with contextlib.suppress(OSError, ValueError):  # where no file stands behind stdout there is nothing to do
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _complain(text: str) -> None:
+    with contextlib.suppress(OSError):  # the terminal may have gone
+        print(text, file=sys.stderr, flush=True)
+
+
 def answered(program: str, command: Callable[[], int], *, interrupted: str = "interrupted") -> int:
     """Run a command and tell a user's mistake, a lost file or a Ctrl-C in one sentence.
 
@@ -66,15 +80,15 @@ def answered(program: str, command: Callable[[], int], *, interrupted: str = "in
     try:
         return command()
     except CaretreeError as error:
-        print(f"{program}: {error}", file=sys.stderr)
+        _complain(f"{program}: {error}")
         return BAD_INPUT
     except BrokenPipeError:  # the reader of our output has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop_output()
         return 1
     except OSError as error:
         where = f": {error.filename}" if error.filename else ""
-        print(f"{program}: {error.strerror or error}{where}", file=sys.stderr)
+        _complain(f"{program}: {error.strerror or error}{where}")
         return BAD_INPUT
     except KeyboardInterrupt:
-        print(f"{program}: {interrupted}", file=sys.stderr)
+        _complain(f"{program}: {interrupted}")
         return INTERRUPTED

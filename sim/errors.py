@@ -9,3 +9,7 @@ class CaretreeError(Exception):
 
 class RecordError(CaretreeError):
     """A record cannot be written or read."""
+
+
+class DisplayError(CaretreeError):
+    """A run cannot be shown to whoever follows it."""

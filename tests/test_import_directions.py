@@ -18,6 +18,7 @@ ALLOWED_SIM = {
     "robot",
     "scripted",
     "faults",
+    "fence",
     "record",
 }
 # These read records after a run, or start a world; the tree never calls them.

@@ -13,12 +13,15 @@ from __future__ import annotations
 
 import time as wall
 from collections import defaultdict
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
+from ..fence import fenced
 from ..record.recorder import FRAME_PERIOD, Recorder
 from ..record.truth import TruthFrame, TruthStatic
 from ..render.camera import CAMERA_VIEWS, camera_intrinsics
@@ -94,7 +97,8 @@ class BulletWorld(World):
         self._capsules = RobotCapsules(self.kinematics)
         self.timing: dict[str, float] = defaultdict(float)
         self._noise = np.random.default_rng([seed, 2])
-        self._recorder: Recorder | None = None
+        self._on_watch_error: Callable[[Exception], None] = lambda error: None
+        self._watchers: list[Callable[[], None]] = []  # recorder and live view
         self._steps = 0
         self._next_frame = self._next_picture = 0.0
         self._asleep = False
@@ -115,6 +119,7 @@ class BulletWorld(World):
         self._view = LiveView() if view else None
         if self._view:
             print(f"live view: {self._view.url}", flush=True)
+            self._add_watcher(partial(self._show, self._view))
         self._settle(SETTLE)
 
     def _build(self) -> None:
@@ -289,7 +294,11 @@ class BulletWorld(World):
         while self.time.time < time - 1e-9:
             self._step()
             if self.time.time >= self._next_frame - 1e-9:
-                self._record()
+                self._next_frame += FRAME_PERIOD
+                recording = wall.perf_counter()
+                for watch in self._watchers:
+                    watch()
+                self.timing["record"] += wall.perf_counter() - recording
         self.timing["physics"] += wall.perf_counter() - begin - (self.timing["record"] - recorded)
 
     def _step(self) -> None:
@@ -377,8 +386,8 @@ class BulletWorld(World):
 
     # -- truth: for the recorder only ----------------------------------------------------------------------
 
-    def attach_recorder(self, recorder: Recorder) -> None:
-        """Give every frame from now on to `recorder`."""
+    def attach_recorder(self, recorder: Recorder, on_error: Callable[[Exception], None]) -> None:
+        """Give every frame from now on to `recorder`, and whatever fails in showing or recording it to `on_error`."""
         mesh = self.scene.mesh
         recorder.begin(
             TruthStatic(
@@ -395,7 +404,8 @@ class BulletWorld(World):
                 neckline=mesh.collar,
             )
         )
-        self._recorder = recorder
+        self._on_watch_error = on_error
+        self._add_watcher(partial(self._record, recorder))
 
     def truth_frame(self) -> TruthFrame:
         """Everything that is known about this instant."""
@@ -423,19 +433,21 @@ class BulletWorld(World):
             holds_arm=np.array([grip.arm for grip in self._grips]),
         )
 
-    def _record(self) -> None:
-        begin = wall.perf_counter()
-        self._next_frame += FRAME_PERIOD
-        if self._recorder is not None:
-            self._recorder.frame(self.truth_frame())
-            if self.time.time >= self._next_picture - 1e-9:
-                self._next_picture += PICTURE_PERIOD
-                renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
-                self._recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
-        if self._view:
+    def _add_watcher(self, watch: Callable[[], None]) -> None:
+        self._watchers.append(fenced(watch, lambda error: self._on_watch_error(error)))
+
+    def _record(self, recorder: Recorder) -> None:
+        recorder.frame(self.truth_frame())
+        if self.time.time >= self._next_picture - 1e-9:
+            self._next_picture += PICTURE_PERIOD
             renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
-            self._view.serve(lambda pose: renderer.render(pose, SIZE).rgb)
-        self.timing["record"] += wall.perf_counter() - begin
+            recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
+
+    def _show(self, view: LiveView) -> None:
+        def draw(pose: np.ndarray) -> np.ndarray:
+            return self._backdrop.update(self._vertices_now(), self._robot.configuration()).render(pose, SIZE).rgb
+
+        view.serve(draw)
 
     def _vertices_now(self) -> np.ndarray:
         return self._vertices if self._asleep else self._cloth.vertices()

@@ -26,6 +26,7 @@ RUN_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE = (
 )
 SPOOL_FOLDER = "truth.spool"
 ERRORS_FILE = "errors.log"  # tracebacks of errors in the program or in a task file
+RESERVE_FILE = "reserve"  # there only while the run goes on
 VERSIONED = (
     "caretree",
     "numpy",
@@ -70,6 +71,7 @@ class RunResult:
         sim_time_s: world clock at the end [s].
         timing: name of a part -> wall time spent in it [s].
         trace_hash: of the trace, when the runner keeps its own; else the recorder's.
+        stopped_from_outside: by the operator, a signal, or the loss of record or display: it says nothing of the task.
     """
 
     outcome: Outcome
@@ -78,6 +80,7 @@ class RunResult:
     sim_time_s: float
     timing: Mapping[str, float] = field(default_factory=dict)
     trace_hash: str | None = None
+    stopped_from_outside: bool = False
 
     def __post_init__(self) -> None:
         """Reject an unknown outcome."""
@@ -89,6 +92,7 @@ class RunResult:
         return {
             "outcome": self.outcome,
             "reason": self.reason,
+            "stopped_from_outside": self.stopped_from_outside,
             "stages": [asdict(stage) for stage in self.stages],
             "sim_time_s": round(float(self.sim_time_s), 6),
             "timing": {part: round(float(seconds), 3) for part, seconds in self.timing.items()},

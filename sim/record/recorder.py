@@ -6,7 +6,8 @@ import hashlib
 import json
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from .folder_claim import FolderClaim
 from .record import (
     ERRORS_FILE,
     REPORT_FILE,
+    RESERVE_FILE,
     RUN_FILE,
     SPOOL_FOLDER,
     TRACE_FILE,
@@ -27,6 +29,7 @@ from .record import (
     versions,
     write_run,
 )
+from .reserve import Reserve
 from .spool import Spool, disk_error, write_npz
 from .truth import TruthFrame, TruthStatic
 from .video import VideoWriter
@@ -40,6 +43,9 @@ class Recorder:
     The world calls `begin` once and `frame` every `FRAME_PERIOD`; the runner calls `event` and at the end
     `finish`; whoever renders calls `picture`.  Killed in between, the folder keeps run.json without an
     outcome, the trace so far and the frames so far.
+
+    The first error ends frames and pictures, and room kept for that case goes to the trace and to run.json, which
+    tell how the run ended: they are still written where that is possible.
 
     Args:
         directory: created if needed, or the claim on it; given back at the end.
@@ -76,13 +82,16 @@ class Recorder:
         self._hash = hashlib.sha256()
         self._spool: Spool | None = None
         self._video: VideoWriter | None = None
+        self._problem: RecordError | None = None  # the first
         self._done = False
         try:
             self._trace = (self.directory / TRACE_FILE).open("w", encoding="utf-8", buffering=1)
         except OSError as error:
             self._claim.release()
             raise disk_error(error, f"opening the record in {self.directory}") from error
+        self._reserve: Reserve | None = None
         try:
+            self._reserve = Reserve(self.directory / RESERVE_FILE)
             write_run(self.directory, self._run)
         except RecordError:
             self.close()
@@ -93,7 +102,7 @@ class Recorder:
         if not (self.directory / RUN_FILE).exists():
             return
         shutil.rmtree(self.directory / SPOOL_FOLDER, ignore_errors=True)
-        for name in (TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE):
+        for name in (TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE, RESERVE_FILE):
             (self.directory / name).unlink(missing_ok=True)
 
     def begin(self, static: TruthStatic) -> None:
@@ -107,14 +116,16 @@ class Recorder:
         self._spool = Spool(self.directory / SPOOL_FOLDER, static)
 
     def frame(self, truth: TruthFrame) -> None:
-        """Append one frame of truth; on disk when this returns.
+        """Append one frame of truth; on disk when this returns.  Does nothing after an error.
 
         Raises:
             RecordError: `begin` was not called, a shape is wrong, or the disk is full.
         """
         if self._spool is None:
             raise RecordError("a frame came before the recorder was begun")
-        self._spool.append(truth)
+        if self._problem is None:
+            with self._noted():
+                self._spool.append(truth)
 
     def event(self, event: Mapping[str, Any]) -> None:
         """Append one line to the trace and to its hash.
@@ -126,23 +137,44 @@ class Recorder:
             RecordError: the disk is full.
         """
         line = json.dumps(event, sort_keys=True, separators=(",", ":")) + "\n"
-        try:
-            self._trace.write(line)
-        except OSError as error:
-            raise disk_error(error, f"writing {self.directory / TRACE_FILE}") from error
         self._hash.update(line.encode())
+        with self._noted():
+            try:
+                self._trace.write(line)
+            except OSError as error:
+                self._make_room()
+                with suppress(OSError):
+                    self._trace.flush()  # the line has stayed in the buffer
+                raise disk_error(error, f"writing {self.directory / TRACE_FILE}") from error
 
     def picture(self, t: float, image: np.ndarray) -> None:
-        """Add one picture to the video, shown at `t` [s] of the world clock.
+        """Add one picture to the video, shown at `t` [s] of the world clock.  Does nothing after an error.
 
         image: (H, W, 3) uint8, the same even size every time.
 
         Raises:
             RecordError: the size differs or the disk is full.
         """
-        if self._video is None:
-            self._video = VideoWriter(self.directory / VIDEO_FILE, width=image.shape[1], height=image.shape[0])
-        self._video.add(t, image)
+        if self._problem is not None:
+            return
+        with self._noted():
+            if self._video is None:
+                self._video = VideoWriter(self.directory / VIDEO_FILE, width=image.shape[1], height=image.shape[0])
+            self._video.add(t, image)
+
+    @contextmanager
+    def _noted(self) -> Iterator[None]:
+        """Keep the first error, and make room once there is one."""
+        try:
+            yield
+        except RecordError as error:
+            self._problem = self._problem or error
+            self._make_room()
+            raise
+
+    def _make_room(self) -> None:
+        if self._reserve is not None:
+            self._reserve.free()
 
     def finish(self, result: RunResult) -> None:
         """Write truth.npz and the outcome, and close everything.
@@ -151,26 +183,25 @@ class Recorder:
         the spool, and the error is raised afterwards.
 
         Raises:
-            RecordError: the disk is full, or the run was finished before.
+            RecordError: something could not be written, now or before, or the run was finished before.
         """
         if self._done:
             raise RecordError("the recorder was finished twice")
-        self._close_files()
         self._done = True
         try:
+            self._close_files()
             self._finish(result)
         finally:
             self._claim.release()
+        if self._problem is not None:
+            raise self._problem
 
     def _finish(self, result: RunResult) -> None:
-        problem: RecordError | None = None
         began = time.perf_counter()
         if self._spool is not None and self._spool.frames:
-            try:
+            with suppress(RecordError), self._noted():
                 write_npz(self._spool.folder, self.directory / TRUTH_FILE)
                 shutil.rmtree(self._spool.folder)
-            except RecordError as error:
-                problem = error
         now = time.perf_counter()
         self._run.update(
             result.fields(),
@@ -181,18 +212,21 @@ class Recorder:
         self._run["peak_memory_mb"] = peak_memory()
         if self._video is not None:
             self._run["video_start_s"] = self._video.t_start
+        self._make_room()
         write_run(self.directory, self._run)
-        if problem is not None:
-            raise problem
 
     def close(self) -> None:
         """Release files without an outcome; the record stays readable as a run cut short.  May be called twice."""
         self._close_files()
+        self._make_room()
         self._claim.release()
 
     def _close_files(self) -> None:
-        self._trace.close()
-        if self._spool is not None:
-            self._spool.close()
-        if self._video is not None:
-            self._video.close()
+        """Close what is open; an error keeps neither the others nor run.json from being written."""
+        for file in (self._trace, self._spool, self._video):
+            if file is not None:
+                with suppress(RecordError), self._noted():
+                    try:
+                        file.close()
+                    except OSError as error:
+                        raise disk_error(error, f"closing the record in {self.directory}") from error

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +13,6 @@ from ..errors import RecordError
 from .spool import disk_error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from fractions import Fraction
 
 TICKS = 90_000  # per second, the usual clock of H.264
@@ -42,7 +43,7 @@ class VideoWriter:
         self.t_start: float | None = None  # [s] world clock of the first picture
         self._shape = (height, width, 3)
         self._last = -1
-        try:
+        with self._told("opening"):
             self._container: Any = av.open(
                 str(path),
                 "w",
@@ -55,8 +56,6 @@ class VideoWriter:
             stream.options = {"crf": str(quality), "preset": "veryfast", "threads": "1", "g": "25", "bf": "0"}
             stream.time_base = stream.codec_context.time_base = _time_base()
             self._container.start_encoding()  # opens the file now, not at the first picture
-        except OSError as error:
-            raise disk_error(error, f"opening {path}") from error
         self._stream = stream
 
     def add(self, t: float, image: np.ndarray) -> None:
@@ -79,7 +78,9 @@ class VideoWriter:
         self._last = ticks
         frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(image), format="rgb24")
         frame.pts, frame.time_base = ticks, _time_base()
-        self._mux(self._stream.encode(frame))
+        with self._told("writing"):
+            for packet in self._stream.encode(frame):
+                self._container.mux(packet)
 
     def close(self) -> None:
         """Flush and close; may be called twice.
@@ -90,20 +91,23 @@ class VideoWriter:
         if self._container is None:
             return
         container, self._container = self._container, None
-        try:
+        with self._told("closing"):
             if self._last >= 0:
                 for packet in self._stream.encode(None):
                     container.mux(packet)
             container.close()
-        except OSError as error:
-            raise disk_error(error, f"closing {self.path}") from error
 
-    def _mux(self, packets: Iterable[Any]) -> None:
+    @contextmanager
+    def _told(self, doing: str) -> Iterator[None]:
+        """Turn what the system or the encoder raises into one sentence."""
+        from av.error import FFmpegError
+
         try:
-            for packet in packets:
-                self._container.mux(packet)
+            yield
         except OSError as error:
-            raise disk_error(error, f"writing {self.path}") from error
+            raise disk_error(error, f"{doing} {self.path}") from error
+        except FFmpegError as error:
+            raise RecordError(f"{doing} {self.path} failed: {error}") from error
 
 
 def _time_base() -> Fraction:

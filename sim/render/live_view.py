@@ -10,6 +10,8 @@ from urllib.parse import parse_qs, urlparse
 
 import numpy as np
 
+from ..errors import DisplayError
+from ..fence import said
 from .camera import looking_at
 
 SIZE = (640, 480)
@@ -78,14 +80,21 @@ class LiveView:
         threading.Thread(target=self._server.serve_forever, daemon=True).start()
 
     def serve(self, draw: Callable[[np.ndarray], np.ndarray]) -> None:
-        """Draw once if somebody waits: `draw` takes a camera pose (4, 4) and returns rgb (H, W, 3) uint8."""
+        """Draw once if somebody waits: `draw` takes a camera pose (4, 4) and returns rgb (H, W, 3) uint8.
+
+        Raises:
+            DisplayError: nothing can be drawn.
+        """
         with self._ready:
             asked, self._asked = self._asked, None
         if asked is None:
             return
-        import cv2
+        try:
+            import cv2
 
-        _, jpeg = cv2.imencode(".jpg", draw(orbit(*asked))[:, :, ::-1])
+            _, jpeg = cv2.imencode(".jpg", draw(orbit(*asked))[:, :, ::-1])
+        except Exception as error:  # of renderer or encoder
+            raise DisplayError(f"the live view cannot be drawn: {said(error)}") from error
         with self._ready:
             self._frame = jpeg.tobytes()
             self._ready.notify_all()

@@ -33,6 +33,8 @@ class Reason(enum.Enum):
     MOTION_BLOCKED = "A motion did not come to its end or would not stop."
     PRECONDITION = "The stage could not begin because what it needs does not hold."
     INTERRUPTED = "The operator interrupted the run."
+    RECORD_LOST = "The record can no longer be written."
+    DISPLAY_LOST = "The run can no longer be shown."
     INTERNAL_ERROR = "The program made an error."
 
 

@@ -1,9 +1,11 @@
 """A user's mistake is one sentence, whichever command line he met."""
 
 import argparse
+import errno
+import os
 
 import pytest
-from caretree.sim.command_line import CommandParser, answered, seed, whole_number
+from caretree.sim.command_line import CommandParser, answered, drop_output, seed, whole_number
 from caretree.sim.errors import CaretreeError
 
 
@@ -54,6 +56,34 @@ def test_what_goes_wrong_is_told_and_gives_its_exit_status(problem, status, said
 
     assert answered("tool", command, interrupted="interrupted; all is kept") == status
     assert capsys.readouterr().err == said
+
+
+@pytest.mark.parametrize("problem", [CaretreeError("it is broken"), OSError("odd"), KeyboardInterrupt()])
+def test_a_terminal_that_has_gone_changes_no_exit_status(problem, monkeypatch, capsys):
+    class Gone:
+        def write(self, text):
+            raise OSError(errno.EIO, "Input/output error")
+
+        flush = write
+
+    def command():
+        raise problem
+
+    status = answered("tool", command)
+    monkeypatch.setattr("sys.stderr", Gone())
+    assert answered("tool", command) == status
+
+
+def test_what_is_printed_after_its_reader_has_gone_is_dropped(monkeypatch, capsys):
+    drop_output()  # no file stands behind what pytest captures
+    read, write = os.pipe()
+    os.close(read)
+    with open(write, "w") as stream:
+        monkeypatch.setattr("sys.stdout", stream)
+        with pytest.raises(BrokenPipeError):
+            print("lost", flush=True)
+        drop_output()
+        print("lost", flush=True)
 
 
 def test_a_command_keeps_its_own_exit_status_and_a_programming_error_its_traceback(capsys):

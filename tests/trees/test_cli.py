@@ -190,6 +190,9 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing(tmp_path, monkeypatch, ca
                 raise OSError(errno.ENOSPC, "No space left on device")
             return self.file.write(line)
 
+        def flush(self):
+            pass
+
         def close(self):
             self.file.close()
 
@@ -201,11 +204,14 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing(tmp_path, monkeypatch, ca
 
     monkeypatch.setattr(Recorder, "__init__", init)
     assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith("caretree: the disk is full")
-    assert error.count("\n") == 1
+    told = capsys.readouterr()
+    assert told.err.startswith("caretree: the disk is full")
+    assert told.err.count("\n") == 1
+    assert "The record can no longer be written. [recorder] the disk is full" in told.out
     assert len((tmp_path / "r/trace.jsonl").read_text().splitlines()) == event
-    assert json.loads((tmp_path / "r/run.json").read_text())["outcome"] is None
+    record = json.loads((tmp_path / "r/run.json").read_text())
+    assert record["outcome"] == "safe_stop"
+    assert record["stopped_from_outside"]
 
 
 def test_check_says_what_holds_and_what_does_not(tmp_path, capsys):

@@ -21,6 +21,7 @@ from ...sim.record.spool import disk_error
 from ..run.task import JUDGED
 
 TRIAL_FILE = "trial.json"
+ENDING = 60.0  # [s] of wall time for a child to make its person safe and to write its record, before it is killed
 CARETREE = (sys.executable, "-m", "caretree.trees.cli")
 
 
@@ -102,10 +103,10 @@ def judge_run(directory: Path, seed: int) -> Trial:
     """Read a finished run and evaluate it.
 
     Raises:
-        RecordError: there is no finished run.
+        RecordError: there is no finished run, or it was stopped from outside, which says nothing of the task.
     """
     run: dict[str, Any] = read_run(directory)
-    if not is_finished(run):
+    if not is_finished(run) or run.get("stopped_from_outside"):
         raise RecordError(f"{directory} holds no finished run")
     stages = {str(stage["name"]): str(stage["status"]) for stage in run.get("stages", ())}
     told = Trial(
@@ -145,7 +146,8 @@ def run_trial(
         stop: ends the run when set.
 
     Raises:
-        CaretreeError: the child says that its input is bad, or another campaign runs this trial.
+        CaretreeError: the child says that its input is bad, it was stopped from outside (by a signal, or a full disk),
+            or another campaign runs this trial.
         InterruptedTrialError: `stop` was set.
     """
     try:
@@ -160,6 +162,8 @@ def run_trial(
         child = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
         status = _wait(child, patience, stop)
     last = _last_line(log)
+    if status is not None and (why := _stopped(directory)):
+        raise CaretreeError(f"the run in {directory} was stopped: {why}")
     if status == BAD_INPUT:
         raise CaretreeError(last or f"`caretree run {task}` refused its input without a word; see {log}")
     try:
@@ -179,10 +183,20 @@ def _clear(directory: Path) -> None:
     try:
         FolderClaim(directory).release()
     except FolderTakenError:
-        raise
+        if not _stopped(directory):
+            raise
     except RecordError:  # damaged: the more reason to begin anew
         pass
     shutil.rmtree(directory, ignore_errors=True)
+
+
+def _stopped(directory: Path) -> str:
+    """Why the run was stopped from outside; empty when it was not."""
+    try:
+        run = read_run(directory)
+    except RecordError:
+        return ""
+    return str(run.get("reason")) if run.get("stopped_from_outside") else ""
 
 
 def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event) -> int | None:
@@ -199,8 +213,12 @@ def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event
         return None
     finally:
         if child.poll() is None:
-            child.kill()
-            child.wait()
+            child.terminate()  # it ends in the safe stop
+            try:
+                child.wait(timeout=ENDING)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.wait()
 
 
 def _last_line(log: Path) -> str:

@@ -10,6 +10,7 @@ The folder of a campaign holds one folder for each trial, so an interrupted camp
 
 from __future__ import annotations
 
+import contextlib
 import json
 import threading
 from collections.abc import Callable, Mapping
@@ -77,7 +78,8 @@ def run_trials(plan: Plan, tell: Callable[[str], None]) -> list[Trial]:
         tell: gets one line for each trial.
 
     Raises:
-        CaretreeError: the folder belongs to another campaign, a run refuses its input, or the disk is full.
+        CaretreeError: the folder belongs to another campaign, a run refuses its input or was stopped, or the disk is
+            full.
         KeyboardInterrupt: the operator stopped it; finished trials are kept.
     """
     _claim(plan)
@@ -100,10 +102,13 @@ def run_trials(plan: Plan, tell: Callable[[str], None]) -> list[Trial]:
                     done[trial.seed] = trial
                     tell(f"[{len(done)}/{len(plan.seeds)}] {trial.sentence()}")
                     write_table(plan.directory)
-        except BaseException:
+        except BaseException as error:
             stop.set()
             for future in running:
                 future.cancel()
+            if running and isinstance(error, KeyboardInterrupt):
+                with contextlib.suppress(OSError):  # the terminal may have gone
+                    tell("interrupted: the runs under way end in the safe stop first")
             raise  # leaving the pool waits until every child is gone
     write_table(plan.directory)
     return [done[seed] for seed in plan.seeds]

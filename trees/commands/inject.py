@@ -15,6 +15,7 @@ from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
 from ...sim.record.spool import disk_error
 from ..campaign.inject import Campaign, FaultKey, Row, table
+from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.worlds import make_world
 
@@ -41,7 +42,8 @@ def main(options: argparse.Namespace) -> int:
     if lock is None:
         raise CaretreeError(f"another campaign is writing {path}: give another folder with --out or wait for it")
     try:
-        return _campaign(options, task, path)
+        with StopSignals():
+            return _campaign(options, task, path)
     finally:
         os.close(lock)
 

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..campaign.replay import replay
+from ..run.stop_signals import StopSignals
 
 
 def main(options: argparse.Namespace) -> int:
@@ -14,7 +15,8 @@ def main(options: argparse.Namespace) -> int:
     Raises:
         CaretreeError: the record cannot be used.
     """
-    result = replay(Path(options.directory))
+    with StopSignals():
+        result = replay(Path(options.directory))
     if result.same:
         print(f"the run in {options.directory} repeats exactly")
         return 0

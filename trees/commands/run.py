@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import signal
+import errno
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,34 +11,46 @@ from typing import Any
 
 from ...perception.senses import Senses
 from ...sim.abilities import HasTiming, SupportsRecording
-from ...sim.errors import CaretreeError
+from ...sim.command_line import drop_output
+from ...sim.errors import CaretreeError, DisplayError, RecordError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
+from ...sim.fence import said
 from ...sim.record.folder_claim import FolderClaim, claim_free
-from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE
+from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
 from ...sim.world import World
 from ...skills.core.settings import Settings
 from ..run.runner import Progress, Run
+from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import read_settings
 from ..run.worlds import make_world, prepare_stage
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
 RATE_HZ = 15.0
+GONE = {errno.EIO: "the terminal was closed", errno.EPIPE: "nobody reads the output any more"}
 
 
 def show(progress: Progress) -> None:
-    """One line of live progress."""
+    """One line of live progress.
+
+    Raises:
+        DisplayError: the terminal, or whoever else reads it, has gone; nothing is printed from then on.
+    """
     indent = "" if progress.kind == "stage" else "    "
     message = f": {progress.message}" if progress.message else ""
-    print(f"{progress.time:8.2f} s {indent}{SIGNS[progress.status]} {progress.name}{message}", flush=True)
+    try:
+        print(f"{progress.time:8.2f} s {indent}{SIGNS[progress.status]} {progress.name}{message}", flush=True)
+    except OSError as error:
+        drop_output()
+        raise DisplayError(GONE.get(error.errno or 0, f"printing failed: {said(error)}")) from error
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the task; 0 when it succeeded, else 1.
 
     Raises:
-        CaretreeError: the input is bad or the record cannot be written.
+        CaretreeError: the input is bad, or some of the record could not be written.
     """
     task = load_task(options.task)
     faults = [parse_fault(text) for text in options.inject]
@@ -59,23 +71,22 @@ def main(options: argparse.Namespace) -> int:
         if options.out
         else claim_free(Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
     )
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # being told to end is being interrupted
     try:
-        inner, senses = make_world(
-            options.world,
-            task,
-            seed=options.seed,
-            gown=options.gown,
-            person=options.person,
-            model=options.model,
-            view=options.view,
-        )
-        try:
-            return _run(options, task, inner, senses, faults, settings, parameters, claim)
-        finally:
-            inner.close()
+        with StopSignals() as signals:
+            inner, senses = make_world(
+                options.world,
+                task,
+                seed=options.seed,
+                gown=options.gown,
+                person=options.person,
+                model=options.model,
+                view=options.view,
+            )
+            try:
+                return _run(options, task, inner, senses, faults, settings, parameters, claim, signals)
+            finally:
+                inner.close()
     finally:
-        signal.signal(signal.SIGTERM, before)
         claim.release()
 
 
@@ -88,6 +99,7 @@ def _run(
     settings: Settings,
     parameters: dict[str, Any],
     claim: FolderClaim,
+    signals: StopSignals,
 ) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
     events = _Events()
@@ -108,10 +120,11 @@ def _run(
     events.recorder = recorder
     try:
         if isinstance(inner, SupportsRecording):
-            inner.attach_recorder(recorder)
+            inner.attach_recorder(recorder, run.lost)
+        signals.run = run
         result = run.run()
         of_world = inner.timing if isinstance(inner, HasTiming) else {}
-        recorder.finish(replace(result, timing=_timing(result.timing, of_world)))
+        problem = _finish(recorder, replace(result, timing=_timing(result.timing, of_world)))
     finally:
         recorder.close()
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
@@ -121,7 +134,18 @@ def _run(
     for path in written:
         if path is not None and path.exists():
             print(path)
+    if problem is not None:
+        raise problem
     return 0 if result.outcome == "success" else 1
+
+
+def _finish(recorder: Recorder, result: RunResult) -> RecordError | None:
+    """Write the outcome; what of the record could not be written, if anything, is told after the outcome."""
+    try:
+        recorder.finish(result)
+    except RecordError as error:
+        return error
+    return None
 
 
 class _Events:

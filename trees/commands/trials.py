@@ -8,6 +8,7 @@ from pathlib import Path
 from ...sim.command_line import INTERRUPTED
 from ...sim.errors import CaretreeError
 from ..campaign.trials import TABLE, Plan, run_trials
+from ..run.stop_signals import StopSignals
 
 PASSED_ON = ("world", "gown", "person", "model", "tuning")  # to every `caretree run`
 
@@ -92,7 +93,8 @@ def main(args: argparse.Namespace) -> int:
         jobs=args.jobs,
     )
     try:
-        run_trials(plan, lambda line: print(line, flush=True))
+        with StopSignals():
+            run_trials(plan, lambda line: print(line, flush=True))
     except KeyboardInterrupt:
         print(f"interrupted: finished trials are kept in {directory}; the same command goes on", flush=True)
         return INTERRUPTED

@@ -7,7 +7,8 @@
 | fails, is interrupted, raises, or the senses die | yes | `safe_stop` |
 
 Whatever happens, the last things done are: motions cancelled, `world.stop()` until nothing moves, and, where no
-safe branch succeeded, the fingers opened.
+safe branch succeeded, the fingers opened.  Only a world that is lost keeps the safe branch from moving: errors of the
+record or of the display are kept and ask for the safe stop, as an operator does.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import difflib
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -23,8 +25,9 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.senses import Senses
-from ...sim.errors import CaretreeError
+from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
+from ...sim.fence import fenced, said
 from ...sim.record.record import RunResult
 from ...sim.world import SIDES, GripperOpening, World, WorldError
 from ...skills.core.context import Context
@@ -44,6 +47,8 @@ OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are clos
 CALM_TICKS = 5
 FEW_NAMES = 12  # so many are listed whole in an error
 DEAD_CLOCK_TICKS = 30  # ticks without any progress of the world's clock
+HANG = 20.0  # [s] wall time without a new tick: longer than any plan takes
+FROM_OUTSIDE = (Reason.INTERRUPTED, Reason.RECORD_LOST, Reason.DISPLAY_LOST)
 
 
 class EventSink(Protocol):
@@ -81,8 +86,8 @@ class Run:
         world: unguarded; the run puts the guard around it.
         seed: of the run's chance.
         rate_hz: ticks per second of world time.
-        recorder: gets every event of the trace.
-        on_progress: told of stages and skills as they begin and end.
+        recorder: gets every event of the trace; an error of it ends the run in the safe stop.
+        on_progress: told of stages and skills as they begin and end; an error of it ends the run in the safe stop.
         senses: to be used instead of those that the task offers.
         params: for the task's `build`.
         limits: what the guard enforces.
@@ -122,10 +127,11 @@ class Run:
         for node in self.root.iterate():
             if hasattr(node, "bind"):
                 node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions
-        self.trace = Trace(self.root, self.context.now, recorder.event if recorder else None)
+        self.trace = Trace(self.root, self.context.now, fenced(recorder.event, self.lost) if recorder else None)
         self._period = 1.0 / rate_hz
         self._ticked = float("-inf")
-        self._tell = on_progress or (lambda progress: None)
+        self._began = time.perf_counter()  # the last tick, by the wall clock
+        self._tell = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self.interrupted = False
@@ -134,10 +140,22 @@ class Run:
             self._check_fault_nodes(world)
             self.context.observers.append(world.on_phase)
 
-    def request_stop(self, reason: Reason = Reason.INTERRUPTED, detail: str = "") -> None:
-        """Ask for the safe stop at the next tick, as an operator's button does."""
+    def request_stop(self, reason: Reason = Reason.INTERRUPTED, detail: str = "", source: str = "operator") -> None:
+        """Ask for the safe stop at the next tick, as an operator's button does; the first to ask is told."""
         if self._stop is None:
-            self._stop = Failure(reason, detail, "operator")
+            self._stop = Failure(reason, detail, source)
+
+    def lost(self, error: Exception, reason: Reason | None = None) -> None:
+        """Ask for the safe stop because of an error of the display (a `DisplayError`) or of the record."""
+        if reason is None:
+            reason = Reason.DISPLAY_LOST if isinstance(error, DisplayError) else Reason.RECORD_LOST
+        if not isinstance(error, (OSError, CaretreeError)):
+            self.context.report(error)
+        self.request_stop(reason, said(error), "display" if reason == Reason.DISPLAY_LOST else "recorder")
+
+    def hangs(self) -> bool:
+        """Whether the last tick began so long ago that it will hardly end by itself."""
+        return time.perf_counter() - self._began > HANG
 
     def _check_fault_nodes(self, world: FaultyWorld) -> None:
         skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
@@ -146,19 +164,17 @@ class Run:
                 raise CaretreeError(f"fault {spec} names no skill of this task; {_nearest(spec.node, skills)}")
 
     def run(self) -> RunResult:
-        """Tick to the end and make safe.  Raises only what the recorder or the world's owner must know."""
+        """Tick to the end and make safe."""
         failure: Failure | None = None
         try:
             failure = self._tick_to_end()
         except KeyboardInterrupt:
             self.interrupted = True
-            failure = Failure(Reason.INTERRUPTED, "", "operator")
-        except (OSError, CaretreeError) as error:
-            if not isinstance(error, WorldError):
-                self._last_resort()
-                raise  # the record cannot be written: the caller says so in one sentence
+            self.request_stop()
+            failure = self._stop
+        except CaretreeError as error:
             failure = Failure(Reason.INTERNAL_ERROR, str(error), "runner")
-        except Exception as error:  # the fence: py_trees leaves ancestors running after an exception in a node
+        except (Exception, SystemExit) as error:  # py_trees leaves ancestors running after an exception in a node
             self.context.report(error)
             failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", "runner")
         except BaseException:
@@ -166,7 +182,7 @@ class Run:
             raise
         try:
             return self._end(failure)
-        except BaseException:  # interrupted once more, or the record cannot be written
+        except BaseException:  # interrupted once more
             self._last_resort()
             raise
 
@@ -189,7 +205,7 @@ class Run:
             self._pass_time()
 
     def _tick(self, node: Behaviour) -> None:
-        began = time.perf_counter()
+        began = self._began = time.perf_counter()
         self._ticked = self.context.now()
         self.context.lease.advance()
         for visited in node.tick():
@@ -283,6 +299,7 @@ class Run:
             sim_time_s=self.context.now(),
             timing=self._timing,
             trace_hash=self.trace.digest(),
+            stopped_from_outside=failure is not None and failure.reason in FROM_OUTSIDE,
         )
 
     def _halt(self, node: Behaviour) -> None:
@@ -338,7 +355,7 @@ class Run:
         calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
-            self._ticked = self.context.now()
+            self._ticked, self._began = self.context.now(), time.perf_counter()
             self._try(self.context.lease.advance)
             self._try(self.guard.stop)
             if release:

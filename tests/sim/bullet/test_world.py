@@ -13,7 +13,7 @@ from caretree.sim.abilities import (
 )
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.bullet.world import BulletWorld
-from caretree.sim.errors import CaretreeError
+from caretree.sim.errors import CaretreeError, RecordError
 from caretree.sim.evaluate.crossings import sleeve
 from caretree.sim.scene.person_spec import PERSON_PARTS
 from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost, WorldError
@@ -98,6 +98,39 @@ def test_parts_of_the_person_are_named(world):
 def test_bad_arguments_are_one_sentence(arguments, says):
     with pytest.raises(CaretreeError, match=says):
         BulletWorld(seed=0, **arguments)
+
+
+@pytest.mark.parametrize("fails", ["frame", "picture", "view"])
+def test_time_goes_on_when_nobody_can_watch_it(world, monkeypatch, fails):
+    class Recorder:
+        def begin(self, static):
+            pass
+
+        def frame(self, truth):
+            self.show("frame")
+
+        def picture(self, t, image):
+            self.show("picture")
+
+        def show(self, what):
+            shown.append(what)
+            if what == fails:
+                raise RecordError("the disk is full")
+
+    class View:
+        def serve(self, draw):
+            Recorder().show("view")
+
+    shown, told = [], []
+    monkeypatch.setattr(world, "_watchers", [])
+    world._add_watcher(lambda: world._show(View()))
+    world.attach_recorder(Recorder(), told.append)
+    begin = world.clock.now()
+    world.clock.wait_until(begin + 0.4)
+    assert world.clock.now() == pytest.approx(begin + 0.4)
+    assert shown.count("view") >= 5
+    assert [str(error) for error in told] == ["the disk is full"]
+    assert shown.count(fails) > 1
 
 
 def test_the_same_seed_is_the_same_world():

@@ -1,6 +1,8 @@
 """The record survives a kill, a full disk and wrong input."""
 
 import dataclasses
+import errno
+import io
 import json
 import os
 from pathlib import Path
@@ -12,6 +14,7 @@ from caretree.sim.record.record import RunResult, StageResult, is_finished, read
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.record.spool import open_spool
 from caretree.sim.record.truth import TruthFrame, TruthStatic
+from caretree.sim.record.video import VideoWriter
 
 RESULT = RunResult(
     outcome="failure",
@@ -122,7 +125,7 @@ def test_finished_record_holds_what_design_asks_for(tmp_path):
         np.testing.assert_allclose(stored["person_force"][:, 1], np.arange(600))
         assert stored["gripper_closed"].dtype == bool
         assert list(stored["person_parts"]) == ["head", "torso"]
-    assert not (tmp_path / "run" / "truth.spool").exists()
+    assert {path.name for path in (tmp_path / "run").iterdir()} == {"run.json", "trace.jsonl", "truth.npz"}
 
 
 def test_killed_run_keeps_frames_and_says_so(tmp_path):
@@ -151,11 +154,72 @@ def test_full_disk_while_recording_keeps_earlier_frames(tmp_path):
     assert record._spool is not None
     record._spool.close()
     record._spool._file = open("/dev/full", "wb", buffering=0)  # noqa: SIM115 - closed by finish
+    assert (tmp_path / "reserve").exists()
     with pytest.raises(RecordError, match="the disk is full"):
         record.frame(truth(1))
-    record.finish(RESULT)
+    assert not (tmp_path / "reserve").exists(), "its room is for the trace and the outcome"
+    record.frame(truth(2))
+    record.picture(0.2, np.zeros((48, 64, 3), np.uint8))
+    record.event({"t": 0.3})
+    with pytest.raises(RecordError, match="the disk is full: stopped while recording frame 1"):
+        record.finish(RESULT)
     with np.load(tmp_path / "truth.npz") as stored:
         assert stored["t"].shape == (1,)
+    assert not (tmp_path / "video.mp4").exists(), "bulky things are recorded no more"
+    assert (tmp_path / "trace.jsonl").read_text() == '{"t":0.3}\n'
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
+
+
+class Disk(io.FileIO):
+    """A file on a disk with so much room [bytes], which a reserve may add to."""
+
+    room = 0
+
+    def write(self, data):
+        written = min(len(data), self.room)
+        if not written:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.room -= written
+        return super().write(bytes(data[:written]))
+
+
+@pytest.mark.parametrize("freed", [0, 1000])
+def test_a_full_disk_tears_no_line_of_the_trace(tmp_path, monkeypatch, freed):
+    record = recorder(tmp_path)
+    record._trace.close()
+    disk = Disk(tmp_path / "trace.jsonl", "w")
+    record._trace = io.TextIOWrapper(io.BufferedWriter(disk), line_buffering=True)
+    disk.room = 20  # two lines and a half
+    monkeypatch.setattr(record, "_make_room", lambda: setattr(disk, "room", disk.room + freed))
+    for t in range(2):
+        record.event({"t": t})
+    with pytest.raises(RecordError, match="the disk is full"):
+        record.event({"t": 2})
+    if freed:
+        record.event({"t": 3})
+    with pytest.raises(RecordError, match="the disk is full"):
+        record.finish(RESULT)
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
+    lines = (tmp_path / "trace.jsonl").read_text().splitlines()
+    assert lines[:2] == ['{"t":0}', '{"t":1}']
+    if freed:
+        assert lines[2:] == ['{"t":2}', '{"t":3}']
+
+
+def test_an_error_of_closing_does_not_keep_the_outcome_from_being_written(tmp_path, monkeypatch):
+    record = recorder(tmp_path)
+    record.begin(static())
+    record.frame(truth(0))
+
+    def close(self):
+        raise RecordError("the video is broken")
+
+    monkeypatch.setattr(VideoWriter, "close", close)
+    record.picture(0.0, np.zeros((48, 64, 3), np.uint8))
+    with pytest.raises(RecordError, match="the video is broken"):
+        record.finish(RESULT)
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
+    assert (tmp_path / "truth.npz").exists()
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system to fill up")
@@ -192,13 +256,16 @@ def test_shapes_are_checked_when_they_are_given(tmp_path):
     with pytest.raises(RecordError, match="before the recorder was begun"):
         record.frame(truth(0))
     record.begin(static())
-    with pytest.raises(RecordError, match="at least 100"):
-        record.frame(truth(0, points=99))
     record.frame(truth(0))
     with pytest.raises(RecordError, match="the first frame has 100"):
         record.frame(truth(1, points=101))
     with pytest.raises(RecordError, match="begun twice"):
         record.begin(static())
+    record.close()
+    record = recorder(tmp_path)
+    record.begin(static())
+    with pytest.raises(RecordError, match="at least 100"):
+        record.frame(truth(0, points=99))
     record.close()
 
 

@@ -8,6 +8,7 @@ import urllib.request
 
 import numpy as np
 import pytest
+from caretree.sim.errors import DisplayError
 from caretree.sim.render.live_view import TARGET, LiveView, orbit
 
 
@@ -42,6 +43,18 @@ def test_the_page_and_a_frame(view):
     with urllib.request.urlopen(server.url + "frame?a=30&e=40&d=2") as frame:
         assert frame.read()[:2] == b"\xff\xd8"  # a JPEG
     np.testing.assert_allclose(poses[-1], orbit(30, 40, 2))
+
+
+def test_a_picture_that_cannot_be_drawn_is_an_error_of_the_display():
+    def draw(pose: np.ndarray) -> np.ndarray:
+        raise ZeroDivisionError("planted")
+
+    view = LiveView()
+    view.serve(draw)  # nobody asks
+    view._asked = (0.0, 30.0, 2.0)
+    with pytest.raises(DisplayError, match="the live view cannot be drawn: planted"):
+        view.serve(draw)
+    view.close()
 
 
 def test_nonsense_is_no_frame(view):

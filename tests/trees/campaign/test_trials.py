@@ -3,12 +3,13 @@
 import argparse
 import json
 import sys
+import threading
 
 import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.record.folder_claim import FolderClaim, FolderTakenError
 from caretree.trees.campaign import trial as trial_module
-from caretree.trees.campaign.trial import judge_run, read_trial
+from caretree.trees.campaign.trial import InterruptedTrialError, judge_run, read_trial, run_trial
 from caretree.trees.campaign.trials import Plan, run_trials
 from caretree.trees.campaign.trials_table import table
 from caretree.trees.commands.trials import add_parser, main, parse_seeds
@@ -23,6 +24,19 @@ with (out.parent.parent / "started.txt").open("a") as file:
     file.write(f"{seed} ")
 if seed == 2:
     sys.exit("it broke")
+if seed == 7:
+    out.joinpath("run.json").write_text(json.dumps(dict(outcome="safe_stop", stopped_from_outside=True,
+                                                        reason="The disk is full.")))
+    print(f"{out}/run.json")
+    sys.exit(2)
+if seed == 8:  # its person is put down first
+    import signal
+    def end(*_):
+        out.joinpath("run.json").write_text(json.dumps(dict(outcome="safe_stop", stopped_from_outside=True)))
+        sys.exit(1)
+    signal.signal(signal.SIGTERM, end)
+    (out.parent.parent / "ready.txt").touch()
+    signal.pause()
 if seed == 9:
     print("caretree: gown 'x' is unknown, but small is asked for")
     sys.exit(2)
@@ -112,6 +126,25 @@ def test_interrupt_keeps_what_is_done_and_goes_on(fake_caretree):
         run_trials(plan(fake_caretree, seeds=(0, 1, 3)), interrupt)
     assert read_trial(fake_caretree / "overall" / "seed-0000") is not None
     assert len(run_trials(plan(fake_caretree, seeds=(0, 1, 3)), lambda line: None)) == 3
+
+
+def test_a_run_that_is_stopped_from_outside_counts_for_nothing(fake_caretree):
+    with pytest.raises(CaretreeError, match=r"the run in .*seed-0007 was stopped: The disk is full"):
+        run_trials(plan(fake_caretree, seeds=(7,)), lambda line: None)
+    assert read_trial(fake_caretree / "overall" / "seed-0007") is None
+    with pytest.raises(CaretreeError, match="was stopped"):  # it runs again, as if it had never been
+        run_trials(plan(fake_caretree, seeds=(7,)), lambda line: None)
+    assert (fake_caretree / "started.txt").read_text().split() == ["7", "7"]
+
+
+def test_an_interrupted_campaign_lets_its_runs_end_in_the_safe_stop(fake_caretree, monkeypatch):
+    ready, folder = fake_caretree / "ready.txt", fake_caretree / "overall" / "seed-0008"
+    stop = threading.Event()
+    monkeypatch.setattr(stop, "is_set", ready.exists)
+    with pytest.raises(InterruptedTrialError):
+        run_trial("dressing", 8, folder, (), patience=60.0, stop=stop)
+    assert json.loads((folder / "run.json").read_text())["outcome"] == "safe_stop"
+    assert read_trial(folder) is None
 
 
 def test_refused_input_ends_the_campaign_with_the_sentence(fake_caretree):

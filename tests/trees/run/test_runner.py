@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import py_trees
 import pytest
-from caretree.sim.errors import CaretreeError
+from caretree.sim.errors import CaretreeError, RecordError
 from caretree.sim.record.record import read_run
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.scripted.world import ScriptedWorld
@@ -314,19 +314,53 @@ def test_the_recorder_gets_every_event_and_the_hash(tmp_path: Path):
     assert (tmp_path / "run" / "trace.jsonl").read_text().count("\n") > 10
 
 
-def test_a_record_that_cannot_be_written_stops_the_robot_and_is_told():
+def test_a_record_that_cannot_be_written_ends_in_the_safe_stop_and_is_told():
     class Full:
         count = 0
 
         def event(self, event):
             self.count += 1
             if self.count > 3:
-                raise CaretreeError("the disk is full")
+                raise RecordError("the disk is full")
 
     run = run_of(lambda context: guarded_task(context, True, ticks=50), recorder=Full())
-    with pytest.raises(CaretreeError, match="the disk is full"):
-        run.run()
+    result = run.run()
+    assert (result.outcome, result.reason) == ("safe_stop", f"{Reason.RECORD_LOST.value} [recorder] the disk is full")
+    assert result.stopped_from_outside
+    assert run.root.made_safe is True
+    assert not run.context.errors
     assert_at_rest(run)
+
+
+def test_an_error_in_showing_progress_ends_in_the_safe_stop_and_is_kept():
+    def show(progress):
+        raise ZeroDivisionError("planted")
+
+    run = run_of(lambda context: guarded_task(context, True, ticks=50), on_progress=show)
+    result = run.run()
+    assert (result.outcome, result.reason) == ("safe_stop", f"{Reason.DISPLAY_LOST.value} [display] planted")
+    assert run.root.made_safe is True
+    assert len(run.context.errors) == 1
+    assert "planted" in run.context.errors[0]
+
+
+@pytest.mark.parametrize("error", [CaretreeError("planted"), OSError("planted"), SystemExit("planted")])
+def test_no_error_of_a_tick_skips_the_safe_branch(error):
+    class Broken(py_trees.behaviour.Behaviour):
+        def update(self):
+            raise error
+
+    def build(context):
+        body = sequence("s", Plan("p", context, outcomes=[True]), Broken("broken"))
+        return FailSafe("safe", body, Release("let go", context))
+
+    run = run_of(build)
+    result = run.run()
+    assert result.outcome == "safe_stop"
+    assert result.reason.startswith(Reason.INTERNAL_ERROR.value)
+    assert "planted" in result.reason
+    assert not result.stopped_from_outside
+    assert run.root.made_safe is True
 
 
 def test_a_run_has_a_longest_time():

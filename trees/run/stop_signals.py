@@ -1,0 +1,65 @@
+"""Signals that end a run: they ask for the safe stop between two ticks, as no tick may be torn apart.
+
+| signal | what it means | the first one | the next ones |
+|---|---|---|---|
+| SIGINT | Ctrl-C | asks for the safe stop | the operator insists: `KeyboardInterrupt` |
+| SIGTERM | somebody ends the program | asks for the safe stop | nothing, or `KeyboardInterrupt` if the run hangs |
+| SIGHUP | the terminal was closed | asks for the safe stop | nothing, or `KeyboardInterrupt` if the run hangs |
+
+Where there is no run to make safe, each of them raises `KeyboardInterrupt`.  During a run that has the runner make
+safe, during the safe branch it has the runner open the fingers.  One that is ignored from the start, as
+`nohup` has it, stays ignored.  The loss of a reader (SIGPIPE) shows as an error of printing, since Python ignores it.
+"""
+
+from __future__ import annotations
+
+import signal
+from types import FrameType, TracebackType
+from typing import Any
+
+from ...skills.core.reasons import Reason
+from .runner import Run
+
+# name of the signal -> what is asked of the run; some systems lack one
+CAUSES: dict[str, tuple[Reason, str, str]] = {
+    "SIGINT": (Reason.INTERRUPTED, "", "operator"),
+    "SIGTERM": (Reason.INTERRUPTED, "the program was told to end (SIGTERM)", "operator"),
+    "SIGHUP": (Reason.DISPLAY_LOST, "the terminal was closed (SIGHUP)", "display"),
+}
+
+
+class StopSignals:
+    """Takes the signals over while it is entered, in the main thread.
+
+    Attributes:
+        run: to be made safe; None before there is one.
+    """
+
+    def __init__(self) -> None:
+        self.run: Run | None = None
+        self._seen: set[str] = set()
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> StopSignals:
+        """Take them over."""
+        for name in CAUSES:
+            number = getattr(signal, name, None)
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+                self._before[number] = signal.signal(number, self._receive)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Give them back."""
+        for number, before in self._before.items():
+            signal.signal(number, before)
+        self._before.clear()
+
+    def _receive(self, number: int, frame: FrameType | None) -> None:
+        name = signal.Signals(number).name
+        insists = name == "SIGINT" and name in self._seen
+        if self.run is None or insists or (self._seen and self.run.hangs()):
+            raise KeyboardInterrupt
+        self._seen.add(name)
+        self.run.request_stop(*CAUSES[name])
