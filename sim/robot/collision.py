@@ -24,10 +24,13 @@ class CollisionChecker:
         kinematics: the robot.
         boxes: (k, 2, 3) lower and upper corners of axis-aligned boxes in the map that hands and arms must not
             enter, for instance the bed [m].
-        margin: closest approach that still counts as free [m].
+        margin: closest approach that is no collision [m].
+        room: more than that asked of a free posture, so that a smooth motion may cut the corners of a free path [m].
     """
 
-    def __init__(self, kinematics: Kinematics, boxes: np.ndarray | None = None, margin: float = 0.01) -> None:
+    def __init__(
+        self, kinematics: Kinematics, boxes: np.ndarray | None = None, margin: float = 0.01, room: float = 0.008
+    ) -> None:
         self._kinematics = kinematics
         model = kinematics.model
         self._geometry = pin.GeometryModel()
@@ -49,28 +52,30 @@ class CollisionChecker:
         for m, n in self._pairs:
             self._geometry.addCollisionPair(pin.CollisionPair(m, n))
         self._data = pin.GeometryData(self._geometry)
-        for request in self._data.collisionRequests:
-            request.security_margin = margin
+        self._roomy = pin.GeometryData(self._geometry)
+        for data, closest in ((self._data, margin), (self._roomy, margin + room)):
+            for request in data.collisionRequests:
+                request.security_margin = closest
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
-        """Whether arms (2, 7) at these angles touch nothing."""
+        """Whether arms (2, 7) at these angles touch nothing, with some room."""
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
-        return not self._compute(q, stop_at_first=True)
+        return not self._compute(q, self._roomy, stop_at_first=True)
 
     def collisions(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
-        self._compute(q, stop_at_first=False)
+        self._compute(q, self._data, stop_at_first=False)
         hit = [
             pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True) if result.isCollision()
         ]
         return list(dict.fromkeys((self._names[m], self._names[n]) for m, n in hit))
 
-    def _compute(self, q: np.ndarray, *, stop_at_first: bool) -> bool:
+    def _compute(self, q: np.ndarray, data: pin.GeometryData, *, stop_at_first: bool) -> bool:
         model = self._kinematics
-        return pin.computeCollisions(model.model, model.data, self._geometry, self._data, q, stop_at_first)
+        return pin.computeCollisions(model.model, model.data, self._geometry, data, q, stop_at_first)
 
     def _add(self, name: str, joint: int, placement: pin.SE3, shape: Shape) -> int:
         solid = coal.Box(*shape.size) if shape.kind == "box" else coal.Capsule(*shape.size)

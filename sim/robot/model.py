@@ -58,7 +58,7 @@ HAND_VELOCITY = np.array((0.5, 1.5))  # of a HandTwist [m/s, rad/s]
 HAND_ACCELERATION = np.array((1.0, 4.0))  # of a HandTwist [m/s^2, rad/s^2]
 
 # A posture with both hands in front of the chest, palms forward and elbows out, mirrored: the centre of the null space.
-READY = np.array(((0.35, -0.55, -0.95, 1.65, 0.65, 0.90, -0.30), (-0.35, -0.55, 0.95, 1.65, -0.65, 0.90, 0.30)))
+READY = np.array(((0.68, -0.88, -1.295, 1.77, 0.42, 1.16, -0.25), (-0.68, -0.88, 1.295, 1.77, -0.42, 1.16, 0.25)))
 
 
 def arm_joints(side: Side) -> tuple[str, ...]:

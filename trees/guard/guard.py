@@ -42,7 +42,7 @@ from .watchdog import Watchdog
 LIFT_MIN = 0.05  # [m] shorter motions of a held arm are corrections, not lifts
 BOTH_MOVE = 0.7  # [m] further from the person than `near`, an arm may move fast while the base moves too
 OPENED = 0.01  # [m] a command that opens the fingers by this much lets go
-ARM_OPENING = 0.03  # [m] between fingers that hold an arm, at least: cloth is thinner, no adult's arm is
+ARM_OPENING = 0.03  # [m] between fingers that do not hold cloth, at least: no adult's arm is thinner
 
 
 class GuardedWorld:
@@ -78,6 +78,7 @@ class GuardedWorld:
         self._clear = None if self._links is None else KeepClear(self._links, self.zone)
         self._held: dict[Side, str] = {}  # hand -> the arm that it holds
         self._ends: np.ndarray | None = None
+        self._opening = np.zeros(2)
         self._grip: dict[Side, Grip] = {"left": "nothing", "right": "nothing"}
         self._over = {side: False for side in SIDES}
         self._fault: Failure | None = None
@@ -95,7 +96,7 @@ class GuardedWorld:
         self.zone.update(points_in_map, part=part, radius=radius)
 
     def declare_grip(self, side: Side, what: Grip) -> None:
-        """Say what a hand holds; undeclared loads are taken as cloth, and so is an arm between closed fingers."""
+        """Say what a hand holds.  Which load is too high is told by how far its fingers stand apart, not by this."""
         self._grip[side] = what
         self._held.pop(side, None)
         arm = self.zone.nearest_arm(self.observe().pose_hand_in_map[SIDES.index(side), :3, 3])
@@ -143,6 +144,7 @@ class GuardedWorld:
         """Latest proprioception, judged; raises SensorLost."""
         seen = self._inner.observe()
         self._watchdog.sample(seen, self.clock.now())
+        self._opening = seen.gripper_opening
         self._judge_load(seen)
         if self._last is None or seen.time > self._last.time:
             for side, arm in self._held.items():  # it goes with the hand, seen or not
@@ -219,7 +221,7 @@ class GuardedWorld:
 
     def _lasts(self, side: Side, load: float, time: float) -> bool:
         """Whether a load above the limit counts: the pull of a held arm has to last, or to be far above it."""
-        if not self._holds_arm(side) or load >= self.limits.arm_load_peak:
+        if not self._wide(side) or load >= self.limits.arm_load_peak:
             return True
         since = self._heavy_since[side]
         if since is None:
@@ -252,13 +254,12 @@ class GuardedWorld:
             n = int(np.argmax(np.where(fast, speed, 0.0)))
             self._fault = Failure(Reason.SPEED_LIMIT, f"{names[n]} at {speed[n]:.2f} m/s", "guard")
 
-    def _holds_arm(self, side: Side) -> bool:
-        """Whether a hand holds an arm: it was said to, and its fingers stand as far apart as an arm is thick."""
-        seen = self._last
-        return self._grip[side] == "arm" and (seen is None or seen.gripper_opening[SIDES.index(side)] > ARM_OPENING)
+    def _wide(self, side: Side) -> bool:
+        """Whether fingers stand too far apart to hold cloth: what they feel is an arm, or contact."""
+        return bool(self._opening[SIDES.index(side)] > ARM_OPENING)
 
     def _load_stop(self, side: Side) -> float:
-        return self.limits.arm_load_stop if self._holds_arm(side) else self.limits.cloth_load_stop
+        return self.limits.arm_load_stop if self._wide(side) else self.limits.cloth_load_stop
 
     def _ease(self, side: Side, motion: np.ndarray, seen: Observation, retreat: bool) -> float:
         """Factor 0 to 1 for a hand's `motion` (3,) under its present load; raises SkillFailure at the limit."""
@@ -266,12 +267,12 @@ class GuardedWorld:
         load, stop = float(np.linalg.norm(force)), self._load_stop(side)
         if retreat or not np.any(motion) or float(motion @ force) > 0.0:
             return 1.0  # the hand moves the way it is pulled, or away: relief must stay possible
-        if load >= stop and self._holds_arm(side) and not self._over[side]:
+        if load >= stop and self._wide(side) and not self._over[side]:
             return 0.0  # it waits for the load to fall, or to have lasted too long
         if load >= stop:
             raise SkillFailure(Reason.FORCE_LIMIT, f"{load:.1f} N on the {side} hand, limit {stop:g} N")
         slow = self.limits.cloth_load_slow
-        if self._holds_arm(side) or load <= slow:
+        if self._wide(side) or load <= slow:
             return 1.0
         return (stop - load) / (stop - slow)
 

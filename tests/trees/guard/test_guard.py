@@ -38,7 +38,8 @@ def speed(command):
 
 
 def pull(world, newton, side="left"):
-    """Cloth pulls the hand towards -x."""
+    """Cloth between closed fingers pulls the hand towards -x."""
+    world._opening[("left", "right").index(side)] = world._opening_goal[("left", "right").index(side)] = 0.0
     world.load[side] = np.array((-newton, 0, 0, 0, 0, 0), float)
 
 
@@ -144,6 +145,17 @@ def test_pulling_slows_as_the_cloth_load_grows(load, factor):
     pull(world, load)
     assert speed(guard.send(twist(x=0.1))) == pytest.approx(0.1 * factor, abs=0.002)
     assert speed(guard.send(twist(x=-0.1))) == pytest.approx(0.1), "giving way is never slowed"
+
+
+def test_open_fingers_feel_contact_and_not_cloth():
+    world, guard = make(near=False)
+    world.load["left"] = np.array((-25.0, 0, 0, 0, 0, 0))
+    assert speed(guard.send(twist(x=0.1))) == pytest.approx(0.1), (
+        "an arm that is pushed aside as fingers close round it"
+    )
+    world.load["left"] = np.array((-50.0, 0, 0, 0, 0, 0))
+    with pytest.raises(SkillFailure, match="limit 30 N"):
+        guard.send(twist(x=0.1))
 
 
 def test_at_the_stop_load_only_relief_passes():
