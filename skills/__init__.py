@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from .lift_arm import LiftArm as LiftArm
     from .look_at_person import LookAtPerson as LookAtPerson
     from .look_for_sleeve import LookForSleeve as LookForSleeve
+    from .lower_arm import LowerArm as LowerArm
     from .move_joint import MoveJoint as MoveJoint
     from .navigate import Navigate as Navigate
     from .pre_grasp_manipulate import PreGraspManipulate as PreGraspManipulate
     from .present_sleeve import PresentSleeve as PresentSleeve
     from .pull_along_arm import PullAlongArm as PullAlongArm
     from .raise_corner import RaiseCorner as RaiseCorner
-    from .release import Release as Release
     from .release_arm import ReleaseArm as ReleaseArm
     from .retreat import Retreat as Retreat
     from .seat_sleeve import SeatSleeve as SeatSleeve
@@ -66,6 +66,7 @@ _HOME = {
     "LiftArm": ".lift_arm",
     "LookAtPerson": ".look_at_person",
     "LookForSleeve": ".look_for_sleeve",
+    "LowerArm": ".lower_arm",
     "MoveJoint": ".move_joint",
     "Navigate": ".navigate",
     "Output": ".core.ports",
@@ -74,7 +75,6 @@ _HOME = {
     "PullAlongArm": ".pull_along_arm",
     "RaiseCorner": ".raise_corner",
     "Reason": ".core.reasons",
-    "Release": ".release",
     "ReleaseArm": ".release_arm",
     "Retreat": ".retreat",
     "Scope": ".core.scope",

@@ -1,103 +1,48 @@
-"""Let a held arm go: lower it first or leave it where the gown carries it, open, and draw the hand away."""
+"""Let a held arm go: lower it first until it lies or leave it where the gown carries it, open, and draw away."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from ..sim.quantity import Quantities, quantity
-from ..sim.robot import model
-from ..sim.world import SIDES, HandTwist, Side
-from .belief.person_tracking import careful
-from .control.arm_grip import lost_arm
-from .control.compliant_hold import COMPLIANT_HOLD, compliant_velocity
-from .control.fingers import open_gripper
-from .control.hands import move_arms
-from .control.ready import Ready, ready_or_not
-from .control.withdraw import WithdrawTuning, withdraw
+from ..sim.quantity import Quantities
+from ..sim.world import Side
+from .control.arm_grip import holds_arm
+from .control.let_arm_go import LetArmGoTuning, let_arm_go
+from .control.lowering import LoweringTuning, held_arm, lower_arm
+from .control.ready import Ready
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
-from .geometry.arm_path import UP
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReleaseArmTuning(Quantities):
-    """Numbers of lowering an arm and of letting it go."""
+    """How an arm is lowered, and how the hand leaves it."""
 
-    lowering_speed: float = quantity(0.04, "m/s", "of the hand on its way down", "choice: gentle on the shoulder")
-    rest_load: float = quantity(
-        4.0,
-        "N",
-        "vertical load below which the bed carries the arm",
-        "choice: until then the arm hangs on the hand with several newtons",
-    )
-    load_delay: float = quantity(
-        1.0, "s", "from the start, before that load counts", "choice: by then the hand is on its way down"
-    )
-    max_lowering: float = quantity(
-        0.35, "m", "by which an arm is lowered at most", "choice: more than a lifted arm comes down"
-    )
-    bed_clearance: float = quantity(
-        0.05, "m", "of the hand above the mattress at the lowest", "choice: the arm's own thickness lies between"
-    )
-    time_allowance: float = quantity(
-        2.0, "1", "greatest time for the way down, in times of `max_lowering` at full speed", "choice: room to yield"
-    )
-    withdraw_distance: float = quantity(
-        0.16, "m", "by which the open hand draws back before it goes anywhere else", "choice: clear of the arm"
-    )
-    withdraw: WithdrawTuning = field(default_factory=WithdrawTuning)
-    ready_speed: float = quantity(
-        0.5, "m/s", "of the hand on its way to the ready posture, away from the person", "choice: quick in the open"
-    )
+    lowering: LoweringTuning = field(default_factory=LoweringTuning)
+    leaving: LetArmGoTuning = field(default_factory=LetArmGoTuning)
 
 
 class ReleaseArm(Skill):
     """Ends a hold of the person's arm, whatever state it is in; a hand that holds nothing just opens and withdraws.
 
-    It fails where a command is lost, or where no way to the ready posture is found.
+    An arm that is to be lowered is swung down until it lies.  Where it does not come down, the skill fails and the
+    hand still holds it: release it without lowering then.  It also fails where a command is lost, or where no way to
+    the ready posture is found.
     """
 
     hand = Input(Side, doc="hand of the robot that holds the arm")
     lower = Input(bool, default=False, doc="whether the arm is lowered onto the bed first")
     ready = Input(Ready, default="never", doc="whether the hand then goes to its ready posture")
     tuning = Input(ReleaseArmTuning, default=ReleaseArmTuning(), doc="numbers of this skill")
-    reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
+    reasons = (Reason.MOTION_BLOCKED, Reason.TIMEOUT, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Lower if asked to, open, up and away."""
-        yield from ready_or_not(self, self.ready, self._let_go)
-
-    def _let_go(self, ready: bool) -> Iterator[None]:
-        if self.lower and not lost_arm(self, self.hand):
-            self.note("lowers the arm")
-            yield from self._lower()
-        self.note("lets the arm go")
-        yield from open_gripper(self, self.hand)
-        yield from withdraw(self, [self.hand], self.tuning.withdraw_distance, self.tuning.withdraw)
-        if ready:
-            speed = careful(self, self.tuning.ready_speed)
-            yield from move_arms(self, model.READY, sides=(self.hand,), speed=speed, retreat=True)
-
-    def _lower(self) -> Iterator[None]:
-        """Go straight down until the bed carries the arm."""
-        n, tuning = SIDES.index(self.hand), self.tuning
-        start, begin = self.world.observe(), self.now()
-        floor = max(
-            start.pose_hand_in_map[n, 2, 3] - tuning.max_lowering, self.world.room.bed[1, 2] + tuning.bed_clearance
-        )
-        while self.now() - begin < tuning.time_allowance * tuning.max_lowering / tuning.lowering_speed:
-            seen = self.world.observe()
-            if seen.pose_hand_in_map[n, 2, 3] <= floor or lost_arm(self, self.hand):
-                return
-            if self.now() - begin > tuning.load_delay and -seen.wrench_hand_in_map[n, 2] < tuning.rest_load:
-                return
-            # the arm turns about its shoulder, so that the way down is no straight line: give way to what pulls aside
-            give = compliant_velocity(seen.wrench_hand_in_map[n, :3])
-            ease = float(np.clip(1.0 - np.linalg.norm(give) / COMPLIANT_HOLD.max_speed, 0.0, 1.0))
-            linear = -tuning.lowering_speed * ease * UP + give
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))), retreat=True)
-            yield
+        held = held_arm(self, self.hand) if self.lower and holds_arm(self, self.hand) else None
+        if held is not None:
+            side, hold = held
+            self.note(f"lowers the {side} arm")
+            yield from lower_arm(self, side, hold, tuning=self.tuning.lowering)
+        yield from let_arm_go(self, self.hand, self.ready, tuning=self.tuning.leaving)

@@ -10,6 +10,7 @@ import numpy as np
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
+from ...sim.robot.gripper import GRIPPER
 from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..core.skill import Skill
@@ -18,6 +19,7 @@ from ..geometry.arm_path import UP, ArmPath
 from ..motion.errors import Unreachable
 from ..motion.ik import half_turned, hand_pose, solve_ik
 from ..motion.trajectory import free_postures
+from .fingers import FINGERS
 from .hands import collision_checker
 
 
@@ -85,6 +87,12 @@ def top_down_reachable(
     if best is None:
         raise tries.last
     return best[1]
+
+
+def holds_arm(skill: Skill, side: Side, *, tuning: ArmGripTuning = ARM_GRIP) -> bool:
+    """Whether fingers that are neither open nor on each other hold what is as thick as an arm."""
+    opening = skill.world.observe().gripper_opening[SIDES.index(side)]
+    return bool(tuning.min_gap <= opening < GRIPPER.stroke - FINGERS.open_tolerance)
 
 
 def lost_arm(skill: Skill, side: Side, *, tuning: ArmGripTuning = ARM_GRIP) -> bool:

@@ -16,13 +16,13 @@ from caretree.skills.lay_sleeve import LaySleeve
 from caretree.skills.lift_arm import LiftArm
 from caretree.skills.look_at_person import LookAtPerson
 from caretree.skills.look_for_sleeve import LookForSleeve
+from caretree.skills.lower_arm import LowerArm, LowerArmTuning
 from caretree.skills.move_joint import MoveJoint
 from caretree.skills.navigate import Navigate
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
 from caretree.skills.present_sleeve import PresentSleeve
 from caretree.skills.pull_along_arm import PullAlongArm
 from caretree.skills.raise_corner import RaiseCorner
-from caretree.skills.release import Release
 from caretree.skills.release_arm import ReleaseArm
 from caretree.skills.retreat import Retreat
 from caretree.skills.seat_sleeve import SeatSleeve
@@ -34,6 +34,7 @@ from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
 
+ALWAYS = LowerArmTuning(lies_below=0.0)  # an arm that lies would be left alone
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
 
 
@@ -60,12 +61,12 @@ EXAMPLES = {
     LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),
     LookAtPerson: lambda context: LookAtPerson("look at person", context, side="right"),
     LookForSleeve: lambda context: LookForSleeve("look for the sleeve", context, side="right", hand="right"),
+    LowerArm: lambda context: LowerArm("lower arm", context, side="right", hand="left", tuning=ALWAYS),
     Navigate: lambda context: Navigate("navigate", context, goal="rail", arms=model.READY),
     PreGraspManipulate: pre_grasp_manipulate,
     PresentSleeve: lambda context: PresentSleeve("present sleeve", context, grip=GRIP),
     PullAlongArm: lambda context: PullAlongArm("pull along arm", context, grip=GRIP, grip_goal=1.45),
     RaiseCorner: lambda context: RaiseCorner("raise corner", context, hand="right", hook=hook(context), min_load=-1.0),
-    Release: lambda context: Release("release", context, hand="left"),
     ReleaseArm: lambda context: ReleaseArm("release arm", context, hand="left", lower=True),
     Retreat: lambda context: Retreat("retreat", context, base_distance=0.3),
     SeatSleeve: lambda context: SeatSleeve("seat sleeve", context, grip=GRIP),

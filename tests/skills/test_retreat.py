@@ -5,10 +5,11 @@ import pytest
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.robot.model import READY
 from caretree.sim.world import SIDES, BaseVelocity, GripperOpening, JointTrajectory
+from caretree.skills.control.withdraw import WithdrawTuning
 from caretree.skills.core.reasons import Reason
-from caretree.skills.geometry.stances import HEADWARD
+from caretree.skills.geometry.stances import HEADWARD, outwards
 from caretree.skills.motion.ik import hand_pose
-from caretree.skills.retreat import Retreat
+from caretree.skills.retreat import Retreat, RetreatTuning
 
 from .bench import ARM, CLOTH, LeafBench, beside_bed, on_arm
 
@@ -49,6 +50,18 @@ def test_each_hand_draws_back_the_way_it_points():
     assert moved["right"] == pytest.approx(-0.12 * POINTS, abs=0.02)
     turned = run.poses("right")[-1, :3, :3].T @ run.start.pose_hand_in_map[1, :3, :3]
     assert turned == pytest.approx(np.eye(3), abs=0.05)
+
+
+@pytest.mark.parametrize(("min_rise", "moved"), [(0.3, (0.0, 0.0, 0.12)), (-1.0, (0.12, 0.0, 0.0))])
+def test_a_hand_that_lies_flat_goes_straight_up_unless_it_may_go_back_the_way_it_points(min_rise, moved):
+    level = {"right": hand_pose(np.array((0.55, -0.20, 1.0)), -outwards("right"), HEADWARD)}
+    tuning = RetreatTuning(withdraw=WithdrawTuning(min_rise=min_rise))
+    run = LeafBench(
+        lambda context: Retreat("retreat", context, hands="right", hand_distance=0.12, ready="never", tuning=tuning),
+        beside_bed(stand=STAND, hands=level, held={"right": CLOTH}),
+    )
+    assert run.ended() is None
+    assert run.way("right")[-1] - run.start.pose_hand_in_map[1, :3, 3] == pytest.approx(moved, abs=0.02)
 
 
 def test_the_arms_are_ready_in_the_end_and_the_base_stays_if_it_may():

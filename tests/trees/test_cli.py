@@ -127,7 +127,7 @@ def test_an_error_in_a_task_is_kept_with_its_traceback(tmp_path, capsys):
     (tmp_path / "bad.py").write_text("""
 from caretree.skills.core.skill import Skill
 from caretree.trees.nodes.decorators import FailSafe
-from caretree.skills import Release
+from caretree.skills import Retreat
 
 
 class Bad(Skill):
@@ -137,7 +137,7 @@ class Bad(Skill):
 
 
 def build(context):
-    return FailSafe("safely", Bad("bad", context), Release("let go", context, distance=0.0))
+    return FailSafe("safely", Bad("bad", context), Retreat("let go", context, hand_distance=0.0, ready="never"))
 """)
     assert main(["run", "bad.py", "--world", "scripted", "--out", "r"]) == 1
     assert "r/errors.log" in capsys.readouterr().out.splitlines()
@@ -165,12 +165,13 @@ def scripted(seed):
 
 def test_a_terminal_without_accents_does_not_end_a_run(tmp_path):
     (tmp_path / "t.py").write_text("""
-from caretree.skills import HoldStill, Release
+from caretree.skills import HoldStill, Retreat
 from caretree.trees import FailSafe
 
 
 def build(context):
-    return FailSafe("safely", HoldStill("h\u00e4lt", context), Release("let go", context, distance=0.0))
+    safe = Retreat("let go", context, hand_distance=0.0, ready="never")
+    return FailSafe("safely", HoldStill("h\u00e4lt", context), safe)
 """)
     command = [sys.executable, "-m", "caretree.trees.cli", "run", "t.py", "--world", "scripted", "--out", "r"]
     done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": "ascii"}, check=False)
@@ -218,11 +219,11 @@ def test_check_says_what_holds_and_what_does_not(tmp_path, capsys):
     assert main(["check", "wave"]) == 0
     assert capsys.readouterr().out.startswith("wave holds: ")
     (tmp_path / "bad.py").write_text("""
-from caretree.skills import Release
+from caretree.skills import Retreat
 
 
 def build(context):
-    return Release("let go", context, distance=0.0)
+    return Retreat("let go", context, hand_distance=0.0, ready="never")
 """)
     assert main(["check", "bad.py"]) == 1
     out = capsys.readouterr().out

@@ -10,7 +10,7 @@ from ...skills.core.ports import Key
 from ...skills.core.reasons import Reason
 from ...skills.hold_still import HoldStill
 from ...skills.move_joint import MoveJoint
-from ...skills.release import Release
+from ...skills.retreat import Retreat
 from ..nodes.composers import sequence
 from ..nodes.decorators import FailSafe, RecoverBy, Stage, Timeout
 
@@ -35,4 +35,4 @@ def build(context: Context, side: Side = "left") -> Behaviour:
         ),
         Stage("hold", None, HoldStill("hold still", context, seconds=2.0)),
     )
-    return FailSafe("wave safely", body, Release("let go", context, distance=0.0))
+    return FailSafe("wave safely", body, Retreat("let go", context, hand_distance=0.0, ready="never"))

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
-from caretree.skills.control.arm_grip import lost_arm, over_arm, top_down_reachable
+from caretree.skills.control.arm_grip import holds_arm, lost_arm, over_arm, top_down_reachable
 from caretree.skills.control.fingers import close_gripper
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.arm_path import ArmPath
@@ -46,3 +46,8 @@ def test_fingers_that_closed_on_nothing_have_lost_the_arm(thickness, lost):
     skill = carry_out(world, context, lambda skill: close_gripper(skill, "left", force=25.0))
     assert skill.failure is None or skill.failure.reason == Reason.GRASP_MISSED
     assert lost_arm(skill, "left") is lost
+    assert holds_arm(skill, "left") is not lost
+
+
+def test_an_open_hand_holds_no_arm():
+    assert not holds_arm(idle(robot()[1]), "left")

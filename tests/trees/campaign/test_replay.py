@@ -32,7 +32,7 @@ def record(tmp_path, monkeypatch):
 STAGED = """
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.trees import TaskStage
-from caretree.skills import MoveJoint, Release
+from caretree.skills import MoveJoint, Retreat
 from caretree.trees import FailSafe
 
 
@@ -55,7 +55,8 @@ STAGES = {"start": TaskStage(up, begins="low"), "go_on": TaskStage(up, begins="h
 
 
 def build(context, stages=("start",)):
-    return FailSafe("safely", STAGES[stages[0]].build(context), Release("let go", context, distance=0.0))
+    safe = Retreat("let go", context, hand_distance=0.0, ready="never")
+    return FailSafe("safely", STAGES[stages[0]].build(context), safe)
 """
 
 

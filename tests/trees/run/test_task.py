@@ -6,7 +6,7 @@ from caretree.sim.abilities import SupportsInitialStates
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.skills import MoveJoint, Release
+from caretree.skills import MoveJoint, Retreat
 from caretree.skills.core.context import Context
 from caretree.trees import tasks
 from caretree.trees.cli import main
@@ -168,7 +168,7 @@ def test_a_folder_is_no_task_file(tmp_path):
 def test_a_joint_that_is_where_it_should_be_need_not_move():
     def build(context):
         move = MoveJoint("up", context, side="left", joint="w1", angle=0.0)
-        return FailSafe("safely", move, Release("let go", context, distance=0.0))
+        return FailSafe("safely", move, Retreat("let go", context, hand_distance=0.0, ready="never"))
 
     assert run(Task("still", build, Path("still.py")), ScriptedWorld()).outcome == "success"
 

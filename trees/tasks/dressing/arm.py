@@ -1,10 +1,10 @@
 """One arm into its sleeve, and what the stages `dress` and `spread` share for that.
 
 over the hand    stand, lift the arm, take the sleeve by its strap, hold it open before the hand, pull it past the
-                 wrist, let the arm go
+                 wrist, lower the arm and let it go
 to the shoulder  pull on, seat; where that fails, with a new hold of the sleeve, which stays on the arm
-inside?          back off and look; whatever went wrong until here, the arm is put down, a stray sleeve, or one under
-                 which the arm lies, is laid out by the hand, and all begins again
+inside?          back off, put the arm down and look; whatever went wrong until here, a held arm is put down, a stray
+                 sleeve, or one under which the arm lies, is laid out by the hand, and all begins again
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from ....skills.lay_sleeve import LaySleeve
 from ....skills.lift_arm import LiftArm
 from ....skills.look_at_person import LookAtPerson
 from ....skills.look_for_sleeve import LookForSleeve
+from ....skills.lower_arm import LowerArm
 from ....skills.navigate import Navigate
 from ....skills.present_sleeve import PresentSleeve
 from ....skills.pull_along_arm import PullAlongArm
@@ -48,9 +49,6 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
     """One arm into its `sleeve`, from beside the bed."""
     arm = arm_scope(context, f"{side} arm", side)
 
-    def release(name: str, **ports: bool) -> Behaviour:
-        return ReleaseArm(name, arm, hand=arm["lifting"], **ports)
-
     def grasp_again() -> Behaviour:
         return sequence(
             "take the sleeve on",
@@ -64,7 +62,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
         laid_out = CheckLaidOut("bare, its sleeve at hand", arm)
         return sequence(
             f"begin the {side} arm again",
-            fallback("put the arm down", release("lower", lower=True), release("open")),
+            let_down("held", arm, "lifting"),
             back_off("free both hands", arm),
             fallback("arm and sleeve laid out", laid_out, lay_out(arm), back_off("leave it as it lies", arm)),
         )
@@ -76,7 +74,8 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
         attempts=2,
     )
     away = back_off("back off", arm, DRESSING.back_off_distance)
-    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, CheckSleeve("is inside", arm))
+    inside = CheckSleeve("is inside", arm)
+    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, put_down("in the end", arm), inside)
     return RecoverBy(f"dress the {side} arm", once, dict.fromkeys(MISSES, begin_again), attempts=DRESSING.arm_attempts)
 
 
@@ -108,7 +107,7 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         RecoverBy(
             "until the hand is inside", pull, {Reason.SLEEVE_MISSED: lambda: present("present it again")}, attempts=3
         ),
-        ReleaseArm("let go", arm, hand=arm["lifting"], ready="if possible"),
+        ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
     )
 
 
@@ -119,6 +118,32 @@ def up_arm(arm: Scope, max_load: float) -> Behaviour:
         "pull up and seat",
         PullAlongArm("pull up", arm, stand=stance(arm["side"], "shoulder"), max_load=max_load, **goal),
         SeatSleeve("seat", arm, max_load=DRESSING.seat_load_share * max_load),
+    )
+
+
+def let_down(name: str, arm: Scope, hand: str) -> Behaviour:
+    """A hand that holds the arm lowers it; where the arm does not come down, it opens all the same."""
+    held = Scope(arm, name, hand=arm[hand])
+    return fallback(held.prefix + "let down", ReleaseArm("lower", held, lower=True), ReleaseArm("open", held))
+
+
+def put_down(name: str, arm: Scope) -> Behaviour:
+    """An arm that is up and that nobody holds is swung down: from where the robot stands, else from beside the arm."""
+    free = Scope(arm, name)
+    return fallback(
+        free.prefix + "put it down",
+        sequence(
+            free.prefix + "from here",
+            LookAtPerson("look", free),
+            LowerArm("lower", free, hand=arm["pulling"]),
+        ),
+        sequence(
+            free.prefix + "from beside it",
+            let_down("let go", free, "pulling"),
+            Navigate("go there", free, goal=stance(arm["side"], "lift")),
+            LookAtPerson("look there", free),
+            LowerArm("lower there", free, hand=arm["lifting"]),
+        ),
     )
 
 

@@ -17,7 +17,7 @@ from ....skills.retreat import Retreat
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import Condition, RecoverBy, Retry, Stage, timed_stage
-from .arm import MISSES, arm_scope, back_off, grasp_worn, up_arm
+from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
 from .tuning import DRESSING
 
 
@@ -54,7 +54,10 @@ def draw_collar(context: Context, side: Side) -> Behaviour:
 
 
 def settle_sleeve(context: Context, side: Side) -> Behaviour:
-    """See to a sleeve that the other one has pulled down: while it is low, take it by the strap and draw it up."""
+    """See to a sleeve that the other one has pulled down: while it is low, take it by the strap and draw it up.
+
+    The arm lies: lowered afterwards, it would draw the sleeve down again.
+    """
     sleeve = arm_scope(context, f"{side} sleeve", side)
 
     def go(name: str) -> list[Behaviour]:
@@ -79,11 +82,13 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
         f"settle the {side} sleeve",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
         *go("go up"),
+        put_down("first", sleeve),
         fallback(
             "as far as the sleeve goes",
             RecoverBy("until the sleeve sits", sits, {Reason.SLEEVE_LOW: draw_up}, attempts=3),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
+        put_down("in the end", sleeve),
         CheckSleeve("will do", sleeve, max_cuff_distance=DRESSING.cuff_will_do),
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ....skills.control.withdraw import WithdrawTuning
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
@@ -13,8 +14,7 @@ from ....skills.flip_side_check import FlipSideCheck
 from ....skills.navigate import Navigate
 from ....skills.pre_grasp_manipulate import PreGraspManipulate
 from ....skills.raise_corner import RaiseCorner
-from ....skills.release import Release
-from ....skills.retreat import Retreat
+from ....skills.retreat import Retreat, RetreatTuning
 from ....skills.segment_and_grasp import SegmentAndGrasp
 from ....skills.take_corner import TakeCorner
 from ....skills.take_down import TakeDown
@@ -86,6 +86,7 @@ def take_ends(rail: Scope) -> Behaviour:
 def from_one_hand(context: Context) -> Behaviour:
     """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
     one = Scope(context, "one hand", keys=("views", "holder", "former"))
+    level = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", one),
@@ -93,7 +94,7 @@ def from_one_hand(context: Context) -> Behaviour:
         Unhook("lift it off", one, hand="right"),
         ViewAround("look all round", one, hand="right"),
         PreGraspManipulate("take one corner", one),
-        Release("let the first place go", one, hand=one["former"]),
+        Retreat("let the first place go", one, hands=one["former"], ready="never", tuning=level),
         ViewAround("look all round again", one, hand=one["holder"]),
         PreGraspManipulate("take the other corner", one, min_distance=DRESSING.nearest_corner),
     )

@@ -1,7 +1,7 @@
 """What the dressing tree is made of."""
 
 import pytest
-from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm
+from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm, Retreat
 from caretree.trees.proof.check import fresh_tree
 from caretree.trees.run.task import load_task
 
@@ -49,11 +49,32 @@ def test_the_second_sleeve_is_drawn_less_hard_than_the_first(nodes):
     assert second.max_load < first.max_load
 
 
-def test_both_hands_are_seen_to_before_the_robot_backs_off(nodes):
+def test_the_arm_is_lowered_before_the_sleeve_is_pulled_up_and_lies_before_it_is_looked_at(nodes):
+    for side in ("right", "left"):
+        names = [node.name for node in nodes if not node.children]
+        order = [f"{side} arm/{name}" for name in ("lower it and let go", "pull up", "in the end/lower", "is inside")]
+        assert leaf(nodes, order[0]).lower
+        assert [names.index(name) for name in order] == sorted(names.index(name) for name in order)
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_an_arm_lies_before_and_after_its_sleeve_is_drawn_up_again(nodes, side):
+    settle = next(node for node in nodes if node.name == f"settle the {side} sleeve")
+    parts = [child.name for child in settle.children]
+    drawn = parts.index("as far as the sleeve goes")
+    assert (
+        parts.index(f"{side} sleeve/first/put it down") < drawn < parts.index(f"{side} sleeve/in the end/put it down")
+    )
+
+
+def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_come_last(nodes):
     safe = next(node for node in nodes if node.name == "make safe")
     assert [child.name for child in safe.children] == [
-        "safe: left hand",
-        "safe: right hand",
+        "safe/left hand/let down",
+        "safe/right hand/let down",
         "safe/let go and back off",
+        "safe: left arm",
+        "safe: right arm",
     ]
     assert all(branch.children[0].lower for branch in safe.children[:2])
+    assert all(isinstance(branch.children[-1], Retreat) for branch in safe.children[3:]), "no arm is owed at any price"

@@ -1,0 +1,195 @@
+"""Lowering an arm that a hand holds, about its shoulder, until it lies."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...perception.errors import PerceptionFailure
+from ...perception.estimates import ArmPosture
+from ...perception.image.cloud import unit
+from ...sim.quantity import Quantities, quantity
+from ...sim.world import SIDES, HandTwist, SensorLost, Side
+from ..belief.person_tracking import watch_arm, watch_of
+from ..core.reasons import Reason, SkillFailure
+from ..core.skill import Skill
+from ..geometry.arm_path import UP, ArmPath
+from ..geometry.hold import Hold
+from ..geometry.stances import HEADWARD, outwards
+from .arm_grip import lost_arm
+from .compliant_hold import compliant_velocity
+from .hands import cloth_load, hand_now
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoweringTuning(Quantities):
+    """How an arm is lowered, and when it lies.  Heights are above the mattress."""
+
+    speed: float = quantity(0.045, "m/s", "of the hand on its way down", "choice: just below the guard's limit")
+    lies_below: float = quantity(
+        0.09,
+        "m",
+        "height of elbow, wrist and fingertip below which a tracked arm lies",
+        "measured: arms at rest have theirs at 0.02 to 0.07; the tracker was off by at most 0.015 on the way down",
+    )
+    rest_height: float = quantity(
+        0.04, "m", "of a hand around an arm that rests", "choice: the radius of a thin forearm"
+    )
+    aim_below: float = quantity(
+        0.03,
+        "m",
+        "below that height, where the hand is bound",
+        "choice: it passes that height and does not creep up to it",
+    )
+    edge: float = quantity(
+        0.0, "m", "of a resting wrist from the edge of the mattress, at least", "choice: the hand may hang over it"
+    )
+    turn_gain: float = quantity(0.6, "1/s", "of the hand's turn to straight down", "choice: turned before it is down")
+    turn_rate: float = quantity(0.25, "rad/s", "of that turn, at most", "choice: the turn of a lift takes two seconds")
+    slow_from: float = quantity(
+        11.0, "N", "upward load from which the hand slows down", "measured: stiff joints resist with up to 8 N"
+    )
+    stop_at: float = quantity(
+        16.0, "N", "upward load at which it stands still", "choice: below the 18 N that the guard allows an open hand"
+    )
+    stall_time: float = quantity(1.2, "s", "over which the way down is judged", "choice: dry friction sticks for less")
+    stall_record: float = quantity(
+        0.9, "1", "share of that time that must be on record for a judgement", "choice: ticks do not divide it evenly"
+    )
+    min_descent: float = quantity(
+        0.01, "m", "within that time, of a hand that comes down", "choice: a fifth of what full speed makes"
+    )
+    bed_load: float = quantity(
+        10.0,
+        "N",
+        "upward load on a hand that stands, from which the bed carries the arm",
+        "choice: between friction and `stop_at`",
+    )
+    max_rest_height: float = quantity(
+        0.14, "m", "of a hand whose arm the bed may carry, at most", "choice: folds of a gown lie below the arm"
+    )
+    timeout: float = quantity(25.0, "s", "for the way down", "choice: five times what a raised arm takes")
+    cloth_load: float = quantity(
+        2.5, "N", "on the other hand, from which it comes along", "choice: what it carries hangs on it with less"
+    )
+    cloth_compliance: float = quantity(
+        0.03, "m/s/N", "speed of that for each newton above", "choice: as fast as the arm at twice that load"
+    )
+    cloth_speed: float = quantity(0.08, "m/s", "of that, at most", "choice: the forearm sinks no faster")
+
+
+LOWERING = LoweringTuning()
+
+
+def lies(skill: Skill, posture: ArmPosture, below: float = LOWERING.lies_below) -> bool:
+    """Whether elbow, wrist and fingertip are seen `below` that height above the mattress [m]."""
+    return bool(posture.points_in_map[1:, 2].max() < skill.world.room.bed[1, 2] + below)
+
+
+def held_arm(skill: Skill, hand: Side) -> tuple[Side, Hold] | None:
+    """The arm that runs between the fingers of a hand, as far as is known; None where no arm was ever seen."""
+    place, best = hand_now(skill, hand)[:3, 3], None
+    for side, posture in watch_of(skill).arms.items():
+        path = ArmPath.of(posture)
+        coordinate = float(np.clip(path.coordinate_of(place), 0.0, 3.0))
+        away = float(np.linalg.norm(path.point(coordinate) - place))
+        if best is None or away < best[0]:
+            best = away, side, Hold(hand, coordinate)
+    return best and best[1:]
+
+
+def resting_place(
+    skill: Skill, side: Side, posture: ArmPosture, coordinate: float, *, tuning: LoweringTuning = LOWERING
+) -> np.ndarray:
+    """(3,) where a place of an arm comes to rest: below where it is, about the shoulder, the wrist on the mattress."""
+    bed, path = skill.world.room.bed, ArmPath.of(posture)
+    shoulder = path.points[0]
+    wrist, held = path.points[2] - shoulder, path.point(coordinate) - shoulder
+    room = 0.5 * (bed[1, 0] - bed[0, 0]) - tuning.edge - (shoulder - bed.mean(axis=0)) @ outwards(side)
+    widest = np.arcsin(np.clip(room / np.linalg.norm(wrist), 0.0, 1.0))
+    wide, heading = (float(np.arctan2(arm @ outwards(side), arm @ -HEADWARD)) for arm in (wrist, held))
+    heading -= max(wide - float(widest), 0.0)
+    reach = float(np.linalg.norm(held))
+    rise = float(np.clip(bed[1, 2] + tuning.rest_height - shoulder[2], -0.9 * reach, 0.9 * reach))
+    level = np.sin(heading) * outwards(side) - np.cos(heading) * HEADWARD
+    return shoulder + np.sqrt(reach**2 - rise**2) * level + rise * UP
+
+
+def lower_arm(skill: Skill, side: Side, hold: Hold, *, tuning: LoweringTuning = LOWERING) -> Iterator[None]:
+    """Swing a held arm down until it is seen to lie, the hand is at the mattress, the bed carries it, or it is lost.
+
+    The hand goes about the shoulder and gives way to what pulls across: so the arm finds its own circle.  Cloth that
+    the other hand holds on the arm comes along.
+
+    Args:
+        skill: that lowers.
+        side: of the person.
+        hold: of that arm, which has been seen.
+        tuning: how it is lowered.
+
+    Raises:
+        SkillFailure: MOTION_BLOCKED when the hand stands too high, TIMEOUT; the arm is still held.
+    """
+    mattress = float(skill.world.room.bed[1, 2])
+    posture = watch_of(skill).arms[side]
+    shoulder = posture.points_in_map[0]
+    place = resting_place(skill, side, posture, hold.coordinate, tuning=tuning)
+    goal = unit(place - tuning.aim_below * UP - shoulder)
+    end, window = skill.now() + tuning.timeout, deque[tuple[float, float]]()
+    while True:
+        hand, load = hand_now(skill, hold.hand), cloth_load(skill, hold.hand)
+        height = float(hand[2, 3]) - mattress
+        at_rest = height < tuning.rest_height or _seen_to_lie(skill, side, hold, tuning)
+        if at_rest or lost_arm(skill, hold.hand) or _carried(window, skill.now(), height, load, tuning):
+            return
+        if skill.now() > end:
+            raise SkillFailure(Reason.TIMEOUT, f"the hand is {height:.2f} m above the mattress")
+        arm = unit(hand[:3, 3] - shoulder)
+        along = unit(goal - (goal @ arm) * arm)
+        ease = float(np.clip((tuning.stop_at - load[2]) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))
+        linear = tuning.speed * ease * along + compliant_velocity(load - (load @ along) * along)
+        turn = tuning.turn_gain * np.cross(hand[:3, 2], -UP)
+        turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
+        skill.world.send(HandTwist(side=hold.hand, twist_in_map=np.append(linear, turn)), retreat=True)
+        _bring_cloth(skill, hold, tuning)
+        yield
+
+
+def _seen_to_lie(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -> bool:
+    """Whether the arm is seen to lie; without a picture the hand's own height has to do."""
+    with suppress(PerceptionFailure, SensorLost, SkillFailure):
+        return lies(skill, watch_arm(skill, side, hold=hold), tuning.lies_below)
+    return False
+
+
+def _carried(
+    window: deque[tuple[float, float]], now: float, height: float, load: np.ndarray, tuning: LoweringTuning
+) -> bool:
+    """Whether the hand comes down no farther because the bed carries the arm; keeps the window of times and heights.
+
+    Raises:
+        SkillFailure: MOTION_BLOCKED where it is not the bed.
+    """
+    window.append((now, height))
+    while window[0][0] < now - tuning.stall_time:
+        window.popleft()
+    on_record = now - window[0][0] > tuning.stall_record * tuning.stall_time
+    if not on_record or window[0][1] - height > tuning.min_descent:
+        return False
+    if load[2] > tuning.bed_load and height < tuning.max_rest_height:
+        return True
+    raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stands {height:.2f} m above the mattress")
+
+
+def _bring_cloth(skill: Skill, hold: Hold, tuning: LoweringTuning) -> None:
+    """The other hand follows what pulls at it: a sleeve over an arm goes down with it."""
+    other: Side = SIDES[1 - SIDES.index(hold.hand)]
+    load = cloth_load(skill, other)
+    over = float(np.linalg.norm(load)) - tuning.cloth_load
+    if over > 0.0:
+        velocity = min(tuning.cloth_compliance * over, tuning.cloth_speed) * unit(load)
+        skill.world.send(HandTwist(side=other, twist_in_map=np.append(velocity, np.zeros(3))), retreat=True)

@@ -1,0 +1,64 @@
+"""Taking the person's arm from above: over it, down around it, fingers closed across it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...sim.quantity import Quantities, quantity
+from ...sim.world import Side
+from ..belief.person_tracking import careful
+from ..core.reasons import Reason, SkillFailure
+from ..core.skill import Skill
+from ..geometry.arm_path import UP
+from .arm_grip import ARM_GRIP
+from .fingers import close_gripper, open_gripper
+from .hands import move_hands
+
+
+@dataclass(frozen=True, kw_only=True)
+class TakeArmTuning(Quantities):
+    """How a hand comes to an arm."""
+
+    approach_speed: float = quantity(
+        0.5, "m/s", "of the hand to above the arm, away from the person", "choice: quick in the open"
+    )
+    approach_height: float = quantity(
+        0.12, "m", "of the open hand above the arm, before it goes down", "choice: clear of it"
+    )
+    grip_depth: float = quantity(
+        0.005, "m", "of the fingertips below the arm's axis", "choice: the pads then reach round the arm's widest part"
+    )
+    descent_speed: float = quantity(0.12, "m/s", "of the hand down around the arm", "choice: slow, towards the person")
+
+
+TAKE_ARM = TakeArmTuning()
+
+
+def take_arm(skill: Skill, hand: Side, on_arm: np.ndarray, *, tuning: TakeArmTuning = TAKE_ARM) -> Iterator[None]:
+    """Bring a hand over an arm and down, and close it; a hand that closes on nothing opens and goes up again.
+
+    Args:
+        skill: that moves.
+        hand: of the robot.
+        on_arm: pose (4, 4) in the map of a hand that points down, its fingertips on the arm's axis.
+        tuning: how it comes there.
+
+    Raises:
+        MotionError: out of reach, or something is in the way.
+        SkillFailure: GRASP_MISSED, COMMAND_LOST or MOTION_BLOCKED.
+    """
+    above, around = on_arm.copy(), on_arm.copy()
+    above[:3, 3] += tuning.approach_height * UP
+    around[:3, 3] -= tuning.grip_depth * UP
+    yield from open_gripper(skill, hand)
+    yield from move_hands(skill, {hand: above}, way="any", speed=careful(skill, tuning.approach_speed))
+    yield from move_hands(skill, {hand: around}, speed=tuning.descent_speed)
+    gap = yield from close_gripper(skill, hand, force=ARM_GRIP.force)
+    if gap < ARM_GRIP.min_gap:
+        yield from open_gripper(skill, hand)
+        yield from move_hands(skill, {hand: above}, retreat=True)
+        raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
+    skill.context.guard.declare_grip(hand, "arm")

@@ -1,0 +1,71 @@
+"""Where an arm comes to rest, which arm a hand holds, and when an arm lies; the way down: test_release_arm."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.perception.person.arm_fit import turned_about_shoulder
+from caretree.skills.belief.person_tracking import Watch
+from caretree.skills.control.arm_grip import over_arm
+from caretree.skills.control.lowering import held_arm, lies, resting_place
+from caretree.skills.geometry.arm_path import ArmPath
+from caretree.skills.geometry.stances import HEADWARD, outwards
+from caretree.skills.scripted.scripted_person import lying_posture
+
+from ..bench import beside_bed
+from ..moving import idle
+
+
+def skill(**options):
+    """A skill of a robot beside the bed that may look and does nothing."""
+    return idle(beside_bed(**options)()[1])
+
+
+def raised(side, height=0.17, aside=0.0):
+    """An arm whose elbow is so much higher than where it rests, and farther away from the body [m]."""
+    posture = lying_posture(side)
+    elbow = posture.points_in_map[1] + (0.0, 0.0, height) + aside * outwards(side)
+    return replace(posture, points_in_map=turned_about_shoulder(posture.points_in_map, 1.0, elbow))
+
+
+@pytest.mark.parametrize(("height", "expected"), [(0.0, True), (0.01, True), (0.04, False), (0.17, False)])
+def test_an_arm_lies_where_all_of_it_is_near_the_mattress(height, expected):
+    assert lies(skill(), raised("right", height)) is expected
+
+
+def test_an_arm_whose_forearm_alone_is_up_does_not_lie():
+    posture = lying_posture("right")
+    points = posture.points_in_map.copy()
+    points[2:, 2] += 0.1
+    assert not lies(skill(), replace(posture, points_in_map=points))
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("coordinate", [1.0, 1.5])
+def test_an_arm_comes_to_rest_below_where_it_is_about_its_shoulder(side, coordinate):
+    posture = raised(side)
+    here, shoulder = ArmPath.of(posture).point(coordinate), posture.points_in_map[0]
+    place = resting_place(skill(), side, posture, coordinate)
+    assert np.linalg.norm(place - shoulder) == pytest.approx(np.linalg.norm(here - shoulder))
+    assert place[2] == pytest.approx(0.64)  # [m], the mattress is at 0.60
+    now, then = (np.arctan2((p - shoulder) @ outwards(side), (p - shoulder) @ -HEADWARD) for p in (here, place))
+    assert then <= now + 1e-9, "never farther out"
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_arm_that_would_reach_over_the_edge_is_drawn_in_until_the_wrist_rests_on_the_bed(side):
+    wide = raised(side, aside=0.15)
+    wrist = resting_place(skill(), side, wide, 2.0)
+    assert wide.points_in_map[2] @ outwards(side) > 0.52
+    assert wrist @ outwards(side) == pytest.approx(0.5, abs=0.03)  # [m], half the bed's width
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_arm_that_a_hand_holds_is_the_one_between_its_fingers(side):
+    asks = skill(hands={"left": over_arm(raised("right"), 1.3, 0.0)})
+    watch = asks.context.memory.of(Watch, Watch)
+    assert held_arm(asks, "left") is None, "nobody has been seen yet"
+    watch.arms.update({each: raised(each) for each in ("left", "right")})
+    arm, hold = held_arm(asks, "left")
+    assert (arm, hold.hand) == ("right", "left")
+    assert hold.coordinate == pytest.approx(1.3, abs=0.02)

@@ -1,0 +1,45 @@
+"""A hand comes to an arm from above, and knows whether it has it."""
+
+import numpy as np
+import pytest
+from caretree.skills.control.arm_grip import over_arm
+from caretree.skills.control.take_arm import take_arm
+from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import stance
+from caretree.skills.scripted.scripted_person import lying_posture
+
+from ..moving import carry_out, robot
+
+ON_ARM = over_arm(lying_posture("right"), 1.0, lift=0.0)
+
+
+def takes(between):
+    """World, guard, the skill that took the right elbow with the left hand, and the hand's way (n, 3)."""
+    world, context = robot(base=tuple(stance("right", "lift")))
+    world.between_fingers["left"] = between
+    way = []
+    skill = carry_out(
+        world,
+        context,
+        lambda skill: take_arm(skill, "left", ON_ARM),
+        each_tick=lambda skill: way.append(skill.world.observe().pose_hand_in_map[0, :3, 3]),
+    )
+    return world, context.guard, skill, np.array(way)
+
+
+def test_it_goes_over_the_arm_and_straight_down_around_it():
+    world, guard, skill, way = takes(0.07)
+    assert skill.failure is None
+    assert way[-1] == pytest.approx(ON_ARM[:3, 3] - (0.0, 0.0, 0.005), abs=0.01)
+    near = np.linalg.norm(way[:, :2] - ON_ARM[:2, 3], axis=1) < 0.02
+    assert np.ptp(way[near][:, 2]) == pytest.approx(0.125, abs=0.02)
+    assert guard.grip("left") == "arm"
+    assert world.observe().gripper_opening[0] == pytest.approx(0.07, abs=0.003)
+
+
+def test_a_hand_that_closes_on_nothing_opens_above_the_arm():
+    world, guard, skill, way = takes(0.0)
+    assert skill.failure.reason == Reason.GRASP_MISSED
+    assert way[-1] == pytest.approx(ON_ARM[:3, 3] + (0.0, 0.0, 0.12), abs=0.01)
+    assert world.observe().gripper_opening[0] > 0.08
+    assert guard.grip("left") == "nothing"
