@@ -143,7 +143,7 @@ class LiftArm(Skill):
         above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.angle)[0] - place))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.approach_speed))
         grip = above.copy()
-        grip[:3, 3] = place - tuning.grip_depth * UP
+        grip[:3, 3] = place + tuning.grip_depth * above[:3, 2]
         yield from move_hands(self, {self.hand: grip}, speed=tuning.descent_speed)
         gap = yield from close_gripper(self, self.hand, force=ARM_GRIP.force)
         if gap < ARM_GRIP.min_gap:

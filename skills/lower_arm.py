@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..perception.estimates import ArmPosture
+from ..perception.person.arm_fit import turned_about_shoulder
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import watch_arm
@@ -20,7 +21,6 @@ from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .core.tries import Tries
-from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .motion.errors import MotionError
 
@@ -100,8 +100,11 @@ class LowerArm(Skill):
         tuning, tries = self.tuning, Tries(MotionError)
         for coordinate in tuning.grips:
             with tries:
-                here = ArmPath.of(posture).point(coordinate)
-                down = resting_place(self, self.side, posture, coordinate, tuning=tuning.lowering) - here
-                ways = tuning.take.approach_height * UP, np.zeros(3), down
-                return coordinate, top_down_reachable(self, self.hand, over_arm(posture, coordinate, lift=0.0), ways)
+                rest = resting_place(self, self.side, posture, coordinate, tuning=tuning.lowering)
+                points = turned_about_shoulder(posture.points_in_map, coordinate, rest)
+                lying = over_arm(replace(posture, points_in_map=points), coordinate, lift=0.0)
+                top_down_reachable(self, self.hand, lying, clear=False)
+                on_arm = over_arm(posture, coordinate, lift=0.0)
+                ways = -tuning.take.approach_height * on_arm[:3, 2], np.zeros(3)
+                return coordinate, top_down_reachable(self, self.hand, on_arm, ways)
         raise tries.last

@@ -43,10 +43,14 @@ ARM_GRIP = ArmGripTuning()
 
 
 def over_arm(posture: ArmPosture, coordinate: float, lift: float) -> np.ndarray:
-    """Pose (4, 4) in the map of a hand that points down, `lift` [m] above an arm coordinate, and closes across it."""
+    """Pose (4, 4) in the map of a hand square to an arm, from above, `lift` [m] off a coordinate; it closes across it.
+
+    A hand that points straight down would have its palm in an arm that rises.
+    """
     path = ArmPath.of(posture)
-    across = unit(np.cross(path.direction(coordinate), UP))
-    return hand_pose(path.point(coordinate) + lift * UP, -UP, across)
+    along = path.direction(coordinate)
+    away = unit(UP - (UP @ along) * along)
+    return hand_pose(path.point(coordinate) + lift * away, -away, unit(np.cross(along, UP)))
 
 
 def top_down_reachable(
@@ -55,6 +59,7 @@ def top_down_reachable(
     pose: np.ndarray,
     then: Sequence[np.ndarray] = (np.zeros(3),),
     *,
+    clear: bool = True,
     tuning: ArmGripTuning = ARM_GRIP,
 ) -> np.ndarray:
     """`pose`, or the same turned by half a turn about the approach, whichever the arm takes more easily.
@@ -64,6 +69,7 @@ def top_down_reachable(
         side: of the robot.
         pose: (4, 4) in the map; the two fingers are alike, so the turned one is as good.
         then: offsets (3,) from there to positions that must be within reach with the same turn [m].
+        clear: whether the postures must be free; not where the arm itself, which goes along, is in the way now.
         tuning: how much easier the turned one must be.
 
     Raises:
@@ -71,7 +77,8 @@ def top_down_reachable(
     """
     seen, kinematics = skill.world.observe(), default_kinematics()
     n, limits = SIDES.index(side), kinematics.limits[side]
-    accept = free_postures(collision_checker(skill), side, seen.pose_base_in_map, seen.arm_positions)
+    checker = collision_checker(skill) if clear else None
+    accept = checker and free_postures(checker, side, seen.pose_base_in_map, seen.arm_positions)
     best: tuple[float, np.ndarray] | None = None
     tries = Tries(Unreachable)
     for turned in (pose, half_turned(pose)):

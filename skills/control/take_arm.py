@@ -12,7 +12,6 @@ from ...sim.world import Side
 from ..belief.person_tracking import careful
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
-from ..geometry.arm_path import UP
 from .arm_grip import ARM_GRIP
 from .fingers import close_gripper, open_gripper
 from .hands import move_hands
@@ -43,7 +42,7 @@ def take_arm(skill: Skill, hand: Side, on_arm: np.ndarray, *, tuning: TakeArmTun
     Args:
         skill: that moves.
         hand: of the robot.
-        on_arm: pose (4, 4) in the map of a hand that points down, its fingertips on the arm's axis.
+        on_arm: pose (4, 4) in the map of a hand that points at the arm, its fingertips on the arm's axis.
         tuning: how it comes there.
 
     Raises:
@@ -51,8 +50,8 @@ def take_arm(skill: Skill, hand: Side, on_arm: np.ndarray, *, tuning: TakeArmTun
         SkillFailure: GRASP_MISSED, COMMAND_LOST or MOTION_BLOCKED.
     """
     above, around = on_arm.copy(), on_arm.copy()
-    above[:3, 3] += tuning.approach_height * UP
-    around[:3, 3] -= tuning.grip_depth * UP
+    above[:3, 3] -= tuning.approach_height * on_arm[:3, 2]
+    around[:3, 3] += tuning.grip_depth * on_arm[:3, 2]
     yield from open_gripper(skill, hand)
     yield from move_hands(skill, {hand: above}, way="any", speed=careful(skill, tuning.approach_speed))
     yield from move_hands(skill, {hand: around}, speed=tuning.descent_speed)

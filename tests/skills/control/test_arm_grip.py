@@ -1,5 +1,8 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.skills.control.arm_grip import holds_arm, lost_arm, over_arm, top_down_reachable
@@ -17,11 +20,20 @@ POSTURE = lying_posture("right")
 
 
 @pytest.mark.parametrize("coordinate", [0.4, 1.0, 1.7])
-def test_the_hand_points_down_above_the_arm_and_closes_across_it(coordinate):
+def test_the_hand_comes_square_to_the_arm_from_above_and_closes_across_it(coordinate):
     pose, path = over_arm(POSTURE, coordinate, lift=0.1), ArmPath.of(POSTURE)
-    np.testing.assert_allclose(pose[:3, 3], path.point(coordinate) + (0.0, 0.0, 0.1))
-    np.testing.assert_allclose(pose[:3, 2], (0.0, 0.0, -1.0), atol=1e-12)
+    np.testing.assert_allclose(pose[:3, 3], path.point(coordinate) - 0.1 * pose[:3, 2])
+    assert pose[2, 2] < -0.98, "the arm lies almost flat"
     assert abs(pose[:3, 1] @ path.direction(coordinate)) < 1e-9
+    assert abs(pose[:3, 2] @ path.direction(coordinate)) < 1e-9
+
+
+def test_over_an_arm_that_rises_the_hand_leans_with_it():
+    points = turned_about_shoulder(POSTURE.points_in_map, 1.0, POSTURE.points_in_map[1] + (0.0, 0.0, 0.2))
+    raised = replace(POSTURE, points_in_map=points)
+    pose = over_arm(raised, 1.4, lift=0.0)
+    assert abs(pose[:3, 2] @ ArmPath.of(raised).direction(1.4)) < 1e-9
+    assert pose[2, 2] < -0.7, "from above all the same"
 
 
 def test_of_two_turns_one_that_the_arm_can_take_is_chosen():
