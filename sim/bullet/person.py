@@ -7,6 +7,7 @@ joint angles mean: `scene/person_spec.py`.
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -45,8 +46,7 @@ class Person:
         self.bed_top, self.bed_xy = bed_top, bed_xy
         self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
         self.trunk = trunk_capsules(spec, bed_top, bed_xy)
-        for a, b, radius in self.trunk.values():
-            self._add_capsule(a, b, radius)
+        trunk = [self._add_capsule(a, b, radius) for a, b, radius in self.trunk.values()]
         self.body = self._load()
         names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
         self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
@@ -62,6 +62,9 @@ class Person:
             )
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
             client.changeDynamics(self.body, link, jointDamping=0.0)
+        # upper arm and trunk overlap at the shoulder, where contact could not part them: pushed, the arm would explode
+        for upper, part in product((self.links[side][0] for side in SIDES), trunk):
+            client.setCollisionFilterPair(self.body, part, upper, -1, 0)
         self._swing = 0.0
         self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
         self.resist()
@@ -113,12 +116,15 @@ class Person:
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""
+        links = [link for side in SIDES for link in self.links[side]]
+        states = self.client.getLinkStates(self.body, links, computeForwardKinematics=1)
         out = np.empty((2, 4, 3))
-        for i, side in enumerate(SIDES):
-            upper, fore, hand = self.client.getLinkStates(self.body, self.links[side], computeForwardKinematics=1)
-            out[i, 0], out[i, 1], out[i, 2] = upper[4], fore[4], hand[4]
-            turn = np.array(self.client.getMatrixFromQuaternion(hand[5])).reshape(3, 3)
-            out[i, 3] = out[i, 2] + turn @ (0.0, self.spec.arm_lengths[2], 0.0)
+        for i in range(2):
+            upper, fore, hand = states[3 * i : 3 * i + 3]
+            out[i, :3] = upper[4], fore[4], hand[4]
+            x, y, z, w = hand[5]
+            along = np.array((2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)))  # the hand's y axis
+            out[i, 3] = out[i, 2] + self.spec.arm_lengths[2] * along
         return out
 
     def torso_front(self) -> np.ndarray:
@@ -129,12 +135,12 @@ class Person:
         """(2, 3) capsule radii of upper arm, forearm, hand, left then right [m]."""
         return np.tile(self.spec.arm_radii, (2, 1))
 
-    def _add_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> None:
+    def _add_capsule(self, a: np.ndarray, b: np.ndarray, radius: float) -> int:
         c = self.client
         middle, length, turn = _along(a, b)
         shape = c.createCollisionShape(c.GEOM_CAPSULE, radius=radius, height=length)
         # maximal coordinates: a plain rigid body, whose cloth contacts cost half of a multibody's
-        body = c.createMultiBody(
+        body: int = c.createMultiBody(
             0,
             shape,
             basePosition=middle.tolist(),
@@ -142,6 +148,7 @@ class Person:
             baseOrientation=c.getQuaternionFromEuler(turn),
         )
         c.changeDynamics(body, -1, lateralFriction=SHAPE.skin_friction)
+        return body
 
     def _load(self) -> int:
         import tempfile

@@ -3,8 +3,8 @@
 Two PyBullet clients run side by side.  The room (deformable) holds gown, bed and person; the robot has a rigid
 client of its own, because a deformable world makes each of its steps several times dearer.  They meet at the
 hands: a `Handle` in the room follows each hand, holds what the fingers took, and its load is put on the robot's
-wrist.  Apart from what is between the fingers the robot's links do not push the cloth or the person; the guard
-and the planner keep them away from the person (an assumption named in docs/assumptions.md).
+wrist; and where a link touches the person (`contact.py`).  The robot's links do not push the cloth (an assumption
+named in docs/assumptions.md).
 
 Nothing outside `sim` may read `truth_frame`: skills see only `observe` and `look`.
 """
@@ -14,41 +14,41 @@ from __future__ import annotations
 import time as wall
 from collections import defaultdict
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
-from ..fence import fenced
-from ..record.recorder import FRAME_PERIOD, Recorder
-from ..record.truth import TruthFrame, TruthStatic
-from ..render.camera import CAMERA_VIEWS, camera_intrinsics
-from ..render.live_view import SIZE, LiveView
+from ..record.recorder import Recorder
+from ..record.truth import TruthFrame
+from ..render.camera import CAMERA_VIEWS, Renderer, camera_intrinsics
+from ..render.live_view import LiveView
 from ..robot.body import RobotBody
 from ..robot.capsules import RobotCapsules
 from ..robot.kinematics import default_kinematics
 from ..scene.initial_state import InitialState
-from ..scene.person_spec import PERSON_PARTS, face, trunk_capsules
-from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, draw_scene, room_map
+from ..scene.person_spec import trunk_capsules
+from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
-from .backdrop import SPECTATOR, SPECTATOR_SIZE, Backdrop
+from .backdrop import Backdrop
 from .cloth import load_gown
+from .contact import Contact
+from .furniture import add_furniture
 from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
 from .person import Person
-from .person_force import ForceBalance
 from .soft_world import GRAVITY, SoftWorld
+from .truth_source import TruthSource
+from .watchers import Watchers
 
 TIME_STEP = 0.0025  # of the room [s]
 ROBOT_STEPS = 2  # room steps per robot step
 CONTROL_STEPS = 4  # room steps between two looks at the fingers
 SETTLE = 2.0  # the gown hangs still before the clock starts [s]
-PICTURE_PERIOD = 2 * FRAME_PERIOD  # of the video [s]
 WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
 SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
 SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
@@ -94,18 +94,17 @@ class BulletWorld(World):
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.kinematics = default_kinematics()
-        self._capsules = RobotCapsules(self.kinematics)
         self.timing: dict[str, float] = defaultdict(float)
         self._noise = np.random.default_rng([seed, 2])
-        self._on_watch_error: Callable[[Exception], None] = lambda error: None
-        self._watchers: list[Callable[[], None]] = []  # recorder and live view
         self._steps = 0
-        self._next_frame = self._next_picture = 0.0
         self._asleep = False
         self._moving_person: list[float] = []
         self._soft = SoftWorld(TIME_STEP)
         self._client: Any = self._soft.client
         self._build()
+        self._arms = self._person.arms()
+        capsules = RobotCapsules(self.kinematics)
+        self._contact = Contact(capsules, self._person, ROBOT_STEPS * TIME_STEP, TIME_STEP)
         self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
         self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
@@ -115,11 +114,12 @@ class BulletWorld(World):
         ]
         self._force_limit = np.full(2, 30.0)
         self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
-        self._balance = ForceBalance(self._person, self.scene.gown.mass, BED_TOP)
+        self._truth = TruthSource(self.scene, capsules, self._person, self._hook, self._grips, self._contact)
+        self._watchers = Watchers(self.truth_frame, self._draw)
         self._view = LiveView() if view else None
         if self._view:
             print(f"live view: {self._view.url}", flush=True)
-            self._add_watcher(partial(self._show, self._view))
+            self._watchers.show(self._view)
         self._settle(SETTLE)
 
     def _build(self) -> None:
@@ -138,21 +138,7 @@ class BulletWorld(World):
         self._cloth, self._patch = load_gown(
             self._soft, scene.mesh, start, self._effects, pinned={scene.hang_vertex}, capsules=trunk
         )
-        size = (*BED_HALF, BED_THICKNESS / 2)
-        bed = c.createMultiBody(
-            0,
-            c.createCollisionShape(c.GEOM_BOX, halfExtents=size),
-            useMaximalCoordinates=1,
-            basePosition=(*scene.bed_xy, BED_TOP - BED_THICKNESS / 2),
-        )
-        c.changeDynamics(bed, -1, lateralFriction=1.0)
-        floor = c.createMultiBody(
-            0,
-            c.createCollisionShape(c.GEOM_BOX, halfExtents=(4, 4, 0.05)),
-            useMaximalCoordinates=1,
-            basePosition=(0, 0, -0.05),
-        )
-        c.changeDynamics(floor, -1, lateralFriction=0.5)
+        add_furniture(c, scene.bed_xy)
         self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
         self._vertices = self._cloth.vertices()
@@ -211,8 +197,9 @@ class BulletWorld(World):
         wrench = np.zeros((2, 6))
         for n in range(2):
             wrench[n, :3] = self._grips[n].load
+        wrench += self._contact.wrench(self._hands)
         wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
-        opening, force = reading.gripper_opening.copy(), reading.gripper_force.copy()
+        force = np.maximum(reading.gripper_force, self._contact.squeeze(self._hands))
         for n, grip in enumerate(self._grips):
             if grip.kind == "arm":
                 force[n] = self._force_limit[n]
@@ -224,7 +211,7 @@ class BulletWorld(World):
             head_pan=reading.head_pan,
             pose_base_in_map=reading.pose_base_in_map,
             twist_base=reading.twist_base,
-            gripper_opening=opening,
+            gripper_opening=reading.gripper_opening.copy(),
             gripper_force=force,
             wrench_hand_in_map=wrench,
             pose_hand_in_map=np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES]),
@@ -293,23 +280,18 @@ class BulletWorld(World):
         recorded = self.timing["record"]
         while self.time.time < time - 1e-9:
             self._step()
-            if self.time.time >= self._next_frame - 1e-9:
-                self._next_frame += FRAME_PERIOD
+            if self._watchers.due(self.time.time):
                 recording = wall.perf_counter()
-                for watch in self._watchers:
-                    watch()
+                self._watchers.look(self.time.time)
+                self._contact.forget_peak()
                 self.timing["record"] += wall.perf_counter() - recording
         self.timing["physics"] += wall.perf_counter() - begin - (self.timing["record"] - recorded)
 
     def _step(self) -> None:
         if self._steps % ROBOT_STEPS == 0:
-            for n, side in enumerate(SIDES):
-                if self._grips[n].kind != "nothing":
-                    self._robot.apply_hand_force(side, self._grips[n].load)
-            self._robot.update(self.time.time)
-            self._robot_client.stepSimulation()
-            reading = self._robot.read()
-            self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+            self._step_robot()
+        elif not self._asleep:
+            self._meet()
         if self._steps % CONTROL_STEPS == 0:
             self._update_grips()
             self._rest()
@@ -320,6 +302,24 @@ class BulletWorld(World):
         self._steps += 1
         self.time.time = self._steps * TIME_STEP
 
+    def _step_robot(self) -> None:
+        self._meet()
+        for side, grip in zip(SIDES, self._grips, strict=True):
+            if grip.kind != "nothing":
+                self._robot.apply_hand_force(side, grip.load)
+        self._contact.push_robot(self._robot)
+        self._robot.update(self.time.time)
+        self._robot_client.stepSimulation()
+        reading = self._robot.read()
+        self._contact.watch(self.time.time + ROBOT_STEPS * TIME_STEP, reading)
+        self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+
+    def _meet(self) -> None:
+        """Let robot and person feel each other where they touch."""
+        self._contact.meet(self.time.time, [grip.arm for grip in self._grips])
+        if self._contact.on_arms:
+            self._wake()
+
     def _step_room(self) -> None:
         held = [grip.kind != "nothing" for grip in self._grips]
         for n in np.flatnonzero(held):
@@ -327,6 +327,7 @@ class BulletWorld(World):
         self._hook.before_step()
         self._move_person()
         self._apply_effects()
+        self._contact.push_arms()
         self._client.stepSimulation()
         for n in np.flatnonzero(held):
             if self._grips[n].kind == "arm":
@@ -346,6 +347,7 @@ class BulletWorld(World):
     def _update_grips(self) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
         reading = self._robot.read()
+        squeeze = self._contact.squeeze(self._hands)
         if any(grip.kind != "nothing" for grip in self._grips):
             vertices = self._cloth.vertices()
             for grip, limit in zip(self._grips, self._force_limit, strict=True):
@@ -358,19 +360,21 @@ class BulletWorld(World):
             elif grip.kind == "nothing" and grip.catch_arm(self._hands[n], opening, force):
                 self._robot.command(GripperOpening(side=SIDES[n], opening=grip.thickness, force_limit=force))
                 self._wake()
+            elif squeeze[n] > force and self._robot.servo.gripper_opening[n] < opening:  # the fingers stall
+                self._robot.command(GripperOpening(side=SIDES[n], opening=opening, force_limit=force))
             elif grip.kind == "nothing" and opening < CLOSED:
                 grip.take_cloth(self._cloth.vertices(), self._hands[n])
                 if grip.kind == "cloth":
                     self._wake()
 
     def _rest(self) -> None:
-        """Let a gown that lies still and that nobody holds rest, as rigid bodies are put to sleep."""
+        """Let a gown and arms that lie still and that nobody holds or touches rest, as rigid bodies sleep."""
         if self._asleep or self._steps % int(SLEEP_TIME / TIME_STEP):
             return
-        vertices = self._cloth.vertices()
-        moved = float(np.abs(vertices - self._vertices).max())
-        self._vertices = vertices
-        busy = self._moving_person or any(grip.kind != "nothing" for grip in self._grips)
+        vertices, arms = self._cloth.vertices(), self._person.arms()
+        moved = max(float(np.abs(vertices - self._vertices).max()), float(np.abs(arms - self._arms).max()))
+        self._vertices, self._arms = vertices, arms
+        busy = self._moving_person or self._contact.on_arms or any(grip.kind != "nothing" for grip in self._grips)
         self._asleep = not busy and moved < SLEEP_MOVE and self._steps > 0
 
     def _wake(self) -> None:
@@ -388,66 +392,14 @@ class BulletWorld(World):
 
     def attach_recorder(self, recorder: Recorder, on_error: Callable[[Exception], None]) -> None:
         """Give every frame from now on to `recorder`, and whatever fails in showing or recording it to `on_error`."""
-        mesh = self.scene.mesh
-        recorder.begin(
-            TruthStatic(
-                faces=mesh.faces,
-                rest_vertices=mesh.vertices,
-                loops=mesh.loops,
-                arm_radii=self._person.radii(),
-                person_parts=PERSON_PARTS,
-                robot_capsule_names=self._capsules.names,
-                person_capsules=np.array([(*a, *b, radius) for a, b, radius in self._person.trunk.values()]),
-                person_capsule_names=tuple(self._person.trunk),
-                bed_top=BED_TOP,
-                face=face(self.scene.person, BED_TOP, self.scene.bed_xy),
-                neckline=mesh.collar,
-            )
-        )
-        self._on_watch_error = on_error
-        self._add_watcher(partial(self._record, recorder))
+        self._watchers.record(recorder, self._truth.static(), on_error)
 
     def truth_frame(self) -> TruthFrame:
         """Everything that is known about this instant."""
-        vertices = self._vertices_now()
-        reading = self._robot.read()
-        closed = np.array([grip.kind == "cloth" for grip in self._grips])
-        loads = np.stack([self._grips[n].load if closed[n] else np.zeros(3) for n in range(2)])
-        on_arm = {grip.part: self._grips[n].load for n, grip in enumerate(self._grips) if grip.part is not None}
-        force = self._balance.parts(self.time.time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
-        poses = np.stack([_pose7(self._robot.pose_hand_in_map(side, reading)) for side in SIDES])
-        return TruthFrame(
-            t=self.time.time,
-            vertices=vertices,
-            arms=self._person.arms(),
-            torso_front=self._person.torso_front(),
-            gripper_pose=poses,
-            gripper_closed=closed,
-            gripper_load=loads,
-            person_force=force,
-            robot_capsules=self._capsules.rows(
-                self._capsules.ends(
-                    reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
-                )
-            ),
-            holds_arm=np.array([grip.arm for grip in self._grips]),
-        )
+        return self._truth.frame(self.time.time, self._vertices_now(), self._robot)
 
-    def _add_watcher(self, watch: Callable[[], None]) -> None:
-        self._watchers.append(fenced(watch, lambda error: self._on_watch_error(error)))
-
-    def _record(self, recorder: Recorder) -> None:
-        recorder.frame(self.truth_frame())
-        if self.time.time >= self._next_picture - 1e-9:
-            self._next_picture += PICTURE_PERIOD
-            renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration())
-            recorder.picture(self.time.time, renderer.render(SPECTATOR, SPECTATOR_SIZE).rgb)
-
-    def _show(self, view: LiveView) -> None:
-        def draw(pose: np.ndarray) -> np.ndarray:
-            return self._backdrop.update(self._vertices_now(), self._robot.configuration()).render(pose, SIZE).rgb
-
-        view.serve(draw)
+    def _draw(self) -> Renderer:
+        return self._backdrop.update(self._vertices_now(), self._robot.configuration())
 
     def _vertices_now(self) -> np.ndarray:
         return self._vertices if self._asleep else self._cloth.vertices()
@@ -469,9 +421,3 @@ class BulletWorld(World):
             self._person.swing(0.45 if stirring else 0.0)
             if not stirring:
                 self._moving_person = []
-
-
-def _pose7(pose: np.ndarray) -> np.ndarray:
-    from scipy.spatial.transform import Rotation
-
-    return np.concatenate([pose[:3, 3], Rotation.from_matrix(pose[:3, :3]).as_quat()])

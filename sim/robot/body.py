@@ -182,9 +182,14 @@ class RobotBody:
 
     def apply_hand_force(self, side: Side, force_in_map: np.ndarray) -> None:
         """Load a hand between the fingertips with a force (3,) [N] for the next physics step."""
-        link = self.links[f"{side}_hand"]
-        position = self._client.getLinkState(self.body, link)[4]
-        self._client.applyExternalForce(self.body, link, list(map(float, force_in_map)), position, pybullet.WORLD_FRAME)
+        name = f"{side}_hand"
+        self.push(name, force_in_map, np.array(self._client.getLinkState(self.body, self.links[name])[4]))
+
+    def push(self, link: str, force_in_map: np.ndarray, point_in_map: np.ndarray) -> None:
+        """Load a link with a force (3,) [N] at a point (3,) [m] for the next physics step."""
+        self._client.applyExternalForce(
+            self.body, self.links[link], force_in_map.tolist(), point_in_map.tolist(), pybullet.WORLD_FRAME
+        )
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
         """Motor targets (22,) and their rates, at the middle of the coming control period."""

@@ -145,9 +145,8 @@ class RobotCapsules:
         robot = self._kinematics
         q = robot.configuration(pose_base_in_map, arm_positions, head_pan, gripper_opening)
         pin.forwardKinematics(robot.model, robot.data, q)
-        places = [robot.data.oMi[joint] for joint in self._joints]
-        turns = np.array([place.rotation for place in places])
-        return self._local @ turns.transpose(0, 2, 1) + np.array([place.translation for place in places])[:, None]
+        places = np.array([place.homogeneous for place in robot.data.oMi.tolist()])[self._joints]
+        return self._local @ places[:, :3, :3].transpose(0, 2, 1) + places[:, None, :3, 3]
 
     def rows(self, ends: np.ndarray) -> np.ndarray:
         """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from caretree.sim.abilities import (
@@ -12,11 +14,13 @@ from caretree.sim.abilities import (
     SupportsRecording,
 )
 from caretree.sim.bullet.soft_world import GRAVITY
+from caretree.sim.bullet.watchers import Watchers
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError, RecordError
 from caretree.sim.evaluate.crossings import sleeve
+from caretree.sim.robot import model
 from caretree.sim.scene.person_spec import PERSON_PARTS
-from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, SensorLost, WorldError
+from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, HandTwist, SensorLost, WorldError
 
 
 @pytest.fixture(scope="module")
@@ -122,8 +126,8 @@ def test_time_goes_on_when_nobody_can_watch_it(world, monkeypatch, fails):
             Recorder().show("view")
 
     shown, told = [], []
-    monkeypatch.setattr(world, "_watchers", [])
-    world._add_watcher(lambda: world._show(View()))
+    monkeypatch.setattr(world, "_watchers", Watchers(world.truth_frame, world._draw))
+    world._watchers.show(View())
     world.attach_recorder(Recorder(), told.append)
     begin = world.clock.now()
     world.clock.wait_until(begin + 0.4)
@@ -172,3 +176,29 @@ def test_a_run_can_begin_with_both_sleeves_on_and_not_both_up():
             reached.append(worn.armhole.upper_arm[0])
         world.close()
     assert min(reached) < 0.7 < max(reached)
+
+
+def test_a_hand_that_is_driven_into_the_chest_is_held_back_and_everyone_sees_it():
+    world = BulletWorld(seed=100)
+    world.set_initial_state("gown_worn")
+    frames = []
+    recorder = SimpleNamespace(begin=lambda static: None, frame=frames.append, picture=lambda *_: None)
+    world.attach_recorder(recorder, lambda error: None)
+    low = np.array((0.35, -0.55, -0.95, 1.65, 0.65, 0.90, -0.30))  # fingers down, as high as the chest
+    posture = np.stack((low, model.READY[1]))
+    hand = world.kinematics.pose_hand_in_base("left", low)[:3, 3]
+    a, _, radius = world._person.trunk["trunk_left"]
+    world._robot = world._stand((float(a[0] - hand[0]), float(a[1] + 0.2 - hand[1]), 0.0), arm_positions=posture)
+    world._contact.forget()
+    until = world.clock.now() + 1.0
+    while world.clock.now() < until:
+        world.send(HandTwist(side="left", twist_in_map=np.array((0.0, 0.0, -0.1, 0.0, 0.0, 0.0)), duration=0.1))
+        world.clock.wait_until(world.clock.now() + 0.05)
+    wrench = world.observe().wrench_hand_in_map
+    trunk = PERSON_PARTS.index("trunk")
+    assert 200.0 < frames[-1].person_force[trunk] < 600.0  # there the motors give way
+    assert np.linalg.norm(wrench[0, :3]) == pytest.approx(frames[-1].person_force[trunk], rel=0.1)
+    assert np.abs(wrench[1]).max() < 1.0  # the other hand touches nothing
+    assert a[2] + radius - frames[-1].gripper_pose[0, 2] < 0.03  # it was told to go down by 9 cm
+    assert np.delete(frames[-1].person_force, trunk).max() < 5.0
+    world.close()

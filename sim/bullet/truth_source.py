@@ -1,0 +1,97 @@
+"""What the recorder is given: everything that is known about the room, frame by frame.  Skills never see it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..record.truth import TruthFrame, TruthStatic
+from ..robot.body import RobotBody
+from ..robot.capsules import RobotCapsules
+from ..scene.person_spec import PERSON_PARTS, face
+from ..scene.scene import BED_TOP, Scene
+from ..world import SIDES
+from .contact import Contact
+from .grip import Grip
+from .hook import Hook
+from .person import Person
+from .person_force import ForceBalance
+
+
+class TruthSource:
+    """Reads the truth of one run.
+
+    Args:
+        scene: what was drawn.
+        capsules: of the robot.
+        person: the body.
+        hook: that the gown hangs on at first.
+        grips: of the left and the right hand.
+        contact: between robot and person.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        capsules: RobotCapsules,
+        person: Person,
+        hook: Hook,
+        grips: Sequence[Grip],
+        contact: Contact,
+    ) -> None:
+        self._scene, self._capsules, self._person = scene, capsules, person
+        self._hook, self._grips, self._contact = hook, grips, contact
+        self._balance = ForceBalance(person, scene.gown.mass, BED_TOP)
+
+    def static(self) -> TruthStatic:
+        """What stays the same for the whole run."""
+        mesh, trunk = self._scene.mesh, self._person.trunk
+        return TruthStatic(
+            faces=mesh.faces,
+            rest_vertices=mesh.vertices,
+            loops=mesh.loops,
+            arm_radii=self._person.radii(),
+            person_parts=PERSON_PARTS,
+            robot_capsule_names=self._capsules.names,
+            person_capsules=np.array([(*a, *b, radius) for a, b, radius in trunk.values()]),
+            person_capsule_names=tuple(trunk),
+            bed_top=BED_TOP,
+            face=face(self._scene.person, BED_TOP, self._scene.bed_xy),
+            neckline=mesh.collar,
+        )
+
+    def frame(self, time: float, vertices: np.ndarray, robot: RobotBody) -> TruthFrame:
+        """Everything about this instant, with the peaks of the contact's forces.
+
+        Args:
+            time: world clock [s].
+            vertices: (V, 3) of the gown [m].
+            robot: as it stands now.
+        """
+        reading = robot.read()
+        closed = np.array([grip.kind == "cloth" for grip in self._grips])
+        loads = np.stack([grip.load if grip.kind == "cloth" else np.zeros(3) for grip in self._grips])
+        on_arm = {grip.part: grip.load for grip in self._grips if grip.part is not None}
+        force = self._balance.parts(time, vertices, -loads.sum(axis=0) - self._hook.load(vertices), on_arm)
+        ends = self._capsules.ends(
+            reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
+        )
+        return TruthFrame(
+            t=time,
+            vertices=vertices,
+            arms=self._person.arms(),
+            torso_front=self._person.torso_front(),
+            gripper_pose=np.stack([_pose7(robot.pose_hand_in_map(side, reading)) for side in SIDES]),
+            gripper_closed=closed,
+            gripper_load=loads,
+            person_force=force + self._contact.part_peak,
+            robot_capsules=self._capsules.rows(ends),
+            holds_arm=np.array([grip.arm for grip in self._grips]),
+        )
+
+
+def _pose7(pose: np.ndarray) -> np.ndarray:
+    """(7,) position and quaternion x, y, z, w of a pose (4, 4)."""
+    return np.concatenate([pose[:3, 3], Rotation.from_matrix(pose[:3, :3]).as_quat()])
