@@ -135,7 +135,7 @@ class Contact:
                 force, point = self._force[hand[self._pushed]], self._point[hand[self._pushed]]
                 now[n] = (*force.sum(axis=0), *np.cross(point, force).sum(axis=0))
             self._felt += (1.0 - np.exp((self._felt_at - time) / SENSOR_TIME)) * (now - self._felt)
-            self._felt[np.abs(self._felt) < 1e-6] = 0.0
+            self._felt[np.abs(self._felt) < 1e-3] = 0.0
         self._felt_at = time
 
     def _robot_at(self, time: float) -> Capsules:
@@ -178,7 +178,8 @@ class Contact:
         The sensors sit between the arms' last link and the grippers, so they do not feel the wrist.
         """
         out = self._felt.copy()
-        out[:, 3:] -= np.cross(hands[:, :3, 3], out[:, :3])
+        if out.any():
+            out[:, 3:] -= np.cross(hands[:, :3, 3], out[:, :3])
         return out
 
     def squeeze(self, hands: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@
 Stiffness is the body's own (ISO/TS 15066).  A force is computed from where things are and then acts for one step, so
 it is stable only while it does not throw either partner back further than it came.  The least effective mass of the
 lighter partner over its step therefore bounds damping and friction, and for the arms the stiffness: of the six
-segments only the hands are made softer by that (18 of 75 kN/m for a person of 18 kg, whose hand weighs 126 g).
+segments only the hands are made softer by that (17 of 75 kN/m for a person of 18 kg, whose hand weighs 126 g).
 """
 
 from __future__ import annotations

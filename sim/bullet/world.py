@@ -145,6 +145,7 @@ class BulletWorld(World):
 
     def _stand(self, pose_base_in_map: tuple[float, float, float], **posture: Any) -> RobotBody:
         """Put the robot somewhere, arms ready unless `posture` says otherwise."""
+        self._contact.forget()
         self._robot_client.resetSimulation()
         self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
         self._robot_client.setGravity(0, 0, -GRAVITY)

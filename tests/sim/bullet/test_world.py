@@ -87,6 +87,20 @@ def test_fingers_that_close_on_air_hold_nothing(world):
     assert not world.truth_frame().gripper_closed.any()
 
 
+def test_fingers_that_meet_more_than_their_force_stall(world, monkeypatch):
+    world.send(GripperOpening(side="right", opening=0.08, force_limit=20.0))
+    world.clock.wait_until(world.clock.now() + 0.8)
+    monkeypatch.setattr(world._contact, "squeeze", lambda hands: np.array((0.0, 25.0)))
+    world.send(GripperOpening(side="right", opening=0.0, force_limit=20.0))
+    world.clock.wait_until(world.clock.now() + 0.5)
+    seen = world.observe()
+    assert seen.gripper_opening[1] > 0.07
+    assert seen.gripper_force[1] == pytest.approx(25.0)
+    world.send(GripperOpening(side="right", opening=0.0, force_limit=30.0))
+    world.clock.wait_until(world.clock.now() + 1.0)
+    assert world.observe().gripper_opening[1] < 0.01  # more force closes them
+
+
 def test_a_moving_person_moves(world):
     before = world.truth_frame().arms
     world.fault_move_person()
@@ -189,7 +203,6 @@ def test_a_hand_that_is_driven_into_the_chest_is_held_back_and_everyone_sees_it(
     hand = world.kinematics.pose_hand_in_base("left", low)[:3, 3]
     a, _, radius = world._person.trunk["trunk_left"]
     world._robot = world._stand((float(a[0] - hand[0]), float(a[1] + 0.2 - hand[1]), 0.0), arm_positions=posture)
-    world._contact.forget()
     until = world.clock.now() + 1.0
     while world.clock.now() < until:
         world.send(HandTwist(side="left", twist_in_map=np.array((0.0, 0.0, -0.1, 0.0, 0.0, 0.0)), duration=0.1))

@@ -82,6 +82,17 @@ def test_holding_torque_is_gravity_plus_the_load_on_the_hand(rig):
     np.testing.assert_allclose((after.arm_efforts - before.arm_efforts)[1], -jacobian[:3].T @ load, atol=0.1)
 
 
+def test_a_push_on_a_link_is_felt_by_the_joints_before_it_and_no_others(rig):
+    rig.run(0.3)
+    before = rig.robot.read().arm_efforts
+    link = rig.robot.kinematics.link_poses(rig.robot.configuration())["right_lower_elbow"]
+    rig.run(0.3, lambda: rig.robot.push("right_lower_elbow", np.array((0.0, 0.0, -30.0)), link[:3, 3]))
+    change = rig.robot.read().arm_efforts - before
+    assert np.abs(change[1, :4]).max() > 3.0
+    assert np.abs(change[1, 4:]).max() < 0.1
+    assert np.abs(change[0]).max() < 0.1
+
+
 def test_hand_twist_moves_the_hand_straight_and_expires(rig):
     before = rig.robot.pose_hand_in_map("left")
     rig.robot.command(HandTwist(side="left", twist_in_map=np.array((0.05, 0.0, 0.1, 0, 0, 0)), duration=0.6))
