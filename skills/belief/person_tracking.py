@@ -132,6 +132,28 @@ def watch_arm(
     return watch.arms[side]
 
 
+def take_from_hand(
+    skill: Skill, side: Side, hold: Hold, *, tuning: PersonTrackingTuning = PERSON_TRACKING
+) -> ArmPosture:
+    """Posture of an arm where a hand has brought it, however little of it shows.
+
+    A tracker that was not told of the way looks for the arm where it was before, and finds it there under cloth.
+
+    Args:
+        skill: that asks.
+        side: of the person.
+        hold: the hand that still holds this arm.
+        tuning: what the guard is told.
+
+    Raises:
+        PerceptionFailure: it was never found.
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    _take(skill, skill.world.look("head"), side, hold, tuning)
+    return watch_of(skill).arms[side]
+
+
 def visible_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> float:
     """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm.
 

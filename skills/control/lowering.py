@@ -14,7 +14,7 @@ from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, HandTwist, SensorLost, Side
-from ..belief.person_tracking import watch_arm, watch_of
+from ..belief.person_tracking import take_from_hand, watch_arm, watch_of
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..geometry.arm_path import UP, ArmPath
@@ -144,7 +144,11 @@ def lower_arm(skill: Skill, side: Side, hold: Hold, *, tuning: LoweringTuning = 
         hand, load = hand_now(skill, hold.hand), cloth_load(skill, hold.hand)
         height = float(hand[2, 3]) - mattress
         at_rest = height < tuning.rest_height or _seen_to_lie(skill, side, hold, tuning)
-        if at_rest or lost_arm(skill, hold.hand) or _carried(window, skill.now(), height, load, tuning):
+        if lost_arm(skill, hold.hand):
+            return
+        if at_rest or _carried(window, skill.now(), height, load, tuning):
+            with suppress(PerceptionFailure, SensorLost, SkillFailure):
+                take_from_hand(skill, side, hold)
             return
         if skill.now() > end:
             raise SkillFailure(Reason.TIMEOUT, f"the hand is {height:.2f} m above the mattress")

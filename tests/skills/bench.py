@@ -1,6 +1,9 @@
 """The bench of the leaves' tests: one leaf behind the runner's guard, on a robot of numbers beside the bed."""
 
+from dataclasses import replace
+
 import numpy as np
+from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.sim.robot import model
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.scene.scene import room_map
@@ -100,6 +103,18 @@ def beside_bed(*, stand=None, hands=None, held=None, load=None, deaf_to=(), **an
         return world, Context(world=guard, guard=guard, seed=1, senses=fake_senses(**answers))
 
     return build
+
+
+def goes_along(posture):
+    """Answer of the sense `arm`: a posture, turned about its shoulder to where a hand holds the arm if one does."""
+
+    def answer(frame, side, grip_in_map=None, arm_coordinate=1.0):
+        if grip_in_map is None:
+            return posture
+        points = turned_about_shoulder(posture.points_in_map, arm_coordinate, grip_in_map)
+        return replace(posture, points_in_map=points)
+
+    return answer
 
 
 def pulls(world, side, force):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import ArmPosture
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.sim.world import HandTwist
 from caretree.skills.core.reasons import Reason
@@ -12,7 +13,7 @@ from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.lower_arm import LowerArm
 from caretree.skills.scripted.scripted_person import lying_posture
 
-from .bench import ARM, LeafBench, beside_bed, pulls
+from .bench import ARM, LeafBench, beside_bed, goes_along, pulls
 
 LIES = lying_posture("right")
 SHOULDER = LIES.points_in_map[0]
@@ -29,9 +30,10 @@ def bench(*, arm=RAISED, then=LIES, between=ARM, load=(0.0, 0.0, -6.0), stand=No
         pulls(bench.world, "left", load if held else np.zeros(3))
         bench.world.deaf_to = deaf_to if held else ()
 
+    sight = goes_along(arm) if isinstance(arm, ArmPosture) else arm
     run = LeafBench(
         lambda context: LowerArm("lower", context, side="right", hand="left", **options),
-        beside_bed(stand=stand, arm=arm, relocalised_arm=then),
+        beside_bed(stand=stand, arm=sight, relocalised_arm=then),
         each_tick=pulls_while_held,
     )
     run.world.between_fingers["left"] = between

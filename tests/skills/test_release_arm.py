@@ -14,7 +14,7 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.release_arm import ReleaseArm
 from caretree.skills.scripted.scripted_person import lying_posture
 
-from .bench import ARM, CLOTH, LeafBench, above_arm, beside_bed, pulls
+from .bench import ARM, CLOTH, LeafBench, above_arm, beside_bed, goes_along, pulls
 
 LIES = lying_posture("right")
 SHOULDER, ELBOW = LIES.points_in_map[:2]
@@ -52,7 +52,7 @@ def bench(*, posture=None, load=lambda height: (0.0, 0.0, -6.0), holds=ARM, slip
     hands, held = {"left": over_arm(posture, 1.0, 0.0)}, {"left": holds}
     if cloth is not None:
         hands["right"], held["right"] = above_arm(1.6, 0.25), CLOTH
-    run = LeafBench(leaf, beside_bed(hands=hands, held=held, deaf_to=deaf_to), each_tick=feels)
+    run = LeafBench(leaf, beside_bed(hands=hands, held=held, arm=goes_along(posture), deaf_to=deaf_to), each_tick=feels)
     run.context.guard.declare_grip("left", "arm")
     return run
 
@@ -71,6 +71,14 @@ def test_an_arm_is_swung_down_about_its_shoulder_until_it_lies_and_let_go_there(
     assert np.linalg.norm(np.diff(way[:opens], axis=0), axis=1).max() < 0.05 / 15  # [m] a tick
     assert run.openings("left")[-1] > 0.08, "the hand is open"
     assert way[-1, 2] - way[opens, 2] == pytest.approx(0.16, abs=0.03), "it is clear of the arm"
+
+
+def test_where_it_lies_in_the_end_is_told_to_what_follows_the_arm():
+    run = bench(lower=True)
+    assert run.ended() is None
+    told = run.context.memory.of(Watch, Watch)
+    assert told.arms["right"].points_in_map[1] == pytest.approx(run.way("left")[parted(run)], abs=0.02)
+    assert told.seen["right"] > 3.0  # [s]: on the way too little of it showed
 
 
 @pytest.mark.parametrize("weight", [0.0, 2.0, -8.0, 15.0])

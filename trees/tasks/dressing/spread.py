@@ -20,6 +20,8 @@ from ...nodes.decorators import Condition, RecoverBy, Retry, Stage, timed_stage
 from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
 from .tuning import DRESSING
 
+LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
+
 
 def spread(context: Context) -> Stage:
     """The stage `spread`: where the chest is not covered, the collar is drawn on the left, then on the right."""
@@ -85,7 +87,7 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
         put_down("first", sleeve),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy("until the sleeve sits", sits, {Reason.SLEEVE_LOW: draw_up}, attempts=3),
+            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, draw_up), attempts=3),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
         put_down("in the end", sleeve),
