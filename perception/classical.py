@@ -19,6 +19,7 @@ from .estimates import (
     Head,
     LayerCount,
     PreGrasp,
+    Shift,
     SleeveHeading,
     SleeveOpening,
     WornSleeve,
@@ -30,6 +31,7 @@ from .gown.hung_side import HungSideTuning, hung_side
 from .gown.layers import LayersTuning, gripped_cloth, layers
 from .gown.pregrasp import PreGraspTuning, pregrasp_proposal
 from .image.garment import GarmentTuning, gown_side
+from .person.arm_shift import ArmShiftTuning, arm_shift
 from .person.arm_tracker import ArmTracker, ArmTrackerTuning
 from .person.chest_cover import ChestCoverTuning, chest_cover
 from .person.hand_cover import HandCoverTuning, hand_cover
@@ -64,6 +66,7 @@ class ClassicalTuning(Quantities):
     skin: SkinTuning = field(default_factory=SkinTuning)
     head: HeadTuning = field(default_factory=HeadTuning)
     arm: ArmTrackerTuning = field(default_factory=ArmTrackerTuning)
+    arm_shift: ArmShiftTuning = field(default_factory=ArmShiftTuning)
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
     hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
 
@@ -198,9 +201,20 @@ class ClassicalSenses(Senses):
         tracker.update(frame)
         return tracker.estimate(frame.stamp)
 
-    def relocalised_arm(self, frame: Frame, *, side: Side) -> ArmPosture:
+    def relocalised_arm(self, frame: Frame, *, side: Side, moved: bool = False) -> ArmPosture:
         """A new fit from many postures, believed where bare skin shows all along it."""
         tracker = self._trackers[side]
-        if not tracker.started or not tracker.look_afresh(frame):
+        if not tracker.started or not tracker.look_afresh(frame, moved=moved):
             raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
         return tracker.estimate(frame.stamp)
+
+    def arm_shift(
+        self,
+        frame: Frame,
+        *,
+        before: Frame,
+        arm_in_map: np.ndarray,
+        grips_in_map: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> Shift:
+        """By the skin that shows behind or before where it has to be."""
+        return arm_shift(before, frame, arm_in_map, grips_in_map, self._tuning.arm_shift)

@@ -164,6 +164,13 @@ class Head(Estimate):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Shift(Estimate):
+    """How much of what was seen of an arm is elsewhere now.  share: 0 to 1 of its skin in free view."""
+
+    share: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Cover(Estimate):
     """How much of the trunk's front, or of a hand, lies under the gown.  share: 0 to 1."""
 

@@ -19,6 +19,7 @@ from .estimates import (
     Head,
     LayerCount,
     PreGrasp,
+    Shift,
     SleeveHeading,
     SleeveOpening,
     WornSleeve,
@@ -353,13 +354,35 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def relocalised_arm(self, frame: Frame, *, side: Side) -> ArmPosture:
+    def relocalised_arm(self, frame: Frame, *, side: Side, moved: bool = False) -> ArmPosture:
         """One arm that no longer shows where it was, looked for all over the image.
 
         Args:
             frame: a view of the person.
             side: of the person.
+            moved: it is known to have moved; else it is not looked for while skin shows where it was.
 
         Raises:
             PerceptionFailure: it was never seen, or shows nowhere.
+        """
+
+    @abstractmethod
+    def arm_shift(
+        self,
+        frame: Frame,
+        *,
+        before: Frame,
+        arm_in_map: np.ndarray,
+        grips_in_map: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> Shift:
+        """How much of an arm is elsewhere than where it was a moment ago, or than where the robot has taken it.
+
+        Args:
+            frame: a view of the person.
+            before: an earlier one.
+            arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip at that time [m].
+            grips_in_map: (3,) where a hand held it then, and (3,) where now; None if nobody holds it [m].
+
+        Raises:
+            PerceptionFailure: too little of the arm shows in both.
         """

@@ -11,6 +11,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
@@ -53,8 +54,8 @@ class GraspSleeveTuning(Quantities):
 class GraspSleeve(Skill):
     """Finds the armhole with the head camera, looks at its strap with the hand's camera, and pinches the strap.
 
-    It fails where the sleeve or the arm is not seen, where the strap is out of reach, and where the fingers close on
-    nothing; such a miss ends with the hand open and drawn back.
+    It fails where the sleeve or the arm is not seen, where the strap is out of reach, where the person moves, and where
+    the fingers close on nothing; such a miss ends with the hand open and drawn back.
     """
 
     side = Input(Side, doc="arm of the person that the sleeve belongs to")
@@ -74,12 +75,13 @@ class GraspSleeve(Skill):
         Reason.MOTION_BLOCKED,
         Reason.GRASP_MISSED,
         Reason.ARM_SLIPPED,
+        Reason.PERSON_MOVED,
         Reason.COMMAND_LOST,
     )
 
     def steps(self) -> Iterator[None]:
-        """Grasp, easing the hold of the arm on every tick."""
-        yield from while_holding(self, self.hold, self._grasp())
+        """Grasp as long as the person does not move, easing the hold of the arm on every tick."""
+        yield from while_person_rests(self, while_holding(self, self.hold, self._grasp()))
 
     def _grasp(self) -> Iterator[None]:
         """Look, reach in, pinch."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful
 from .control.compliant_hold import while_holding
 from .control.fingers import open_gripper
@@ -53,20 +54,28 @@ class LaySleeve(Skill):
     """Hangs the sleeve out over the edge of the bed, then lowers it inwards and headward, and lets go.
 
     What hangs below the strap touches the bed first, outwards of where the strap then comes to lie.  A hand that cannot
-    draw back after opening is no failure.
+    draw back after opening is no failure; a person who moves is one.
     """
 
     grip = Input(StrapGrip, doc="how the strap is held")
     hold = Input(Hold, doc="the hand that holds the arm, or None", default=None)
     tuning = Input(LaySleeveTuning, default=LaySleeveTuning(), doc="numbers of this skill")
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.ARM_SLIPPED, Reason.FORCE_LIMIT)
+    reasons = (
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.COMMAND_LOST,
+        Reason.ARM_SLIPPED,
+        Reason.PERSON_MOVED,
+        Reason.FORCE_LIMIT,
+    )
 
     def steps(self) -> Iterator[None]:
-        """Out, down, open, back."""
+        """Lay the sleeve down as long as the person does not move."""
         self.note(f"lays the {self.grip.arm} sleeve down again")
-        yield from while_holding(self, self.hold, self._lay())
+        yield from while_person_rests(self, while_holding(self, self.hold, self._lay()))
 
     def _lay(self) -> Iterator[None]:
+        """Out, down, open, back."""
         tuning = self.tuning
         hand, out, bed = self.grip.hand, outwards(self.grip.arm), self.world.room.bed
         middle = np.array((*bed[:, :2].mean(axis=0), bed[1, 2]))

@@ -12,6 +12,7 @@ from ..perception.estimates import ArmPosture
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .control.arc import Arc
 from .control.arm_grip import ARM_GRIP, lost_arm, over_arm, top_down_reachable
@@ -110,9 +111,9 @@ class LiftArm(Skill):
     The hand moves on an arc: a straight line would pull the arm out of its joint.  Elbow and wrist of a person who
     cannot move keep forearm and hand nearly in line.
 
-    It fails where the arm is not seen or out of reach, where the fingers close on nothing or lose the arm, and where
-    the swing is blocked or takes too long.  When it fails after the fingers have closed, the arm is still held:
-    recover with `ReleaseArm`.
+    It fails where the arm is not seen or out of reach, where the fingers close on nothing or lose the arm, where the
+    swing is blocked or takes too long, and where the person moves.  When it fails after the fingers have closed, the
+    arm is still held: recover with `ReleaseArm`.
     """
 
     side = Input(Side, doc="arm of the person")
@@ -126,12 +127,17 @@ class LiftArm(Skill):
         Reason.MOTION_BLOCKED,
         Reason.GRASP_MISSED,
         Reason.ARM_SLIPPED,
+        Reason.PERSON_MOVED,
         Reason.FORCE_LIMIT,
         Reason.TIMEOUT,
         Reason.COMMAND_LOST,
     )
 
     def steps(self) -> Iterator[None]:
+        """Lift the arm as long as the person does not move."""
+        yield from while_person_rests(self, self._lift())
+
+    def _lift(self) -> Iterator[None]:
         """Look, go over the arm, down, take it, swing it up and out."""
         tuning = self.tuning
         self.note(f"takes the {self.side} arm")

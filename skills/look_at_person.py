@@ -9,7 +9,7 @@ from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
-from .belief.person_tracking import see_person, watch_arm
+from .belief.person_tracking import see_person, watch_arm, watch_of
 from .control.head import pan_head
 from .core.ports import Input, Output
 from .core.reasons import Reason
@@ -59,12 +59,13 @@ class LookAtPerson(Skill):
             yield from pan_head(self, pan)
             for _ in range(self.tuning.max_looks):
                 try:
-                    see_person(self)
-                    posture = watch_arm(self, self.side, patience=0.0)
+                    found = see_person(self)
                 except PerceptionFailure as stop:
-                    lost = stop
+                    found, lost = [], stop
+                if self.side not in found:
                     yield
                     continue
+                posture = watch_of(self).arms[self.side]
                 if float(posture.deviation.max()) <= self.tuning.max_deviation:
                     self.posture = posture
                     return

@@ -11,6 +11,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.strap_grasp import STRAP_GRASP, presenting_position
 from .control.compliant_hold import while_holding
@@ -83,7 +84,7 @@ class PresentSleeve(Skill):
     not open is carried out once more, farther.
 
     It fails where the sleeve still does not open, where the gown is caught on something, where the strap or the arm
-    slips out of the fingers, and where a place is out of reach.
+    slips out of the fingers, where a place is out of reach, and where the person moves.
     """
 
     grip = Input(StrapGrip, doc="how the strap is held")
@@ -108,12 +109,17 @@ class PresentSleeve(Skill):
         Reason.ARM_LOST,
         Reason.COMMAND_LOST,
         Reason.ARM_SLIPPED,
+        Reason.PERSON_MOVED,
         Reason.FORCE_LIMIT,
         Reason.SLEEVE_FOLDED,
         Reason.SLEEVE_CAUGHT,
     )
 
     def steps(self) -> Iterator[None]:
+        """Present the sleeve as long as the person does not move."""
+        yield from while_person_rests(self, self._present())
+
+    def _present(self) -> Iterator[None]:
         """Up, then beyond the fingertips."""
         arm, hand = self.grip.arm, self.grip.hand
         self.note(f"brings the {arm} sleeve to the fingertips")

@@ -11,6 +11,7 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now
@@ -111,7 +112,7 @@ class PullAlongArm(Skill):
     """Leads the strap above the arm's axis towards the shoulder until its grip, or the armhole, is at its goal.
 
     It fails where the sleeve is caught or lost, where it goes beside the hand or the arm, where the hand or the base
-    cannot go on, and where the arm is lost or slips out of the hand that holds it.
+    cannot go on, where the arm is lost or slips out of the hand that holds it, and where the person moves.
     """
 
     grip = Input(StrapGrip, doc="how the strap is held")
@@ -139,6 +140,7 @@ class PullAlongArm(Skill):
         Reason.CLOTH_SLIPPED,
         Reason.ARM_LOST,
         Reason.ARM_SLIPPED,
+        Reason.PERSON_MOVED,
         Reason.SLEEVE_MISSED,
         Reason.MOTION_BLOCKED,
         Reason.FORCE_LIMIT,
@@ -146,6 +148,10 @@ class PullAlongArm(Skill):
     )
 
     def steps(self) -> Iterator[None]:
+        """Pull as long as the person does not move."""
+        yield from while_person_rests(self, self._pull())
+
+    def _pull(self) -> Iterator[None]:
         """Steer anew on every tick."""
         self.note(f"pulls the {self.grip.arm} sleeve up")
         arm = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))

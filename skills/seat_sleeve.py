@@ -12,6 +12,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.hands import cloth_load
 from .control.load_easing import LoadEasing
@@ -74,15 +75,20 @@ class SeatSleeve(Skill):
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
     over it, one that is let go of behind it stays.  It ends with the hand still closed.
-    It fails where the guard stops a load that is too high; an arm that was never found is no reason to wait for it.
+    It fails where the guard stops a load that is too high, and where the person moves; an arm that was never found is
+    no reason to wait for it.
     """
 
     grip = Input(StrapGrip, doc="how the strap is held")
     max_load = Input(float, unit="N", default=4.5, doc="load at which the strap is drawn no farther")
     tuning = Input(SeatSleeveTuning, default=SeatSleeveTuning(), doc="numbers of this skill")
-    reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT)
+    reasons = (Reason.ARM_LOST, Reason.FORCE_LIMIT, Reason.PERSON_MOVED)
 
     def steps(self) -> Iterator[None]:
+        """Seat the sleeve as long as the person does not move."""
+        yield from while_person_rests(self, self._seat())
+
+    def _seat(self) -> Iterator[None]:
         """Draw, hold, tuck, slacken."""
         yield from self._draw()
         self.note(f"holds the {self.grip.arm} sleeve until the arm rests")

@@ -13,6 +13,7 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.armhole_watch import ArmholeWatch
+from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.fingers import open_gripper
 from .control.hands import cloth_load, hand_now, move_hands
@@ -75,11 +76,16 @@ class Spread(Skill):
         Reason.UNREACHABLE,
         Reason.MOTION_BLOCKED,
         Reason.GRASP_MISSED,
+        Reason.PERSON_MOVED,
         Reason.FORCE_LIMIT,
         Reason.COMMAND_LOST,
     )
 
     def steps(self) -> Iterator[None]:
+        """Draw the collar as long as the person does not move."""
+        yield from while_person_rests(self, self._twice())
+
+    def _twice(self) -> Iterator[None]:
         """Draw the collar, and once more."""
         for tug in range(self.tuning.tugs):
             try:

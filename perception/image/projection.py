@@ -88,13 +88,18 @@ def pixels_of(frame: Frame, points: np.ndarray, tuning: ProjectionTuning = DEFAU
 
 def points_in_map(frame: Frame) -> np.ndarray:
     """(H, W, 3) position of every pixel in the map frame [m]; NaN where there is no depth."""
-    fx, fy, cx, cy = frame.intrinsics
     height, width = frame.depth.shape
-    z = np.where(frame.depth > 0, frame.depth, np.nan).astype(np.float64)
-    x = (np.arange(width) - cx)[None, :] / fx * z
-    y = (np.arange(height) - cy)[:, None] / fy * z
+    return points_at(frame, np.arange(height)[:, None], np.arange(width)[None, :])
+
+
+def points_at(frame: Frame, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """(..., 3) position of the pixels at `rows` and `columns` (...,) in the map frame [m]; NaN without depth."""
+    fx, fy, cx, cy = frame.intrinsics
+    depth = frame.depth[rows, columns]
+    z = np.where(depth > 0, depth, np.nan).astype(np.float64)
     pose = frame.pose_camera_in_map
-    return np.stack([x, y, z], axis=-1) @ pose[:3, :3].T + pose[:3, 3]
+    local = np.stack([(columns - cx) / fx * z, (rows - cy) / fy * z, z], axis=-1)
+    return local @ pose[:3, :3].T + pose[:3, 3]
 
 
 def pixel_scale(frame: Frame, tuning: ProjectionTuning = DEFAULT) -> float:

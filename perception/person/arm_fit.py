@@ -135,14 +135,17 @@ def turned_about_shoulder(joints: np.ndarray, arm_coordinate: float, point: np.n
         arm_coordinate: of the point of its axis that shall point at `point`: 0 shoulder, 3 fingertip.
         point: (3,) [m].
     """
+    return turned(joints, joints[0], point_along(joints, arm_coordinate), point)
+
+
+def turned(points: np.ndarray, about: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Points (n, 3) turned about a point (3,) the shortest way from where `before` (3,) lies to where `after` does."""
     from scipy.spatial.transform import Rotation
 
-    before, after = unit(point_along(joints, arm_coordinate) - joints[0]), unit(point - joints[0])
-    axis = np.cross(before, after)
-    if not axis.any():
-        return joints.copy()
-    turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), before @ after))
-    return joints[0] + turn.apply(joints - joints[0])
+    start, end = unit(before - about), unit(after - about)
+    axis = np.cross(start, end)
+    turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), start @ end))
+    return about + turn.apply(points - about)
 
 
 def nearest_on_chain(points: np.ndarray, joints: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, ...]:

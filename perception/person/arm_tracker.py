@@ -189,15 +189,19 @@ class ArmTracker:
         self._seen = frame.stamp
         return fit.used
 
-    def look_afresh(self, frame: Frame) -> bool:
+    def look_afresh(self, frame: Frame, *, moved: bool = False) -> bool:
         """Look for the arm all over a picture in which it does not show where it was.
 
+        Args:
+            frame: the picture.
+            moved: the arm is known to have moved, so that skin where it was says nothing.
+
         Returns:
-            Whether it was found elsewhere, with bare skin all along it; if not, nothing changes.
+            Whether it was found, with bare skin all along it; if not, nothing changes.
         """
-        if self._filter is None or self._body is None or self._limb is None:
+        if self._filter is None or self._body is None or (self._limb is None and not moved):
             return False
-        if self._bare_share(frame, self._filter.joints) > self._tuning.max_bare_share:
+        if not moved and self._bare_share(frame, self._filter.joints) > self._tuning.max_bare_share:
             return False
         try:
             fit = self._search(self._body, self._view(frame, self._body))

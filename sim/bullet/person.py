@@ -28,6 +28,7 @@ from ..world import SIDES, Side
 from .units import ROOM
 
 BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
+STIR_TORQUE = 7.0  # of a shoulder that its owner moves [N m]: a tenth of an adult's strength, enough to lift the arm
 
 
 class Person:
@@ -83,14 +84,17 @@ class Person:
         speeds = np.array([state[1] for state in states]) / ROOM.rate(1.0)
         dry = np.array([self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)])
         torques = dry + self.spec.viscous * np.abs(speeds)
+        wanted = np.zeros(8)  # speeds
         if self._swing:
-            torques, self._stuck[::4] = 3.0 * torques, angles[::4] + 0.02 * np.sign(self._swing)
+            self._stuck[::4], wanted[::4] = angles[::4], self._swing
+            torques[::4] = np.maximum(torques[::4], STIR_TORQUE)
         self._stuck = np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE)
         self.client.setJointMotorControlArray(
             self.body,
             joints,
             self.client.POSITION_CONTROL,
             targetPositions=self._stuck.tolist(),
+            targetVelocities=[ROOM.rate(speed) for speed in wanted],
             positionGains=[0.2] * 8,
             velocityGains=[1.0] * 8,
             forces=[ROOM.force(t) for t in torques],

@@ -36,6 +36,8 @@ FINGER_SPEED = 0.1  # [m/s]
 WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
 DEPTH_NOISE = 0.001  # [m]
 STROKE = 0.085  # [m]
+# Every camera looks straight down from above the middle of the bed, whose mattress is all that shows.
+FROM_ABOVE = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
 
 def scripted_room() -> RoomMap:
@@ -159,7 +161,7 @@ class ScriptedWorld(World):
             rgb=np.full((24, 32, 3), 128, np.uint8),
             depth=depth.astype(np.float32),
             intrinsics=(30.0, 30.0, 16.0, 12.0),
-            pose_camera_in_map=np.eye(4),
+            pose_camera_in_map=FROM_ABOVE,
         )
 
     # -- motions -----------------------------------------------------------------------------------------

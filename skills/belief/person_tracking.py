@@ -73,17 +73,44 @@ class Watch:
         seen: when that arm was last seen or felt [s].
         looked: when the camera was last asked [s].
         searched: when that arm was last looked for elsewhere than where it was [s].
+        doubted: arms that have moved since, of which nothing is believed until they are seen anew.
+        view: the head camera's last picture, and when it was asked for [s].
     """
 
     arms: dict[Side, ArmPosture] = field(default_factory=dict)
     seen: dict[Side, float] = field(default_factory=dict)
     looked: float = -np.inf
     searched: dict[Side, float] = field(default_factory=dict)
+    doubted: set[Side] = field(default_factory=set)
+    view: tuple[float, Frame] | None = None
 
 
 def watch_of(skill: Skill) -> Watch:
     """The run's memory of the person."""
     return skill.context.memory.of(Watch, Watch)
+
+
+def head_view(skill: Skill) -> Frame:
+    """The head camera's picture of now; those who ask within one tick share it.
+
+    Raises:
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    watch, now = watch_of(skill), skill.now()
+    if watch.view is None or watch.view[0] != now:
+        watch.view = now, skill.world.look("head")
+    return watch.view[1]
+
+
+def doubt_arms(skill: Skill) -> None:
+    """The person has moved: their arms are unknown until each of them is found all over again."""
+    watch = watch_of(skill)
+    watch.doubted |= watch.arms.keys()
+    for side in watch.arms:
+        skill.context.guard.zone.forget(f"{side} arm")
+    watch.arms.clear()
+    watch.seen.clear()
 
 
 def watch_arm(
@@ -113,7 +140,7 @@ def watch_arm(
     watch, now = watch_of(skill), skill.now()
     if side not in watch.arms or now - watch.looked >= period:
         watch.looked = now
-        frame = skill.world.look("head")
+        frame = head_view(skill)
         if hold is not None and side in watch.arms:
             # it has moved with the hand: where it was, it would count as hidden and be lost
             points = turned_about_shoulder(watch.arms[side].points_in_map, hold.coordinate, _held_at(skill, hold))
@@ -121,11 +148,10 @@ def watch_arm(
         try:
             if side not in watch.arms or visible_share(frame, watch.arms[side], tuning=tuning) >= tuning.min_visible:
                 _take(skill, frame, side, hold, tuning)
-            elif hold is not None or now - watch.searched.get(side, -np.inf) < tuning.search_period:
+            elif hold is not None:
                 raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
             else:
-                watch.searched[side] = now
-                _keep(skill, side, skill.context.senses.relocalised_arm(frame, side=side), tuning)
+                _search(skill, frame, side, tuning)
         except PerceptionFailure:
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
@@ -179,11 +205,14 @@ def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) 
         SensorLost: the camera is dead.
         SkillFailure: its picture is stale.
     """
-    frame, found = skill.world.look("head"), []
-    watch_of(skill).looked = skill.now()
+    frame, watch, found = head_view(skill), watch_of(skill), []
+    watch.looked = skill.now()
     for side in SIDES:
         try:
-            _take(skill, frame, side, None, tuning)
+            if side in watch.arms and visible_share(frame, watch.arms[side], tuning=tuning) < tuning.min_visible:
+                _search(skill, frame, side, tuning)
+            else:
+                _take(skill, frame, side, None, tuning)
             found.append(side)
         except PerceptionFailure:
             continue
@@ -195,9 +224,21 @@ def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) 
     return found
 
 
+def _search(skill: Skill, frame: Frame, side: Side, tuning: PersonTrackingTuning) -> None:
+    """Look for one arm elsewhere than where it was, every now and then, and tell the guard."""
+    watch, now = watch_of(skill), skill.now()
+    if now - watch.searched.get(side, -np.inf) < tuning.search_period:
+        raise PerceptionFailure(Problem.ARM_LOST, f"{side} arm")
+    watch.searched[side] = now
+    _keep(skill, side, skill.context.senses.relocalised_arm(frame, side=side), tuning)
+
+
 def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, tuning: PersonTrackingTuning) -> None:
     """Update one arm from a frame and tell the guard."""
-    if hold is None:
+    if side in watch_of(skill).doubted:
+        posture = skill.context.senses.relocalised_arm(frame, side=side, moved=True)
+        watch_of(skill).doubted.discard(side)
+    elif hold is None:
         posture = skill.context.senses.arm(frame, side=side)
     else:
         posture = skill.context.senses.arm(

@@ -66,6 +66,10 @@ class Guard(Protocol):
         """By hand, the person's arm that it holds, as the zone names it."""
         ...
 
+    def grip(self, side: Side) -> Grip:
+        """What a hand was said to hold."""
+        ...
+
     def take_fault(self) -> Failure | None:
         """The failure the guard holds against the running skill, once."""
         ...

@@ -81,7 +81,7 @@ class RehearsalWorld(ScriptedWorld):
                 self.between_fingers[command.side] = 0.0
             elif command.side not in self._taken:
                 hand = self._taken[command.side] = self._hand(command.side)
-                arms = [lying_arm(side) for side in SIDES]
+                arms = [lying_arm(side) + self.person_offset for side in SIDES]
                 away = min(_distance(hand, *limb) for arm in arms for limb in itertools.pairwise(arm))
                 met = self._tuning.arm_width if away < self._tuning.arm_radius else self._tuning.cloth_width
                 self.between_fingers[command.side] = met

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -20,6 +20,7 @@ from ...perception.estimates import (
     Head,
     LayerCount,
     PreGrasp,
+    Shift,
     SleeveHeading,
     SleeveOpening,
     WornSleeve,
@@ -27,6 +28,7 @@ from ...perception.estimates import (
 from ...perception.senses import Senses
 from ...sim.quantity import Quantities, quantity
 from ...sim.robot.kinematics import planar_pose
+from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import Frame, Observation, Side
 from .scripted_person import laid_strap, lying_arm, lying_posture, mirrored
 
@@ -68,6 +70,7 @@ class ScriptedSenses(Senses):
 
     def __init__(self, world: Proprioception) -> None:
         self._world = world
+        self._moved_before = self._moved()
 
     def hang_point(self, frame: Frame) -> GraspPoint:
         """Straight ahead."""
@@ -189,12 +192,29 @@ class ScriptedSenses(Senses):
     def arm(
         self, frame: Frame, *, side: Side, grip_in_map: np.ndarray | None = None, arm_coordinate: float = 1.0
     ) -> ArmPosture:
-        """At rest."""
-        return lying_posture(side, frame.stamp)
+        """At rest, wherever the person has moved to."""
+        posture = lying_posture(side, frame.stamp)
+        return replace(posture, points_in_map=posture.points_in_map + self._moved())
 
-    def relocalised_arm(self, frame: Frame, *, side: Side) -> ArmPosture:
+    def relocalised_arm(self, frame: Frame, *, side: Side, moved: bool = False) -> ArmPosture:
         """At rest."""
-        return lying_posture(side, frame.stamp)
+        return self.arm(frame, side=side)
+
+    def arm_shift(
+        self,
+        frame: Frame,
+        *,
+        before: Frame,
+        arm_in_map: np.ndarray,
+        grips_in_map: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> Shift:
+        """All of it when the person is elsewhere than at the last call."""
+        before_that, self._moved_before = self._moved_before, self._moved()
+        return Shift(stamp=frame.stamp, confidence=0.9, share=float(np.any(before_that != self._moved_before)))
+
+    def _moved(self) -> np.ndarray:
+        """How far (3,) the person has moved, in worlds where they do [m]."""
+        return self._world.person_offset if isinstance(self._world, ScriptedWorld) else np.zeros(3)
 
     def _corner(self, frame: Frame, side: Side) -> GraspPoint:
         """Seen from outside, the wearer's right is on the robot's left."""

@@ -9,7 +9,7 @@ import numpy as np
 from py_trees.common import Status
 
 from ...sim.scripted.world import ScriptedWorld
-from ...sim.world import Command, Frame, Observation, Side, World
+from ...sim.world import SIDES, Command, Frame, Observation, Side, World
 from ..core.context import Context, Grip, Phase
 from ..core.reasons import Failure
 from ..core.skill import Skill
@@ -34,6 +34,7 @@ class OpenGuard:
         self.clock, self.room = inner.clock, inner.room
         self._inner = inner
         self.zone = PersonZone(inner.room.bed)
+        self._grip: dict[str, Grip] = dict.fromkeys(SIDES, "nothing")
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""
@@ -57,6 +58,11 @@ class OpenGuard:
 
     def declare_grip(self, side: str, what: Grip) -> None:
         """Nothing is limited while an arm is held."""
+        self._grip[side] = what
+
+    def grip(self, side: str) -> Grip:
+        """What a hand was said to hold."""
+        return self._grip[side]
 
     def held_arms(self) -> dict[Side, str]:
         """None is known of."""

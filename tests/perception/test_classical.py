@@ -53,6 +53,7 @@ ELSEWHERE = {
     "hand_cover",
     "cuff_round",
     "relocalised_arm",
+    "arm_shift",
     "worn_sleeve",
     "sleeve_strap",
     "chest_cover",

@@ -24,7 +24,7 @@ def known_to(deviation):
     return replace(LIES["right"], deviation=np.full(4, deviation))
 
 
-def bench(right, head=HEAD):
+def bench(right, head=HEAD, frames=None):
     """A look for the right arm, and the angles of the head at each look [rad].
 
     How the arm shows: a list of answers, the last for ever after, or a function of the head's angle.
@@ -47,6 +47,7 @@ def bench(right, head=HEAD):
         lambda context: LookAtPerson("look", context, side="right"),
         beside_bed(arm=arm, relocalised_arm=hidden, head=head),
     )
+    run.world._frames = frames or run.world._frames
     return run, looks
 
 
@@ -103,3 +104,20 @@ def test_an_arm_that_is_covered_now_lies_where_it_was_seen_well(before, reason):
     assert max(seen.head_pan for seen in run.seen) > 0.3, "it has looked all round"
     if reason is None:
         assert run.skill.posture.deviation == pytest.approx(np.full(4, before))
+
+
+def test_an_arm_under_cloth_is_not_found_where_it_was():
+    heap = []
+
+    def frames(camera, time):
+        flat = run.world._flat_frame(camera, time)
+        return replace(flat, depth=flat.depth - np.float32(sum(heap)))
+
+    run, _ = bench([LIES["right"]], frames=frames)
+    assert run.ended() is None
+    assert "covered" not in run.skill.feedback_message
+    heap.append(0.3)  # [m] of cloth over everything
+    assert run.ended() is None
+    assert "is covered" in run.skill.feedback_message
+    assert np.ptp([seen.head_pan for seen in run.seen]) > 0.6, "it has looked all round"
+    assert run.skill.posture.points_in_map == pytest.approx(LIES["right"].points_in_map)

@@ -191,3 +191,13 @@ def test_an_arm_under_cloth_is_not_found_elsewhere(scenes, bed):
     )
     assert not tracker.look_afresh(scene.frame(9, stamp=1.0))
     assert errors_of(tracker, scene, 1.0).max() < 0.05
+
+
+def test_an_arm_that_has_moved_is_found_even_where_skin_shows_where_it_was(scenes, bed):
+    for seed in range(3):
+        rests, stirred = scenes.person(seed, lift=0.40), scenes.person(seed, lift=0.47)
+        tracker = ArmTracker("right", bed)
+        tracker.update(rests.frame(0, stamp=0.0))
+        assert not tracker.look_afresh(stirred.frame(1, stamp=0.2))
+        assert tracker.look_afresh(stirred.frame(1, stamp=0.2), moved=True)
+        assert errors_of(tracker, stirred, 0.2).max() < 0.06

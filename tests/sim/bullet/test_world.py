@@ -101,11 +101,19 @@ def test_fingers_that_meet_more_than_their_force_stall(world, monkeypatch):
     assert world.observe().gripper_opening[1] < 0.01  # more force closes them
 
 
-def test_a_moving_person_moves(world):
-    before = world.truth_frame().arms
+def test_a_moving_person_swings_both_arms_outwards_by_fifteen_degrees(world):
+    def headings():
+        way = world.truth_frame().arms[:, 1] - world.truth_frame().arms[:, 0]
+        return np.arctan2((-way[0, 0], way[1, 0]), way[:, 1])  # away from the body
+
+    before = headings()
     world.fault_move_person()
-    world.clock.wait_until(world.clock.now() + 0.8)
-    assert np.linalg.norm(world.truth_frame().arms - before, axis=2).max() > 0.05
+    world.clock.wait_until(world.clock.now() + 0.3)
+    assert np.rad2deg(headings() - before) == pytest.approx(np.full(2, 7.5), abs=1.5)
+    world.clock.wait_until(world.clock.now() + 0.5)
+    assert np.rad2deg(headings() - before) == pytest.approx(np.full(2, 15.0), abs=2.0)
+    world.clock.wait_until(world.clock.now() + 0.5)
+    assert np.rad2deg(headings() - before) == pytest.approx(np.full(2, 15.0), abs=2.0), "then they rest"
 
 
 def test_parts_of_the_person_are_named(world):

@@ -3,9 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import Head
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import Frame
-from caretree.skills.belief.person_tracking import careful, visible_share, watch_arm
+from caretree.skills.belief.person_tracking import (
+    careful,
+    doubt_arms,
+    head_view,
+    see_person,
+    visible_share,
+    watch_arm,
+    watch_of,
+)
 from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.hold import Hold
@@ -34,17 +43,18 @@ def looking_down(stamp=0.0, covered=(), colour=(0, 0, 0)):
 
 
 LOST = PerceptionFailure(Problem.ARM_LOST, "right arm")
+HEAD = Head(stamp=0.0, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.72)), middle=0.0)
 
 
 class Watcher(Skill):
     commands = False
 
 
-def make(arm, elsewhere=LOST, frames=None):
+def make(arm, elsewhere=LOST, frames=None, head=HEAD):
     """A skill that sees an arm as `arm` says, and as `elsewhere` says where it does not show any more."""
     world = ScriptedWorld(frames=frames or (lambda camera, time: looking_down(time)))
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, senses=fake_senses(arm=arm, relocalised_arm=elsewhere))
+    context = Context(world=guard, guard=guard, senses=fake_senses(arm=arm, relocalised_arm=elsewhere, head=head))
     return Watcher("watch", context), world
 
 
@@ -102,6 +112,67 @@ def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():
     assert watch_arm(skill, "right", hold=Hold("left", 0.9)).points_in_map[0] == pytest.approx(there.points_in_map[0])
     world.clock.wait_until(2.0)
     np.testing.assert_array_equal(watch_arm(skill, "right").points_in_map, elsewhere.points_in_map)
+
+
+def test_who_looks_at_the_person_does_not_see_an_arm_that_is_covered():
+    covered, searched = [], []
+    there = lying_posture("right")
+    elsewhere = replace(there, points_in_map=there.points_in_map + (0.2, 0.0, 0.0))
+
+    def search(frame, side):
+        searched.append(side)
+        return elsewhere if side == "right" and len(searched) > 2 else LOST
+
+    skill, world = make(
+        lambda frame, side: lying_posture(side), search, lambda camera, time: looking_down(time, covered)
+    )
+    assert see_person(skill) == ["left", "right"]
+    covered.extend(range(200))
+    world.clock.wait_until(1.0)
+    assert see_person(skill) == []
+    assert searched == ["left", "right"]
+    world.clock.wait_until(2.0)
+    assert see_person(skill) == []
+    assert len(searched) == 2, "looking for it all over the picture takes its time"
+    world.clock.wait_until(4.0)
+    assert see_person(skill) == ["right"]
+    assert watch_of(skill).arms["right"].points_in_map == pytest.approx(elsewhere.points_in_map)
+
+
+def test_after_the_person_has_moved_an_arm_is_unknown_until_it_is_found_anew():
+    searched = []
+    there = lying_posture("right")
+
+    def anew(frame, side, moved):
+        searched.append(moved)
+        return LOST if len(searched) == 1 else replace(there, points_in_map=there.points_in_map + (0.1, 0.0, 0.0))
+
+    skill, world = make(lambda frame, side: lying_posture(side), anew)
+    watch_arm(skill, "right")
+    doubt_arms(skill)
+    with pytest.raises(PerceptionFailure):
+        watch_arm(skill, "right", hold=Hold("left", 0.9))
+    assert watch_arm(skill, "right").points_in_map == pytest.approx(there.points_in_map + (0.1, 0.0, 0.0))
+    assert searched == [True, True]
+    world.clock.wait_until(1.0)
+    assert watch_arm(skill, "right").points_in_map == pytest.approx(there.points_in_map), "tracked as ever"
+    assert skill.context.guard.zone.seen("right arm"), "the guard knows"
+
+
+def test_those_who_ask_within_one_tick_share_a_picture():
+    taken = []
+
+    def frames(camera, time):
+        taken.append(time)
+        return looking_down(time)
+
+    skill, world = make(lambda frame, side: lying_posture(side), frames=frames)
+    assert head_view(skill) is head_view(skill)
+    watch_arm(skill, "right", period=0.0)
+    assert taken == [0.0]
+    world.clock.wait_until(1 / 15)
+    assert head_view(skill).stamp == pytest.approx(1 / 15)
+    assert len(taken) == 2
 
 
 def test_an_arm_never_found_is_not_invented():

@@ -11,6 +11,7 @@ from caretree.skills.scripted.scripted_senses import ScriptedSenses
 
 DETAILS = {
     "side": "right",
+    "before": ScriptedWorld().look("head"),
     "hook_in_map": np.zeros(3),
     "near_in_map": np.zeros(3),
     "pose_hand_in_map": np.eye(4),
@@ -60,3 +61,14 @@ def test_left_and_right_are_mirrored():
     np.testing.assert_allclose(left, right * (-1.0, 1.0, 1.0))
     corners = [senses.hung_corner(frame, side=side, hook_in_map=np.zeros(3)) for side in ("left", "right")]
     assert [corner.target for corner in corners] == ["collar_corner_left", "collar_corner_right"]
+
+
+def test_a_person_who_moves_is_elsewhere_and_has_shifted_once():
+    world = ScriptedWorld()
+    senses, frame = ScriptedSenses(world), world.look("head")
+    lies = senses.arm(frame, side="right").points_in_map
+    assert senses.arm_shift(frame, before=frame, arm_in_map=lies).share == 0.0
+    world.fault_move_person()
+    assert senses.arm(frame, side="right").points_in_map - lies == pytest.approx(np.tile((0.1, 0.0, 0.0), (4, 1)))
+    assert senses.arm_shift(frame, before=frame, arm_in_map=lies).share == 1.0
+    assert senses.arm_shift(frame, before=frame, arm_in_map=lies).share == 0.0

@@ -37,7 +37,7 @@ from .tuning import DRESSING, SleeveTuning
 
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
 LOST = (Reason.ARM_LOST, Reason.ARM_SLIPPED, Reason.GRASP_MISSED, Reason.NOTHING_SEEN, Reason.UNREACHABLE)
-MISSES = (*STUCK, *LOST, Reason.SLEEVE_MISSED, Reason.SLEEVE_FOLDED, Reason.TIMEOUT)
+MISSES = (*STUCK, *LOST, Reason.SLEEVE_MISSED, Reason.SLEEVE_FOLDED, Reason.TIMEOUT, Reason.PERSON_MOVED)
 
 
 def arm_scope(context: Context, name: str, side: Side) -> Scope:

@@ -1,8 +1,12 @@
 """What the dressing tree is made of."""
 
 import pytest
+from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm, Retreat
+from caretree.skills.core.reasons import Reason
+from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
+from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
 
@@ -78,3 +82,38 @@ def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_
     ]
     assert all(branch.children[0].lower for branch in safe.children[:2])
     assert all(isinstance(branch.children[-1], Retreat) for branch in safe.children[3:]), "no arm is owed at any price"
+
+
+def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
+    raising = [node for node in nodes if Reason.PERSON_MOVED in getattr(node, "reasons", ())]
+    assert {node.name.split("/")[-1] for node in raising} >= {"lift", "grasp the sleeve", "present the sleeve", "seat"}
+    for side in ("left", "right"):
+        again = next(node for node in nodes if isinstance(node, RecoverBy) and node.name == f"dress the {side} arm")
+        first = again.recoveries[Reason.PERSON_MOVED].children[0]
+        assert first.name == f"{side} arm/held/let down"
+        assert first.children[0].lower
+
+
+@pytest.mark.parametrize("leaf", ["right arm/lift", "right arm/pull over the hand"])
+def test_a_person_who_moves_is_noticed_at_once_and_looked_at_anew(leaf):
+    task = load_task("dressing")
+    inner, senses = task.scripted(1)
+    world = FaultyWorld(inner, [parse_fault(f"person_moves@{leaf}:step")])
+    failed, after = [], []
+
+    def told(progress):
+        if failed:
+            after.append(progress.name)
+        elif (progress.name, progress.status) == (leaf, "failure"):
+            failed.append(progress)
+        if failed and (progress.name, progress.status) == ("right arm/lift", "running"):
+            run.request_stop()
+
+    run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    run.run()
+    (_, moved), *_ = world.begun
+    assert Reason.PERSON_MOVED.value in failed[0].message
+    assert failed[0].time - moved < 0.3
+    told_first = list(dict.fromkeys(after))
+    assert told_first[:2] == ["right arm/held/lower", "right arm/free both hands"]
+    assert "right arm/look" in told_first[: told_first.index("right arm/lift")]
