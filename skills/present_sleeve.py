@@ -38,8 +38,11 @@ class PresentSleeveTuning(Quantities):
     raise_outwards: float = quantity(
         0.06, "m", "from the body, on that way", "choice: clear of the arm that lies there"
     )
-    raise_shares: tuple[float, float, float] = quantity(
-        (1.0, 0.6, 0.3), "1", "of that way, tried one after the other", "choice: as far as the robot's arm reaches"
+    raise_shares: tuple[float, ...] = quantity(
+        (1.0, 0.6, 0.3, 0.0),
+        "1",
+        "of that way, tried one after the other",
+        "choice: as far as the robot's arm reaches and the person's hand, lifted over the sleeve, leaves room",
     )
     speed: float = quantity(0.30, "m/s", "of the hand away from the person", "choice: the sleeve hardly swings")
     settle_time: float = quantity(

@@ -58,7 +58,7 @@ class PersonTrackingTuning(Quantities):
     near_distance: float = quantity(
         0.34, "m", "from the person's surface at which a hand is near", "choice: a little more than the guard's 0.30 m"
     )
-    arm_radius: float = quantity(0.04, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
+    arm_radius: float = quantity(0.037, "m", "of an arm, as the guard is told", "choice: an adult's, without room")
 
 
 PERSON_TRACKING = PersonTrackingTuning()

@@ -30,9 +30,9 @@ class ClearanceTuning(Quantities):
     )
     link_head: float = quantity(0.03, "m", "of other links to head and neck", "choice: they have no business there")
     link_trunk: float = quantity(0.02, "m", "of other links to trunk and legs", "choice: they have no business there")
-    link_arm: float = quantity(0.01, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
+    link_arm: float = quantity(0.005, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
     planned: float = quantity(
-        0.008, "m", "more than that where a way is searched", "choice: a smooth motion cuts the corners of its path"
+        0.005, "m", "more than that where a way is searched", "choice: a smooth motion cuts the corners of its path"
     )
 
 
