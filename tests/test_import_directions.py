@@ -20,6 +20,7 @@ ALLOWED_SIM = {
     "faults",
     "fence",
     "record",
+    "world_kind",
 }
 # These read records after a run, or start a world; the tree never calls them.
 OUTSIDE_THE_TREE = {

@@ -22,12 +22,23 @@ SELF_PARSED = {
 }
 # said by --help, which must not import what knows them; a test compares
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
+WORLD_KINDS = "easy, easy+falling_arms, hard"
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
 
 
+def _kind_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--world-kind",
+        default="easy",
+        metavar="KIND",
+        help=f"how hard the bullet world is made: {WORLD_KINDS} (default: easy)",
+    )
+
+
 def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", default="bullet", choices=WORLDS, help="default: bullet")
+    _kind_option(parser)
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
@@ -71,6 +82,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     inject.add_argument("--seed", type=seed, default=0, metavar="N", help="of every run (default 0)")
     inject.add_argument("--world", default="scripted", choices=WORLDS, help="default: scripted")
+    _kind_option(inject)
     inject.add_argument(
         "--fault",
         action="append",

@@ -26,6 +26,7 @@ HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
 HOLDING_AT = (2.7, -0.9, np.pi / 2)  # of the base, back from the rail [m, m, rad]
 RAISED = (0.85, 0.58, -1.3, 0.25)  # joints of an arm that was lifted, dressed and let go of [rad]
 _OVER_LEGS = 0.22  # height above the mattress at which a gown hung over raised arms turns to lie on the legs [m]
+_REST, _FALL = 1.0, 2.0  # until the sleeves are at rest, and until arms that fall are [s]
 _DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is drawn to: from here ... to here,
 # from the shoulder joint, x outwards [m]
 
@@ -85,8 +86,8 @@ def put_on_by_hand(
 ) -> None:
     """Raise the person's arms, hang the sleeves over the hands and draw both up by their straps, some less than others.
 
-    The arms stay up and spread, as after dressing; how far up them the sleeves come to rest once the straps are let go
-    of is up to the physics.
+    The arms stay up and spread, as after dressing; those that fall lie in the end.  How far up them the sleeves come to
+    rest once the straps are let go of is up to the physics.
 
     Args:
         cloth: the gown, held by nothing.
@@ -98,6 +99,7 @@ def put_on_by_hand(
         raised: joints of both arms [rad].
     """
     mesh = cloth.mesh
+    person.brace(True)
     for side in SIDES:
         person.bend_arm(side, raised)
     arms = person.arms()
@@ -126,7 +128,8 @@ def put_on_by_hand(
         step()
     for group in pins:
         cloth.unpin(group)
-    for k in range(round(1.0 / time_step)):
+    person.brace(False)
+    for k in range(round((_FALL if person.spec.falls else _REST) / time_step)):
         if k % 5 == 0:
             person.resist()
         step()

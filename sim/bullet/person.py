@@ -1,8 +1,9 @@
 """The person: a life-sized manikin, supine, with arms that nothing but contact and the robot's grip moves.
 
 The trunk rests on the bed and stays there (the robot could not move it); each arm is a passive chain of a three-axis
-shoulder and an elbow, with dry and viscous friction and joint limits, and a stiff hand.  Sizes, masses and what the
-joint angles mean: `scene/person_spec.py`.
+shoulder and an elbow, with dry and viscous friction and joint limits, and a stiff hand.  Where friction is below
+gravity, an arm that nobody holds falls onto bed or trunk.  Sizes, masses and what the joint angles mean:
+`scene/person_spec.py`.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from ..scene.person_spec import (
 from ..world import SIDES, Side
 from .units import ROOM
 
+BRACED = 60.0  # torque that keeps an arm which somebody carries before a run [N m]
 BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
 STIR_TORQUE = 7.0  # of a shoulder that its owner moves [N m]: a tenth of an adult's strength, enough to lift the arm
 
@@ -66,7 +68,8 @@ class Person:
         # upper arm and trunk overlap at the shoulder, where contact could not part them: pushed, the arm would explode
         for upper, part in product((self.links[side][0] for side in SIDES), trunk):
             client.setCollisionFilterPair(self.body, part, upper, -1, 0)
-        self._swing = 0.0
+        self._dry, self._ends, self._end_stiffness = (np.ravel(values) for values in _resistance(spec))
+        self._swing, self._braced = 0.0, False
         self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
         self.resist()
 
@@ -76,19 +79,20 @@ class Person:
         Dry friction as a bristle: each joint is held at an angle with a bounded torque, and the angle is dragged
         along when the joint is forced away from it.  The bound grows with the speed, which adds the viscous part.
         (A velocity motor would creep by one step of gravity, 0.16 rad/s at the elbow; Bullet's own joint damping
-        is explicit and shakes these light arms apart.)
+        is explicit and shakes these light arms apart.)  Beyond the end of its range a stiff joint is held at that end,
+        with a bound that grows with the angle.
         """
         joints = [j for side in SIDES for j in self.joints[side]]
         states = self.client.getJointStates(self.body, joints)
         angles = np.array([state[0] for state in states])
         speeds = np.array([state[1] for state in states]) / ROOM.rate(1.0)
-        dry = np.array([self.spec.dry_friction[k == 3] for _ in SIDES for k in range(4)])
-        torques = dry + self.spec.viscous * np.abs(speeds)
+        torques = self._dry + self.spec.viscous * np.abs(speeds) + BRACED * self._braced
         wanted = np.zeros(8)  # speeds
         if self._swing:
             self._stuck[::4], wanted[::4] = angles[::4], self._swing
-            torques[::4] = np.maximum(torques[::4], STIR_TORQUE)
-        self._stuck = np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE)
+            torques[::4] = np.maximum(torques[::4], max(STIR_TORQUE, self.spec.stirring))
+        torques = torques + self._end_stiffness * np.maximum(angles - self._ends, 0.0)
+        self._stuck = np.minimum(np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE), self._ends)
         self.client.setJointMotorControlArray(
             self.body,
             joints,
@@ -111,6 +115,11 @@ class Person:
             self.client.resetJointState(self.body, j, angle)
         first = 4 * SIDES.index(side)
         self._stuck[first : first + 4] = angles
+        self.resist()
+
+    def brace(self, braced: bool) -> None:
+        """Keep arms that fall where they are, as hands under them would, or let them go; only before a run."""
+        self._braced = braced and self.spec.falls
         self.resist()
 
     def swing(self, speed: float) -> None:
@@ -187,6 +196,19 @@ class Person:
             _capsule(hand, (0, 0, 0), (0, lengths[2], 0), radii[2])
             _joint(robot, f"{side}_wrist", parent, f"{side}_hand", offset)
         return robot
+
+
+def _resistance(spec: PersonSpec) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Dry friction [N m], upper end of the range [rad] and stiffness beyond it [N m/rad], each (2, 4): side, axis."""
+    shoulder, elbow = spec.dry_friction
+    dry = np.tile((shoulder, shoulder, shoulder, elbow), (2, 1))
+    ends, stiffness = np.full((2, 4), np.inf), np.zeros((2, 4))
+    for side, stiff in spec.stiff.items():
+        n = SIDES.index(side)
+        dry[n, :3] = stiff.dry_friction
+        ends[n, :2] = stiff.abduction_end, stiff.elevation_end
+        stiffness[n, :2] = stiff.end_stiffness
+    return dry, ends, stiffness
 
 
 def _link(robot: ET.Element, name: str, mass: float, length: float = 0.0) -> ET.Element:

@@ -32,6 +32,7 @@ from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
+from ..world_kind import EASY, WorldKind
 from .backdrop import Backdrop
 from .cloth import load_gown
 from .contact import Contact
@@ -62,6 +63,7 @@ class BulletWorld(World):
         gown: name of the gown, or path of a gown file; drawn from the seed when omitted.
         person: name of the person; drawn from the seed when omitted.
         model: model file of the gap workflow whose effects act on the gown.
+        kind: how hard the world is made, see `sim/world_kind.py`.
         view: serve a live 3D view to the browser; its address is printed.
 
     Attributes:
@@ -71,8 +73,8 @@ class BulletWorld(World):
         initial_states: names of the states in which a run may begin.
 
     Raises:
-        CaretreeError: an unknown gown or person, a negative seed, an unusable model or gown file, a gown too stiff
-            for the time step.
+        CaretreeError: an unknown gown, person or kind, a negative seed, an unusable model or gown file, a gown too
+            stiff for the time step.
     """
 
     initial_states = tuple(InitialState)
@@ -84,10 +86,11 @@ class BulletWorld(World):
         gown: str | None = None,
         person: str | None = None,
         model: str | None = None,
+        kind: str = EASY,
         view: bool = False,
     ) -> None:
         self._effects = None if model is None else gown_effects(model)
-        self.scene = draw_scene(seed, gown, person)
+        self.scene = draw_scene(seed, gown, person, WorldKind.named(kind))
         if self.scene.gown.air_drag > 0:
             self._effects = with_air(self._effects, self.scene.gown.air_drag)
         self.room = room_map()
@@ -382,10 +385,12 @@ class BulletWorld(World):
         self._asleep = False
 
     def _settle(self, duration: float) -> None:
-        """Pass room time before the run: the gown comes to rest."""
-        for _ in range(round(duration / TIME_STEP)):
+        """Pass room time before the run: the gown comes to rest, and arms that fall do."""
+        for step in range(round(duration / TIME_STEP)):
             self._hook.before_step()
             self._apply_effects()
+            if self.scene.person.falls and step % CONTROL_STEPS == 0:
+                self._person.resist()
             self._client.stepSimulation()
         self._vertices = self._cloth.vertices()
 

@@ -13,7 +13,9 @@ class InitialState(enum.StrEnum):
     GOWN_ON_HOOK = "gown_on_hook"  # it hangs on its rail; the robot stands at `start`
     GOWN_IN_HANDS = "gown_in_hands"  # by both ends of the neckline, outside to the robot, which stands off the rail
     GOWN_ON_PERSON = "gown_on_person"  # on the legs, outside up, neckline at the fingertips; robot at `bed_right`
-    GOWN_WORN = "gown_worn"  # both arms are raised and in their sleeves, not all of them far up; robot at `bed_left`
+    GOWN_WORN = (
+        "gown_worn"  # both arms are in their sleeves, not all of them far up, and up unless they fall; `bed_left`
+    )
 
     @classmethod
     def named(cls, name: str) -> InitialState:

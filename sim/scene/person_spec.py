@@ -77,6 +77,23 @@ SHAPE = BodyShape()
 
 
 @dataclass(frozen=True, kw_only=True)
+class StiffShoulder:
+    """A shoulder that resists, and whose range ends early.
+
+    Attributes:
+        dry_friction: torque with which each of its axes resists before it moves [N m].
+        elevation_end: off the bed, from which on it springs back [rad].
+        abduction_end: from the body, from which on it springs back [rad].
+        end_stiffness: of that spring [N m/rad].
+    """
+
+    dry_friction: float
+    elevation_end: float
+    abduction_end: float
+    end_stiffness: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class PersonSpec:
     """Body size, arm pose and joint stiffness.  All lengths [m], angles [rad].
 
@@ -89,6 +106,10 @@ class PersonSpec:
         pose: side -> angles in the order of `ARM_AXES` at the start.
         dry_friction: (shoulder, elbow) torque that a joint resists with before it moves [N m].
         viscous: torque per joint speed [N m s/rad].
+        stiff: side -> a shoulder that is not like the others.
+        stirring: torque with which the person can swing the arms, if more than three times the friction [N m].
+        falls: whether nothing but contact carries the arms: they are let come to rest before a run, and their upper
+            parts may lie against the trunk, which is as wide as the shoulders.
     """
 
     name: str = "average"
@@ -101,6 +122,9 @@ class PersonSpec:
     )
     dry_friction: tuple[float, float] = (2.4, 1.2)
     viscous: float = 4.0
+    stiff: dict[str, StiffShoulder] = field(default_factory=dict)
+    stirring: float = 0.0
+    falls: bool = False
 
     def __post_init__(self) -> None:
         """Reject bodies outside the range the scene was built for.

@@ -8,6 +8,8 @@ import numpy as np
 
 from ..errors import CaretreeError
 from ..world import RoomMap
+from ..world_kind import EASY_KIND, WorldKind
+from .falling_arms import with_falling_arms
 from .gown import GOWNS, GownMesh, GownSpec, build_gown
 from .gown_file import read_gown
 from .person_spec import LYING_ELEVATION, LYING_ROTATION, PERSONS, PersonSpec
@@ -26,6 +28,7 @@ class Scene:
 
     Attributes:
         seed: what it was drawn from.
+        kind: how hard it was made.
         gown: cut and cloth.
         mesh: its rest shape.
         person: size, arm pose, joint stiffness.
@@ -36,6 +39,7 @@ class Scene:
     """
 
     seed: int
+    kind: WorldKind
     gown: GownSpec
     mesh: GownMesh
     person: PersonSpec
@@ -64,13 +68,14 @@ def named_gown(name: str) -> GownSpec:
     return spec
 
 
-def draw_scene(seed: int, gown: str | None = None, person: str | None = None) -> Scene:
+def draw_scene(seed: int, gown: str | None = None, person: str | None = None, kind: WorldKind = EASY_KIND) -> Scene:
     """Draw a scene; the same arguments give the same scene.
 
     Args:
         seed: not negative.
         gown: name in `GOWNS`, or path of a gown file; drawn when omitted.
         person: name in `PERSONS`; drawn when omitted.
+        kind: its difficulties come on top; what else is drawn does not depend on them.
 
     Raises:
         CaretreeError: an unknown name, a bad gown file or a negative seed.
@@ -91,9 +96,12 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None) ->
         pose={"left": _arm_pose(rng, 0.50, 0.70), "right": _arm_pose(rng, 0.50, 0.75)},
         dry_friction=(who.dry_friction[0] * friction, who.dry_friction[1] * friction),
     )
+    if kind.has("falling_arms"):
+        who = with_falling_arms(who, _stream(seed, "falling_arms"), float(BED_HALF[0]))
     middle = len(mesh.collar) // 2
     return Scene(
         seed=seed,
+        kind=kind,
         gown=spec,
         mesh=mesh,
         person=who,
@@ -102,6 +110,11 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None) ->
         hang_vertex=int(mesh.collar[middle + rng.integers(-2, 3)]),
         hang_yaw=float(rng.uniform(-0.4, 0.4) + (np.pi if rng.random() < 0.5 else 0.0)),
     )
+
+
+def _stream(seed: int, difficulty: str) -> np.random.Generator:
+    """The random numbers from which one difficulty is drawn; they shift no other draw."""
+    return np.random.default_rng([seed, *difficulty.encode()])
 
 
 def _arm_pose(rng: np.random.Generator, low: float, high: float) -> tuple[float, float, float, float]:

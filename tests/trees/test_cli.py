@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from caretree.sim import faults
+from caretree.sim import faults, world_kind
 from caretree.sim.record.file_lock import lock_file
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.scene import scene
@@ -31,6 +31,7 @@ def test_a_run_shows_progress_outcome_and_paths(tmp_path, capsys):
     assert "runs/wave-seed3/run.json" in lines
     record = json.loads((tmp_path / "runs/wave-seed3/run.json").read_text())
     assert (record["task"], record["seed"], record["world"], record["outcome"]) == ("wave", 3, "scripted", "success")
+    assert record["parameters"]["world_kind"] == "easy"
     assert [stage["name"] for stage in record["stages"]] == ["wave", "hold"]
     assert len(record["trace_hash"]) == 64
     assert main(["run", "wave", "--world", "scripted", "--seed", "3"]) == 0
@@ -78,6 +79,8 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
         (["run", "wave", "--world", "mars"], "invalid choice: 'mars'"),
         (["run", "wave", "--world", "ros1"], "invalid choice: 'ros1' (choose from 'bullet', 'scripted')"),
         (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
+        (["run", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
+        (["inject", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
         (["run", "wave", "--world", "scripted", "--inject", "slip"], "is not written FAULT@NODE:PHASE"),
         (["run", "wave", "--world", "scripted", "--inject", "occlusion@nobody:step"], "names no skill of this task"),
         (["run", "wave", "--world", "scripted", "--stage", "dress"], "task 'wave' has no stages that can be run"),
@@ -270,6 +273,7 @@ def test_help_names_what_there_is():
     assert ", ".join(scene.GOWNS) == cli.GOWNS
     assert ", ".join(scene.PERSONS) == cli.PERSONS
     assert ", ".join(faults.FAULTS) == cli.FAULTS
+    assert ", ".join(("easy", *(f"easy+{one}" for one in world_kind.DIFFICULTIES), "hard")) == cli.WORLD_KINDS
 
 
 def test_help_is_instant_because_nothing_heavy_is_imported():

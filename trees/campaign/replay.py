@@ -10,6 +10,7 @@ from typing import Any
 from ...sim.errors import CaretreeError
 from ...sim.faults import FaultyWorld, parse_fault
 from ...sim.record.record import RUN_FILE, TRACE_FILE, read_finished_run, versions
+from ...sim.world_kind import EASY
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
 from ..run.runner import Run
@@ -55,6 +56,7 @@ def replay(directory: Path) -> Replay:
         gown=parameters.get("gown"),
         person=parameters.get("person"),
         model=parameters.get("model"),
+        kind=parameters.get("world_kind", EASY),  # records from before there were kinds
     )
     stage = parameters.get("stage")
     faults = [parse_fault(text) for text in parameters.get("inject") or []]

@@ -14,6 +14,7 @@ from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
 from ...sim.record.spool import disk_error
+from ...sim.world_kind import WorldKind
 from ..campaign.inject import Campaign, FaultKey, Row, table
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
@@ -32,7 +33,9 @@ def main(options: argparse.Namespace) -> int:
     for fault in options.fault:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
-    usual = Path("runs") / f"inject-{Path(options.task).stem}-{options.world}-seed{options.seed}"
+    kind = WorldKind.named(options.world_kind)
+    world = "-".join((options.world, *kind.difficulties))
+    usual = Path("runs") / f"inject-{Path(options.task).stem}-{world}-seed{options.seed}"
     path = Path(options.out or usual) / ROWS
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -51,7 +54,7 @@ def main(options: argparse.Namespace) -> int:
 def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     campaign = Campaign(
         task,
-        lambda: make_world(options.world, task, seed=options.seed),
+        lambda: make_world(options.world, task, seed=options.seed, kind=options.world_kind),
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
     )

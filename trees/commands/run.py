@@ -19,6 +19,7 @@ from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
 from ...sim.world import World
+from ...sim.world_kind import WorldKind
 from ...skills.core.settings import Settings
 from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
@@ -56,6 +57,7 @@ def main(options: argparse.Namespace) -> int:
     faults = [parse_fault(text) for text in options.inject]
     settings = read_settings(options.set, options.tuning)
     parameters = {
+        "world_kind": WorldKind.named(options.world_kind).name,
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
@@ -80,6 +82,7 @@ def main(options: argparse.Namespace) -> int:
                 gown=options.gown,
                 person=options.person,
                 model=options.model,
+                kind=options.world_kind,
                 view=options.view,
             )
             try:

@@ -10,7 +10,7 @@ from ...sim.errors import CaretreeError
 from ..campaign.trials import TABLE, Plan, run_trials
 from ..run.stop_signals import StopSignals
 
-PASSED_ON = ("world", "gown", "person", "model", "tuning")  # to every `caretree run`
+PASSED_ON = ("world", "world-kind", "gown", "person", "model", "tuning")  # to every `caretree run`
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -81,7 +81,8 @@ def main(args: argparse.Namespace) -> int:
         CaretreeError: bad input, or the disk is full.
     """
     directory = args.out or Path("runs") / f"trials-{Path(args.task).stem}"
-    arguments = [part for name in PASSED_ON if getattr(args, name) for part in (f"--{name}", getattr(args, name))]
+    given = {name: getattr(args, name.replace("-", "_")) for name in PASSED_ON}
+    arguments = [part for name, value in given.items() if value for part in (f"--{name}", value)]
     arguments += [part for fault in args.inject for part in ("--inject", fault)]
     arguments += [part for text in args.set for part in ("--set", text)]
     plan = Plan(

@@ -147,9 +147,11 @@ def _facts(run: Mapping[str, Any]) -> str:
     if isinstance(run.get("peak_memory_mb"), (int, float)):
         facts.append((f"{run['peak_memory_mb']:.0f} MB", "peak memory"))
     parameters = run.get("parameters") if isinstance(run.get("parameters"), Mapping) else {}
-    for key in ("stage", "gown", "person", "model", "inject"):
+    for key in ("stage", "world_kind", "gown", "person", "model", "inject"):
         given = parameters.get(key) if parameters else None
-        facts += [(str(value), key) for value in (given if isinstance(given, list) else [given]) if value]
+        facts += [
+            (str(value), key.replace("_", " ")) for value in (given if isinstance(given, list) else [given]) if value
+        ]
     return "".join(f'<div class="fact"><b>{_text(value)}</b><span>{_text(name)}</span></div>' for value, name in facts)
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...sim.abilities import SupportsInitialStates
 from ...sim.errors import CaretreeError
+from ...sim.world_kind import EASY, WorldKind
 
 if TYPE_CHECKING:
     from ...perception.senses import Senses
@@ -23,15 +24,17 @@ def make_world(
     gown: str | None = None,
     person: str | None = None,
     model: str | None = None,
+    kind: str = EASY,
     view: bool = False,
 ) -> tuple[World, Senses | None]:
-    """The world called `name`, and its senses where these are scripted.
+    """The world called `name`, made as hard as `kind` says, and its senses where these are scripted.
 
     Raises:
-        CaretreeError: an unknown world, an option that this world does not take, or a world that is not there.
+        CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
     """
     if name == "scripted":
         asked = {"--gown": gown, "--person": person, "--model": model, "--view": view}
+        asked["--world-kind"] = WorldKind.named(kind).difficulties
         given = [flag for flag, value in asked.items() if value]
         if given:
             raise CaretreeError(f"{given[0]} needs the bullet world: the scripted world has no cloth and no person")
@@ -42,7 +45,7 @@ def make_world(
         from ...sim.bullet.world import BulletWorld  # pyright: ignore[reportMissingImports] pulls pybullet and pinocchio
     except ImportError as error:
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
-    options: dict[str, Any] = {"gown": gown, "person": person, "model": model}
+    options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind}
     options = {key: value for key, value in options.items() if value is not None}
     return BulletWorld(seed=seed, view=view, **options), None
 

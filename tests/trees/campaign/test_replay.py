@@ -68,6 +68,24 @@ def test_a_stage_begins_where_it_began(tmp_path, monkeypatch):
     assert replay(tmp_path / "run").same
 
 
+@pytest.mark.parametrize(
+    ("parameters", "kind"), [({"world_kind": "easy+falling_arms"}, "easy+falling_arms"), ({}, "easy")]
+)
+def test_the_world_is_as_hard_as_it_was(record, parameters, kind, monkeypatch):
+    run = json.loads((record / "run.json").read_text())
+    run["parameters"] = parameters
+    (record / "run.json").write_text(json.dumps(run))
+    made = []
+
+    def make(name, task, **options):
+        made.append(options["kind"])
+        return task.scripted(options["seed"])
+
+    monkeypatch.setattr("caretree.trees.campaign.replay.make_world", make)
+    replay(record)
+    assert made == [kind]
+
+
 def edit(path, change):
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     path.write_text("".join(json.dumps(each) + "\n" for each in change(lines)))

@@ -215,7 +215,7 @@ def test_bad_plans_are_refused(tmp_path, bad):
 def test_command_line(fake_caretree, capsys):
     parser = argparse.ArgumentParser()
     add_parser(parser.add_subparsers())
-    to_runs = ["--gown", "small", "--inject", "stale@lift:step", "--set", "lift_arm.duration=6"]
+    to_runs = ["--world-kind", "hard", "--gown", "small", "--inject", "stale@lift:step", "--set", "lift_arm.duration=6"]
     args = parser.parse_args(["trials", "dressing", "-n", "2", "--out", str(fake_caretree), *to_runs])
     assert args.main is main
     assert main(args) == 0

@@ -1,5 +1,6 @@
 """Worlds by name, and what they refuse."""
 
+import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
@@ -17,6 +18,22 @@ def test_the_scripted_world_comes_with_what_is_seen_there():
 def test_the_scripted_world_has_no_cloth_and_no_person(option):
     with pytest.raises(CaretreeError, match=f"--{next(iter(option))} needs the bullet world"):
         make_world("scripted", load_task("wave"), seed=0, **option)
+
+
+def test_the_scripted_world_is_as_easy_as_can_be():
+    make_world("scripted", load_task("wave"), seed=0, kind="easy")
+    with pytest.raises(CaretreeError, match="--world-kind needs the bullet world"):
+        make_world("scripted", load_task("wave"), seed=0, kind="easy+falling_arms")
+
+
+def test_the_bullet_world_is_as_hard_as_asked_for():
+    world, _ = make_world("bullet", load_task("wave"), seed=100, kind="easy+falling_arms")
+    assert world.scene.kind.name == "easy+falling_arms"
+    assert world.scene.person.falls
+    arms = world.truth_frame().arms
+    world.clock.wait_until(1.0)
+    assert np.abs(world.truth_frame().arms - arms).max() < 0.01, "they have come to rest before the run [m]"
+    world.close()
 
 
 def test_an_unknown_world_is_refused_with_those_there_are():
