@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import see_person, watch_arm, watch_of
-from .control.head import pan_head
+from .control.head import look_towards, pan_head
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
+from .geometry.stances import HEADWARD
+
+Part = Literal["arm", "trunk"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +29,9 @@ class LookAtPersonTuning(Quantities):
         "rad",
         "angles of the head, tried one after the other",
         "choice: ahead, then a little to either side",
+    )
+    chest: float = quantity(
+        0.3, "m", "of the middle of the trunk from that of the bed, towards the head", "choice: belly and chest in view"
     )
     max_looks: int = quantity(
         4, "1", "pictures taken at most at each angle", "choice: the joints of an arm in view settle meanwhile"
@@ -47,12 +54,17 @@ class LookAtPerson(Skill):
     """
 
     side = Input(Side, doc="arm of the person")
+    part = Input(Part, default="arm", doc="the arm, or the trunk, to which the head only turns")
     posture = Output(ArmPosture, unit="m, map", doc="joints of that arm")
     tuning = Input(LookAtPersonTuning, default=LookAtPersonTuning(), doc="numbers of this skill")
     reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Look, pan, look again."""
+        if self.part == "trunk":
+            self.note("looks at the person's trunk")
+            yield from look_towards(self, self.world.room.bed[:, :2].mean(axis=0) + self.tuning.chest * HEADWARD[:2])
+            return
         self.note(f"looks for the person's {self.side} arm")
         lost = PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
         for pan in self.tuning.pans:

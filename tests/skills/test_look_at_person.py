@@ -24,7 +24,7 @@ def known_to(deviation):
     return replace(LIES["right"], deviation=np.full(4, deviation))
 
 
-def bench(right, head=HEAD, frames=None):
+def bench(right, head=HEAD, frames=None, **options):
     """A look for the right arm, and the angles of the head at each look [rad].
 
     How the arm shows: a list of answers, the last for ever after, or a function of the head's angle.
@@ -44,7 +44,7 @@ def bench(right, head=HEAD, frames=None):
         raise LOST
 
     run = LeafBench(
-        lambda context: LookAtPerson("look", context, side="right"),
+        lambda context: LookAtPerson("look", context, side="right", **options),
         beside_bed(arm=arm, relocalised_arm=hidden, head=head),
     )
     run.world._frames = frames or run.world._frames
@@ -121,3 +121,14 @@ def test_an_arm_under_cloth_is_not_found_where_it_was():
     assert "is covered" in run.skill.feedback_message
     assert np.ptp([seen.head_pan for seen in run.seen]) > 0.6, "it has looked all round"
     assert run.skill.posture.points_in_map == pytest.approx(LIES["right"].points_in_map)
+
+
+def test_the_head_turns_to_the_trunk_wherever_the_robot_stands():
+    run, looks = bench([LIES["right"]], part="trunk")
+    assert run.ended() is None
+    assert not looks
+    seen = run.seen[-1]
+    x, y, yaw = seen.pose_base_in_map
+    heading = np.array((np.cos(yaw + seen.head_pan), np.sin(yaw + seen.head_pan)))
+    aside = np.cross(np.append(heading, 0.0), (0.0 - x, -0.3 - y, 0.0))[2]
+    assert abs(aside) < 0.1, "the chest lies ahead [m]"

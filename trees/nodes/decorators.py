@@ -13,6 +13,7 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from ...perception.errors import PerceptionFailure
 from ...sim.record.record import StageResult
 from ...skills.core.context import Context
 from ...skills.core.ports import PortError
@@ -383,7 +384,7 @@ class Condition(Behaviour):
             self.failure = Failure(self.reason, "", self.name)
         except SkillFailure as stop:
             self.failure = Failure(stop.reason, stop.detail, self.name)
-        except PortError as error:
+        except (PortError, PerceptionFailure) as error:
             self.failure = Failure(self.reason, str(error), self.name)
         except Exception as error:
             self.context.report(error)

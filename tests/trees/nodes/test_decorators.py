@@ -1,4 +1,5 @@
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.skills.core.ports import Key
 from caretree.skills.core.reasons import Reason
 from caretree.trees.nodes.composers import TreeError, fallback, sequence
@@ -163,6 +164,14 @@ def test_a_condition_takes_any_truth_value():
 
 
 def test_wrong_numbers_are_refused():
+
+    def unseen(context):
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "trunk")
+
+    run = run_of(lambda context: Condition("c", unseen, Reason.NOTHING_SEEN))
+    assert run.run().outcome != "success"
+    assert run.root.failure.reason == Reason.NOTHING_SEEN
+    assert not run.context.errors, "what is not seen is no programming error"
     condition = Condition("c", lambda context: True)
     with pytest.raises(TreeError, match="attempts of 'r' is 0"):
         Retry("r", condition, attempts=0)

@@ -25,9 +25,11 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 
 def spread(context: Context) -> Stage:
     """The stage `spread`: where the chest is not covered, the collar is drawn on the left, then on the right."""
+    bed = Scope(context, "bed", side="left")
 
     def covered(name: str) -> Behaviour:
-        return Condition(name, _chest_covered, Reason.NOTHING_SEEN)
+        look = LookAtPerson(f"look whether {name}", bed, part="trunk")
+        return sequence(f"see whether {name}", look, Condition(name, _chest_covered, Reason.NOTHING_SEEN))
 
     collars = (draw_collar(context, "left"), draw_collar(context, "right"))
     drawn = sequence("draw it straight", *collars, covered("the chest is covered"))
