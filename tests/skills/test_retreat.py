@@ -36,9 +36,11 @@ def test_the_fingers_open_before_a_hand_draws_back_and_the_base_leaves_last():
     run = bench(base_distance=0.4, ready="never")
     assert run.ended() is None
     base = np.array([seen.pose_base_in_map for seen in run.seen])
-    for side in SIDES:
-        opened = int(np.argmax(run.openings(side) > 0.08))
-        assert 0 < opened < begun(run.way(side)[:, 2], 0.005) < begun(base[:, 0], 0.005)
+    for side, enough in (("left", 0.08), ("right", 0.03)):  # an arm, cloth
+        opened, leaves = int(np.argmax(run.openings(side) > enough)), begun(run.way(side)[:, 2], 0.005)
+        assert 0 < opened < leaves < begun(base[:, 0], 0.005)
+    assert run.openings("right")[:leaves].max() < 0.04, "no wider beside the person than cloth needs"
+    assert min(run.openings(side)[-1] for side in SIDES) > 0.08
     assert base[-1] == pytest.approx((1.45, -0.38, np.pi), abs=0.02)  # 0.4 m back, still facing the bed
 
 
