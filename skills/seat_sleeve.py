@@ -31,6 +31,12 @@ class SeatSleeveTuning(Quantities):
     max_draw: float = quantity(
         0.08, "m", "by which the strap is drawn headward at most", "choice: armhole's lag behind it"
     )
+    max_beyond: float = quantity(
+        0.12,
+        "m",
+        "of the hand headward of the shoulder, where the strap is drawn no farther",
+        "measured: drawn to 0.17 m from both sides, the collar came over the face (seed 105)",
+    )
     draw_speed: float = quantity(0.11, "m/s", "of the hand headward", "choice: below the guard's limit near the person")
     stall_time: float = quantity(
         1.6,
@@ -103,6 +109,7 @@ class SeatSleeve(Skill):
         tuning = self.tuning
         n, window = SIDES.index(self.grip.hand), deque[tuple[float, float]]()
         start = self.world.observe().pose_hand_in_map[n, :3, 3]
+        farthest = min(tuning.max_draw, self._shoulder_ahead(start) + tuning.max_beyond)
         while True:
             seen, load = self.world.observe(), cloth_load(self, self.grip.hand)
             gone = float((seen.pose_hand_in_map[n, :3, 3] - start) @ HEADWARD)
@@ -111,13 +118,20 @@ class SeatSleeve(Skill):
                 window.popleft()
             recorded = seen.time - window[0][0]
             stands = recorded > tuning.stall_record * tuning.stall_time and gone - window[0][1] < tuning.min_advance
-            if gone > tuning.max_draw or np.linalg.norm(load) > self.max_load or stands:
+            if gone > farthest or np.linalg.norm(load) > self.max_load or stands:
                 return
             self.note(f"draws the {self.grip.arm} sleeve headward: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
             ease = tuning.easing.share(load, self.max_load) * tuning.law.ease(load)
             linear = tuning.draw_speed * ease * HEADWARD
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=np.append(linear, np.zeros(3))))
             yield
+
+    def _shoulder_ahead(self, start: np.ndarray) -> float:
+        """How far headward of `start` (3,) the shoulder is [m]; 0 for an arm that was never found."""
+        try:
+            return float((watch_arm(self, self.grip.arm).points_in_map[0] - start) @ HEADWARD)
+        except PerceptionFailure:
+            return 0.0
 
     def _hold(self) -> Iterator[None]:
         """Wait for the arm to come to rest, as far as it is seen."""
