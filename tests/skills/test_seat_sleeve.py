@@ -1,17 +1,25 @@
 """A seated strap is drawn headward, tucked down beside the shoulder as far as it goes, and slackened."""
 
+from dataclasses import replace
+
 import pytest
 from caretree.sim.world import SIDES
-from caretree.skills.geometry.stances import stance
+from caretree.skills.geometry.stances import HEADWARD, stance
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.skills.seat_sleeve import SeatSleeve
 
 from .bench import CLOTH, GRIP, LeafBench, beside_bed
 
 
-def ran(load, bed_below):
-    """The bench after a run, for a strap that pulls footward with `load` [N], and a bed that far below the hand [m]."""
+def ran(load, bed_below, beyond=0.0):
+    """The bench after a run, for a strap that pulls footward with `load` [N], and a bed that far below the hand [m].
+
+    The hand begins `beyond` [m] headward of the shoulder.
+    """
     lies = lying_posture("right")
+    start = beside_bed(stand=stance("right", "shoulder"))()[0].observe().pose_hand_in_map[SIDES.index("right"), :3, 3]
+    aside = (start - beyond * HEADWARD - lies.points_in_map[0]) * (0.0, 1.0, 0.0)
+    lies = replace(lies, points_in_map=lies.points_in_map + aside)
     run = LeafBench(
         lambda context: SeatSleeve("seat sleeve", context, grip=GRIP),
         beside_bed(
@@ -36,6 +44,12 @@ def heights(load, bed_below):
 def test_a_strap_that_gives_is_drawn_headward(load, drawn):
     way = ran(load, bed_below=0.6).way("right")
     assert way[0, 1] - way[:, 1].min() == pytest.approx(drawn, abs=0.02)  # [m]; the head of the bed is at lower y
+
+
+@pytest.mark.parametrize(("beyond", "drawn"), [(0.08, 0.04), (0.15, 0.0)])
+def test_a_strap_is_not_drawn_over_the_face(beyond, drawn):
+    way = ran(0.4, bed_below=0.6, beyond=beyond).way("right")
+    assert way[0, 1] - way[:, 1].min() == pytest.approx(drawn, abs=0.02)  # [m]
 
 
 @pytest.mark.parametrize(("load", "follows"), [(0.4, 0.0), (3.0, 0.16)])
