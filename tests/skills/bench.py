@@ -105,12 +105,17 @@ def beside_bed(*, stand=None, hands=None, held=None, load=None, deaf_to=(), **an
     return build
 
 
-def goes_along(posture):
-    """Answer of the sense `arm`: a posture, turned about its shoulder to where a hand holds the arm if one does."""
+def goes_along(posture, then=None):
+    """Answer of the sense `arm`: a posture, turned about its shoulder to where a hand holds the arm if one does.
+
+    Once it was held and is no longer, it is as `then`, or as before.
+    """
+    held = []
 
     def answer(frame, side, grip_in_map=None, arm_coordinate=1.0):
         if grip_in_map is None:
-            return posture
+            return then if held and then is not None else posture
+        held.append(arm_coordinate)
         points = turned_about_shoulder(posture.points_in_map, arm_coordinate, grip_in_map)
         return replace(posture, points_in_map=points)
 

@@ -30,7 +30,7 @@ def bench(*, arm=RAISED, then=LIES, between=ARM, load=(0.0, 0.0, -6.0), stand=No
         pulls(bench.world, "left", load if held else np.zeros(3))
         bench.world.deaf_to = deaf_to if held else ()
 
-    sight = goes_along(arm) if isinstance(arm, ArmPosture) else arm
+    sight = goes_along(arm, then) if isinstance(arm, ArmPosture) else arm
     run = LeafBench(
         lambda context: LowerArm("lower", context, side="right", hand="left", **options),
         beside_bed(stand=stand, arm=sight, relocalised_arm=then),

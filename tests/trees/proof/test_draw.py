@@ -8,7 +8,7 @@ from caretree.trees.run.task import load_task
 def test_the_tree_of_wave():
     lines = drawn(fresh_tree(load_task("wave")))
     assert lines[0] == "wave safely  (FailSafe)"
-    assert lines[-1] == "  if it fails: let go  (Release)"
+    assert lines[-1] == "  if it fails: let go  (Retreat)"
     assert "          if COMMAND_LOST: wait  (HoldStill)" in lines
     assert "            hand up  (MoveJoint; writes wave_before)" in lines
     assert "            hand back  (MoveJoint; reads wave_before)" in lines
