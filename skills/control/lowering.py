@@ -143,7 +143,8 @@ def lower_arm(skill: Skill, side: Side, hold: Hold, *, tuning: LoweringTuning = 
     while True:
         hand, load = hand_now(skill, hold.hand), cloth_load(skill, hold.hand)
         height = float(hand[2, 3]) - mattress
-        at_rest = height < tuning.rest_height or _seen_to_lie(skill, side, hold, tuning)
+        low = height < tuning.max_rest_height  # an arm that is held higher does not lie, whatever is seen
+        at_rest = height < tuning.rest_height or (low and _seen_to_lie(skill, side, hold, tuning))
         if lost_arm(skill, hold.hand):
             return
         if at_rest or _carried(window, skill.now(), height, load, tuning):
