@@ -79,9 +79,10 @@ class LowerArm(Skill):
         self.note(f"takes the {self.side} arm")
         coordinate, on_arm = self._grip(posture)
         yield from take_arm(self, self.hand, on_arm, tuning=self.tuning.take)
+        held = self.side, Hold(self.hand, coordinate)
         self.note(f"lowers the {self.side} arm")
         try:
-            yield from lower_arm(self, self.side, Hold(self.hand, coordinate), tuning=self.tuning.lowering)
+            yield from lower_arm(self, self.hand, held, tuning=self.tuning.lowering)
         except SkillFailure:
             yield from let_arm_go(self, self.hand, "never", tuning=self.tuning.leaving)
             raise

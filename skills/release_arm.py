@@ -40,9 +40,8 @@ class ReleaseArm(Skill):
 
     def steps(self) -> Iterator[None]:
         """Lower if asked to, open, up and away."""
-        held = held_arm(self, self.hand) if self.lower and holds_arm(self, self.hand) else None
-        if held is not None:
-            side, hold = held
-            self.note(f"lowers the {side} arm")
-            yield from lower_arm(self, side, hold, tuning=self.tuning.lowering)
+        if self.lower and holds_arm(self, self.hand):
+            held = held_arm(self, self.hand, tuning=self.tuning.lowering)
+            self.note(f"lowers the {held[0]} arm" if held else "lowers the arm")
+            yield from lower_arm(self, self.hand, held, tuning=self.tuning.lowering)
         yield from let_arm_go(self, self.hand, self.ready, tuning=self.tuning.leaving)

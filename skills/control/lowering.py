@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, HandTwist, SensorLost, Side
-from ..belief.person_tracking import take_from_hand, watch_arm, watch_of
+from ..belief.person_tracking import see_person, take_from_hand, watch_arm, watch_of
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..geometry.arm_path import UP, ArmPath
@@ -72,6 +72,9 @@ class LoweringTuning(Quantities):
     max_rest_height: float = quantity(
         0.14, "m", "of a hand whose arm the bed may carry, at most", "choice: folds of a gown lie below the arm"
     )
+    max_grip_distance: float = quantity(
+        0.15, "m", "from a hand to the axis of the arm that it holds", "choice: the tracker is off by less"
+    )
     timeout: float = quantity(25.0, "s", "for the way down", "choice: five times what a raised arm takes")
     cloth_load: float = quantity(
         2.5, "N", "on the other hand, from which it comes along", "choice: what it carries hangs on it with less"
@@ -90,8 +93,11 @@ def lies(skill: Skill, posture: ArmPosture, below: float = LOWERING.lies_below) 
     return bool(posture.points_in_map[1:, 2].max() < skill.world.room.bed[1, 2] + below)
 
 
-def held_arm(skill: Skill, hand: Side) -> tuple[Side, Hold] | None:
-    """The arm that runs between the fingers of a hand, as far as is known; None where no arm was ever seen."""
+def held_arm(skill: Skill, hand: Side, *, tuning: LoweringTuning = LOWERING) -> tuple[Side, Hold] | None:
+    """The arm that runs between the fingers of a hand; None where neither memory nor a look has one there."""
+    if not watch_of(skill).arms:
+        with suppress(PerceptionFailure, SensorLost, SkillFailure):
+            see_person(skill)  # they have moved, and nothing that was known is believed
     place, best = hand_now(skill, hand)[:3, 3], None
     for side, posture in watch_of(skill).arms.items():
         path = ArmPath.of(posture)
@@ -99,7 +105,7 @@ def held_arm(skill: Skill, hand: Side) -> tuple[Side, Hold] | None:
         away = float(np.linalg.norm(path.point(coordinate) - place))
         if best is None or away < best[0]:
             best = away, side, Hold(hand, coordinate)
-    return best and best[1:]
+    return best[1:] if best is not None and best[0] < tuning.max_grip_distance else None
 
 
 def resting_place(
@@ -119,49 +125,61 @@ def resting_place(
     return shoulder + np.sqrt(reach**2 - rise**2) * level + rise * UP
 
 
-def lower_arm(skill: Skill, side: Side, hold: Hold, *, tuning: LoweringTuning = LOWERING) -> Iterator[None]:
+def lower_arm(
+    skill: Skill, hand: Side, held: tuple[Side, Hold] | None, *, tuning: LoweringTuning = LOWERING
+) -> Iterator[None]:
     """Swing a held arm down until it is seen to lie, the hand is at the mattress, the bed carries it, or it is lost.
 
-    The hand goes about the shoulder and gives way to what pulls across: so the arm finds its own circle.  Cloth that
-    the other hand holds on the arm comes along.
+    The hand goes about the shoulder, or straight down where that is not known, and gives way to what pulls across: so
+    the arm finds its own circle.  Cloth that the other hand holds on the arm comes along.
 
     Args:
         skill: that lowers.
-        side: of the person.
-        hold: of that arm, which has been seen.
+        hand: of the robot that holds the arm.
+        held: which arm it holds where, None where that is not known.
         tuning: how it is lowered.
 
     Raises:
         SkillFailure: MOTION_BLOCKED when the hand stands too high, TIMEOUT; the arm is still held.
     """
     mattress = float(skill.world.room.bed[1, 2])
-    posture = watch_of(skill).arms[side]
-    shoulder = posture.points_in_map[0]
-    place = resting_place(skill, side, posture, hold.coordinate, tuning=tuning)
-    goal = unit(place - tuning.aim_below * UP - shoulder)
+    downwards = _about_shoulder(skill, *held, tuning) if held else lambda position: -UP
     end, window = skill.now() + tuning.timeout, deque[tuple[float, float]]()
     while True:
-        hand, load = hand_now(skill, hold.hand), cloth_load(skill, hold.hand)
-        height = float(hand[2, 3]) - mattress
+        pose, load = hand_now(skill, hand), cloth_load(skill, hand)
+        height = float(pose[2, 3]) - mattress
         low = height < tuning.max_rest_height  # an arm that is held higher does not lie, whatever is seen
-        at_rest = height < tuning.rest_height or (low and _seen_to_lie(skill, side, hold, tuning))
-        if lost_arm(skill, hold.hand):
+        at_rest = height < tuning.rest_height or (low and held is not None and _seen_to_lie(skill, *held, tuning))
+        if lost_arm(skill, hand):
             return
         if at_rest or _carried(window, skill.now(), height, load, tuning):
-            with suppress(PerceptionFailure, SensorLost, SkillFailure):
-                take_from_hand(skill, side, hold)
+            if held:
+                with suppress(PerceptionFailure, SensorLost, SkillFailure):
+                    take_from_hand(skill, *held)
             return
         if skill.now() > end:
             raise SkillFailure(Reason.TIMEOUT, f"the hand is {height:.2f} m above the mattress")
-        arm = unit(hand[:3, 3] - shoulder)
-        along = unit(goal - (goal @ arm) * arm)
+        along = downwards(pose[:3, 3])
         ease = float(np.clip((tuning.stop_at - load[2]) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))
         linear = tuning.speed * ease * along + compliant_velocity(load - (load @ along) * along)
-        turn = tuning.turn_gain * np.cross(hand[:3, 2], -UP)
+        turn = tuning.turn_gain * np.cross(pose[:3, 2], -UP)
         turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
-        skill.world.send(HandTwist(side=hold.hand, twist_in_map=np.append(linear, turn)), retreat=True)
-        _bring_cloth(skill, hold, tuning)
+        skill.world.send(HandTwist(side=hand, twist_in_map=np.append(linear, turn)), retreat=True)
+        _bring_cloth(skill, hand, tuning)
         yield
+
+
+def _about_shoulder(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -> Callable[[np.ndarray], np.ndarray]:
+    """Unit vector (3,) in which a hand at a position (3,) goes: about the shoulder, to where what it holds rests."""
+    posture = watch_of(skill).arms[side]
+    shoulder = posture.points_in_map[0]
+    goal = resting_place(skill, side, posture, hold.coordinate, tuning=tuning) - tuning.aim_below * UP - shoulder
+
+    def along(position: np.ndarray) -> np.ndarray:
+        arm = unit(position - shoulder)
+        return unit(goal - (goal @ arm) * arm)
+
+    return along
 
 
 def _seen_to_lie(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -> bool:
@@ -190,9 +208,9 @@ def _carried(
     raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stands {height:.2f} m above the mattress")
 
 
-def _bring_cloth(skill: Skill, hold: Hold, tuning: LoweringTuning) -> None:
+def _bring_cloth(skill: Skill, hand: Side, tuning: LoweringTuning) -> None:
     """The other hand follows what pulls at it: a sleeve over an arm goes down with it."""
-    other: Side = SIDES[1 - SIDES.index(hold.hand)]
+    other: Side = SIDES[1 - SIDES.index(hand)]
     load = cloth_load(skill, other)
     over = float(np.linalg.norm(load)) - tuning.cloth_load
     if over > 0.0:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.robot.model import READY
@@ -18,6 +19,7 @@ from .bench import ARM, CLOTH, LeafBench, above_arm, beside_bed, goes_along, pul
 
 LIES = lying_posture("right")
 SHOULDER, ELBOW = LIES.points_in_map[:2]
+UNSEEN = PerceptionFailure(Problem.NOTHING_SEEN, "person")
 MATTRESS = 0.60  # [m] above the floor
 
 
@@ -27,11 +29,13 @@ def raised(coordinate=1.0, height=0.20):
     return replace(LIES, points_in_map=turned_about_shoulder(LIES.points_in_map, coordinate, there))
 
 
-def bench(*, posture=None, load=lambda height: (0.0, 0.0, -6.0), holds=ARM, slips_at=None, cloth=None, **options):
+def bench(
+    *, posture=None, known=True, load=lambda height: (0.0, 0.0, -6.0), holds=ARM, slips_at=None, cloth=None, **options
+):
     """The left hand round the elbow of a raised arm, which pulls with `load` of the hand's height over the mattress.
 
-    The arm slips out of the fingers at a tick, if one is given; the right hand holds cloth that pulls with `cloth`,
-    if that is given; `options` are those of the leaf, or `deaf_to`.
+    The arm is known to the run, or neither known nor seen.  It slips out of the fingers at a tick, if one is given; the
+    right hand holds cloth that pulls with `cloth`, if that is given; `options` are those of the leaf, or `deaf_to`.
     """
     posture = posture or raised()
     deaf_to = options.pop("deaf_to", ())
@@ -46,13 +50,17 @@ def bench(*, posture=None, load=lambda height: (0.0, 0.0, -6.0), holds=ARM, slip
             pulls(bench.world, "right", cloth)
 
     def leaf(context):
-        context.memory.of(Watch, Watch).arms["right"] = posture
+        if known:
+            context.memory.of(Watch, Watch).arms["right"] = posture
         return ReleaseArm("release", context, hand="left", **options)
 
+    sight, blind = {"arm": goes_along(posture)}, dict.fromkeys(("arm", "head"), UNSEEN)
     hands, held = {"left": over_arm(posture, 1.0, 0.0)}, {"left": holds}
     if cloth is not None:
         hands["right"], held["right"] = above_arm(1.6, 0.25), CLOTH
-    run = LeafBench(leaf, beside_bed(hands=hands, held=held, arm=goes_along(posture), deaf_to=deaf_to), each_tick=feels)
+    run = LeafBench(
+        leaf, beside_bed(hands=hands, held=held, deaf_to=deaf_to, **(sight if known else blind)), each_tick=feels
+    )
     run.context.guard.declare_grip("left", "arm")
     return run
 
@@ -94,6 +102,14 @@ def test_an_arm_whose_forearm_stays_up_is_lowered_until_the_hand_is_at_the_mattr
     run = bench(lower=True, posture=replace(LIES, points_in_map=points))
     assert run.ended() is None
     assert run.way("left")[parted(run), 2] == pytest.approx(MATTRESS + 0.04, abs=0.01)
+
+
+def test_an_arm_of_which_nothing_is_known_any_more_is_lowered_straight_down():
+    run = bench(lower=True, known=False)
+    assert run.ended() is None
+    way, opens = run.way("left"), parted(run)
+    assert way[opens, 2] == pytest.approx(MATTRESS + 0.04, abs=0.01)
+    assert np.ptp(way[:opens, :2], axis=0).max() < 0.01
 
 
 def test_without_a_picture_the_hand_goes_down_to_the_mattress():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.skills.belief.person_tracking import Watch
 from caretree.skills.control.arm_grip import over_arm
@@ -60,11 +61,13 @@ def test_an_arm_that_would_reach_over_the_edge_is_drawn_in_until_the_wrist_rests
     assert wrist @ outwards(side) == pytest.approx(0.5, abs=0.03)  # [m], half the bed's width
 
 
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_the_arm_that_a_hand_holds_is_the_one_between_its_fingers(side):
-    asks = skill(hands={"left": over_arm(raised("right"), 1.3, 0.0)})
+def test_the_arm_that_a_hand_holds_is_the_one_between_its_fingers():
+    unseen = PerceptionFailure(Problem.NOTHING_SEEN, "person")
+    asks = skill(hands={"left": over_arm(raised("right"), 1.3, 0.0)}, arm=unseen, head=unseen)
     watch = asks.context.memory.of(Watch, Watch)
-    assert held_arm(asks, "left") is None, "nobody has been seen yet"
+    assert held_arm(asks, "left") is None, "nobody has been seen"
+    watch.arms["left"] = raised("left")
+    assert held_arm(asks, "left") is None, "the other arm is too far away"
     watch.arms.update({each: raised(each) for each in ("left", "right")})
     arm, hold = held_arm(asks, "left")
     assert (arm, hold.hand) == ("right", "left")
