@@ -1,4 +1,4 @@
-"""A seated strap is drawn headward, tucked down beside the shoulder as far as it goes, and slackened."""
+"""A seated strap is drawn headward, and tucked down beside the shoulder as far as it goes."""
 
 from dataclasses import replace
 
@@ -52,11 +52,11 @@ def test_a_strap_is_not_drawn_over_the_face(beyond, drawn):
     assert way[0, 1] - way[:, 1].min() == pytest.approx(drawn, abs=0.02)  # [m]
 
 
-@pytest.mark.parametrize(("load", "follows"), [(0.4, 0.0), (3.0, 0.16)])
-def test_a_strap_that_pulls_is_slackened_in_the_end_and_still_held(load, follows):
+@pytest.mark.parametrize("load", [0.4, 3.0])
+def test_a_strap_is_neither_slackened_nor_let_go_of_in_the_end(load):
     run = ran(load, bed_below=0.6)
     way = run.way("right")
-    assert way[-1, 1] - way[:, 1].min() == pytest.approx(follows, abs=0.02)  # [m]: 4 s at 0.04 m/s
+    assert way[-1, 1] == pytest.approx(way[:, 1].min(), abs=0.005)  # [m]
     assert run.openings("right").max() < 0.01
 
 
