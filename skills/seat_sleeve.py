@@ -66,6 +66,12 @@ class SeatSleeveTuning(Quantities):
     tuck_max_load: float = quantity(
         5.5, "N", "load from which the strap is tucked no further", "choice: harder, it would draw at the other sleeve"
     )
+    tuck_room: float = quantity(
+        0.06,
+        "m",
+        "of the hand headward of the shoulder, from which there is room to go down behind it",
+        "design: radius of a shoulder, half a finger, and what the tracker may be wrong; above it, fingers met the shoulder",
+    )
     law: PullLaw = field(default_factory=PullLaw)
 
 
@@ -75,7 +81,7 @@ class SeatSleeve(Skill):
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
     over it, one that is let go of behind it stays.  It ends with the hand still closed: a strap that is slackened before
-    it is let go of draws the armhole back with it (measured: to 0.53 of the upper arm; let go of under load, 0.71).
+    it is let go of draws the armhole back (measured: to 0.53 of the upper arm; let go of under load: 0.71).
     It fails where the guard stops a load that is too high, and where the person moves; an arm that was never found is
     no reason to wait for it.
     """
@@ -143,8 +149,10 @@ class SeatSleeve(Skill):
             yield
 
     def _tuck(self) -> Iterator[None]:
-        """Down beside the shoulder, almost to the mattress, until it pulls too hard or nothing gives."""
+        """Down beside the shoulder, almost to the mattress, until it pulls too hard; not at all without room for it."""
         tuning, n = self.tuning, SIDES.index(self.grip.hand)
+        if self._shoulder_ahead(self.world.observe().pose_hand_in_map[n, :3, 3]) > -tuning.tuck_room:
+            return
         end = self.now() + tuning.tuck_timeout
         floor = float(self.world.room.bed[1, 2]) + tuning.tuck_clearance
         while self.now() < end:

@@ -42,7 +42,7 @@ from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
 from .person import Person
-from .soft_world import GRAVITY, SoftWorld
+from .soft_world import SoftWorld
 from .truth_source import TruthSource
 from .watchers import Watchers
 
@@ -151,7 +151,6 @@ class BulletWorld(World):
         self._contact.forget()
         self._robot_client.resetSimulation()
         self._robot_client.setTimeStep(TIME_STEP * ROBOT_STEPS)
-        self._robot_client.setGravity(0, 0, -GRAVITY)
         return RobotBody(
             self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.time.time, **posture
         )

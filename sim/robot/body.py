@@ -18,9 +18,12 @@ from .urdf import urdf_path
 # only a body in no group at all can choose what it touches.  Cloth and new rigid bodies are in group 1.
 _NO_GROUP = 0
 
-# Motor strength.  Baxter carries most of its arms' weight by springs on s1 and gravity compensation, so the motors
-# here get the rated torque (50 and 15 N m) on top of the most that gravity ever asks (62 and 5 N m).
-_ARM_FORCE = np.array((125.0, 125.0, 125.0, 125.0, 30.0, 30.0, 30.0))
+# What a motor may do beside carrying its arm, which Baxter does with springs on s1 and gravity compensation: what the
+# hand may press with, at the joint's lever, and what its own motion takes.  That bounds what a hand that meets a person
+# does, whatever is commanded; the guard stops a hand that carries an arm at a peak of 45 N.
+_HAND_FORCE = 45.0  # [N]
+_MOTION_TORQUE = np.array((6.0, 6.0, 6.0, 6.0, 3.0, 3.0, 3.0))  # [N m]
+_MAX_TORQUE = np.array((50.0, 50.0, 50.0, 50.0, 15.0, 15.0, 15.0))  # rated [N m]
 _BASE_FORCE = np.array((5000.0, 5000.0, 5000.0))
 _POSITION_GAIN = 0.3  # share of a position error taken out per physics step, beside the velocity feed-forward
 _CLOSED = 2e-3  # below this opening the fingertips touch [m]
@@ -54,7 +57,8 @@ class JointReading:
 class RobotBody:
     """The robot in an existing PyBullet client.
 
-    Load it after the soft body.  Call `update(time)` before every physics step.  Its links are in their own
+    Load it after the soft body, into a client without gravity: what its arms weigh is added to the efforts that are
+    read.  Call `update(time)` before every physics step.  Its links are in their own
     collision group (none) and touch nothing until `set_collisions` says what; they never touch each other (the
     planner checks that beforehand, and resting contacts would push the arms).  To let the robot touch the person
     but not the cloth, put the person in group 2 and pass `collision_mask=2`.
@@ -104,7 +108,7 @@ class RobotBody:
         self._count = len(names)
         self._gains = [_POSITION_GAIN] * self._count
         self._velocity_gains = [1.0] * self._count
-        self._forces = np.concatenate((_BASE_FORCE, _ARM_FORCE, _ARM_FORCE, (50.0,), np.zeros(4)))
+        self._forces = np.concatenate((_BASE_FORCE, _MAX_TORQUE, _MAX_TORQUE, (50.0,), np.zeros(4)))
         self._fingers = np.full(4, gripper_opening / 2)
         self._next_update = -np.inf
         start = self._targets()[0]
@@ -138,6 +142,10 @@ class RobotBody:
     def update(self, time: float) -> None:
         """Set the motors for the physics step that starts at `time` [s]; cheap between control periods."""
         if time + 1e-9 >= self._next_update:
+            states = self._client.getJointStates(self.body, self._joints[3:17])
+            arms = np.array([state[0] for state in states])
+            self._forces[3:17] = self._torque_limits(arms.reshape(2, 7)).ravel()
+            self.servo.keep_near(arms)
             self.servo.advance(time + PERIOD)
             self._next_update = time + PERIOD
             self._drive()
@@ -151,19 +159,21 @@ class RobotBody:
         yaw = float(q[2])
         c, s = np.cos(yaw), np.sin(yaw)
         fingers = q[18:22].reshape(2, 2)
-        # Each finger's motor pushes towards closed with minus its force; gravity acts on both alike and cancels.
+        # Each finger's motor pushes towards closed with minus its force.
         squeeze = np.maximum(-torque[18:22].reshape(2, 2).mean(axis=1), 0.0)
         # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
         closed = (fingers.sum(axis=1) < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
         squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
+        arms, opening = q[3:17].reshape(2, 7), fingers.sum(axis=1)
+        carried = self.kinematics.gravity_torque(self.kinematics.configuration(q[:3], arms, float(q[17]), opening))
         return JointReading(
-            arm_positions=q[3:17].reshape(2, 7),
+            arm_positions=arms,
             arm_velocities=dq[3:17].reshape(2, 7),
-            arm_efforts=torque[3:17].reshape(2, 7),
+            arm_efforts=torque[3:17].reshape(2, 7) + carried,
             head_pan=float(q[17]),
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
-            gripper_opening=fingers.sum(axis=1),
+            gripper_opening=opening,
             gripper_force=squeeze,
         )
 
@@ -190,6 +200,14 @@ class RobotBody:
         self._client.applyExternalForce(
             self.body, self.links[link], force_in_map.tolist(), point_in_map.tolist(), pybullet.WORLD_FRAME
         )
+
+    def _torque_limits(self, arms: np.ndarray) -> np.ndarray:
+        """(2, 7) what each motor may do in a posture (2, 7), beside carrying the arm [N m]."""
+        levers = [
+            np.linalg.norm(self.kinematics.jacobian_hand_in_map(side, q, np.zeros(3))[:3], axis=0)
+            for side, q in zip(SIDES, arms, strict=True)
+        ]
+        return np.minimum(_MAX_TORQUE, _HAND_FORCE * np.array(levers) + _MOTION_TORQUE)
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
         """Motor targets (22,) and their rates, at the middle of the coming control period."""

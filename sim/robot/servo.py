@@ -16,6 +16,7 @@ from .kinematics import Kinematics
 from .twist import TwistTracker
 
 PERIOD = 0.01  # [s]
+MAX_LEAD = 0.05  # of a target before a joint that something stops: so far it moves on once it is free [rad]
 
 
 @dataclass
@@ -118,6 +119,10 @@ class Servo:
         for twist in self._twists.values():
             twist.cancel()
         self._base_until = -np.inf
+
+    def keep_near(self, arm_positions: np.ndarray) -> None:
+        """Let the targets of the arms run ahead of the measured joints (14,) [rad] by no more than `MAX_LEAD`."""
+        self.positions[:14] = np.clip(self.positions[:14], arm_positions - MAX_LEAD, arm_positions + MAX_LEAD)
 
     def advance(self, time: float) -> None:
         """Move the targets on to `time` [s]; nothing happens when less than `PERIOD` has passed."""

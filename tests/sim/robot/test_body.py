@@ -14,7 +14,6 @@ class Rig:
     def __init__(self):
         self.client = p.connect(p.DIRECT)
         p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
-        p.setGravity(0, 0, -9.81)
         p.setTimeStep(DT)
         self.robot = RobotBody(p, np.array((1.0, 0.2, 2.5)), head_pan=0.2)
         self.steps = 0
@@ -137,3 +136,20 @@ def test_stop_ends_every_motion(rig):
     rig.run(0.6)
     assert not rig.robot.servo.moving
     assert np.abs(rig.robot.read().arm_velocities).max() < 1e-3
+
+
+def test_a_hand_that_something_holds_back_presses_with_what_the_motors_may_do_and_moves_on_without_a_jump(rig):
+    rig.run(0.2)
+    n, start = SIDES.index("right"), rig.robot.pose_hand_in_map("right")[:3, 3]
+    fixed = p.createConstraint(
+        rig.robot.body, rig.robot.links["right_hand"], -1, -1, p.JOINT_POINT2POINT, (0, 0, 0), (0, 0, 0), start.tolist()
+    )
+    rig.robot.command(HandTwist(side="right", twist_in_map=np.array((0.0, 0.0, -0.3, 0, 0, 0)), duration=1.0))
+    rig.run(1.0)
+    force = np.linalg.norm(p.getConstraintState(fixed))
+    p.removeConstraint(fixed)
+    lead = np.abs(rig.robot.servo.positions[7 * n : 7 * n + 7] - rig.robot.read().arm_positions[n]).max()
+    rig.run(0.5)
+    assert 10.0 < force < 100.0  # [N]
+    assert lead < 0.08  # [rad]
+    assert np.linalg.norm(rig.robot.pose_hand_in_map("right")[:3, 3] - start) < 0.08  # [m], of 0.3 commanded
