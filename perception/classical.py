@@ -79,11 +79,11 @@ class ClassicalSenses(Senses):
 
     Args:
         room: says where the bed is.
-        seed: of the random choice among equally good grasps.
+        seed: of the random choice among equally good grasps, or a generator for it.
         tuning: numbers.
     """
 
-    def __init__(self, room: RoomMap, seed: int, *, tuning: ClassicalTuning = DEFAULT) -> None:
+    def __init__(self, room: RoomMap, seed: int | np.random.Generator, *, tuning: ClassicalTuning = DEFAULT) -> None:
         self._bed = room.bed
         self._tuning = tuning
         self._rng = np.random.default_rng(seed)

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from ..perception.estimates import GownSide
 from .core.ports import Input, Output
-from .core.reasons import Reason
-from .core.skill import Skill, SkillFailure
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 
 
 class FlipSideCheck(Skill):

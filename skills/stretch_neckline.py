@@ -12,8 +12,8 @@ from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, HandTwist
 from .control.hands import cloth_load, hand_now, move_hands
 from .core.ports import Input, Output
-from .core.reasons import Reason
-from .core.skill import Skill, SkillFailure
+from .core.reasons import Reason, SkillFailure
+from .core.skill import Skill
 
 
 @dataclass(frozen=True, kw_only=True)

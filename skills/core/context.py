@@ -110,7 +110,7 @@ class Context:
         world: behind the guard.
         guard: of that world.
         senses: to be used instead of those that the task offers.
-        seed: of the run.
+        seed: of the run's chance; the scene is drawn from it too, so skills see only what it makes of chance.
         settings: numbers that the run sets otherwise than its tree does.
 
     Attributes:
@@ -137,8 +137,7 @@ class Context:
         self.settings = settings or Settings()
         self.board = Board()
         self.memory = Memory()
-        self.seed = seed
-        self.rng = np.random.default_rng(seed)
+        self.rng = _chance(seed)
         self.lease = MotionLease(self.now)
         self.observers: list[Callable[[str, Phase], None]] = []
         self.errors: list[str] = []
@@ -171,3 +170,10 @@ class Context:
     def report(self, error: BaseException) -> None:
         """Keep the traceback of a programming error for the run's log."""
         self.errors.append("".join(traceback.format_exception(error)))
+
+
+def _chance(seed: int) -> np.random.Generator:
+    """The numbers of `np.random.default_rng(seed)`, from a generator that does not name the seed it began with."""
+    bits = np.random.PCG64(0)
+    bits.state = np.random.PCG64(seed).state
+    return np.random.Generator(bits)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass
 
 from ...sim.errors import CaretreeError
 
@@ -65,9 +65,9 @@ class Limits:
 
     def __post_init__(self) -> None:
         """Reject limits that contradict each other."""
-        for item in fields(self):
-            if not getattr(self, item.name) > 0:
-                raise CaretreeError(f"limit {item.name} is {getattr(self, item.name)}, but limits are above zero")
+        for name, value in asdict(self).items():
+            if not value > 0:
+                raise CaretreeError(f"limit {name} is {value}, but limits are above zero")
         if not self.cloth_load_slow < self.cloth_load_stop:
             raise CaretreeError(
                 f"cloth_load_slow is {self.cloth_load_slow} N, but must be below "

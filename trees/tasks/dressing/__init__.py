@@ -40,7 +40,7 @@ STAGES = {
 
 def build(context: Context, stages: Sequence[str] = tuple(STAGES)) -> Behaviour:
     """All stages, or only those of the given names."""
-    context.offer_senses(ClassicalSenses(context.world.room, context.seed))
+    context.offer_senses(ClassicalSenses(context.world.room, context.rng))
     body = sequence("dressing", *(STAGES[stage].build(context) for stage in stages))
     return FailSafe("dress safely", body, make_safe(context))
 

@@ -1,0 +1,181 @@
+"""A world in a process of its own: whoever holds this one can reach the contract of `World` and nothing else.
+
+What comes through the pipe is taken apart into plain numbers, texts and arrays and put together anew, so an object can
+bring nothing along that the contract does not declare.
+"""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+import numpy as np
+
+from ...sim.abilities import HandKinematics, SupportsInitialStates
+from ...sim.errors import CaretreeError
+from ...sim.world import (
+    BaseVelocity,
+    Command,
+    Frame,
+    GripperOpening,
+    HandTwist,
+    JointTrajectory,
+    Observation,
+    RoomMap,
+    SensorLost,
+    World,
+    WorldError,
+)
+
+DECLARED = {
+    kind.__name__: kind
+    for kind in (Observation, Frame, RoomMap, JointTrajectory, HandTwist, BaseVelocity, GripperOpening)
+}
+ERRORS = {kind.__name__: kind for kind in (SensorLost, WorldError, CaretreeError)}
+CALLS = ("observe", "look", "send", "stop")
+PATIENCE = 10.0  # with which a process is asked to end [s]
+
+
+class UndeclaredError(CaretreeError):
+    """A world gives away what its contract does not declare."""
+
+
+def packed(value: Any) -> Any:
+    """A value of the contract as plain numbers, texts, arrays, tuples and dictionaries.
+
+    Raises:
+        UndeclaredError: of another type, or with an attribute that its class does not declare.
+    """
+    if is_dataclass(value):
+        name, names = type(value).__name__, {field.name for field in fields(value)}
+        if DECLARED.get(name) is not type(value):
+            raise UndeclaredError(f"a world gives a {name}, but its contract knows {', '.join(DECLARED)}")
+        if more := sorted(vars(value).keys() - names):
+            raise UndeclaredError(f"{name} has {', '.join(more)}, which the contract does not declare")
+        return name, {field: packed(getattr(value, field)) for field in sorted(names)}
+    if type(value) is np.ndarray and value.dtype.kind in "bifu":
+        return value
+    if isinstance(value, np.generic):
+        return value.item()
+    if type(value) in (list, tuple):
+        return tuple(packed(each) for each in value)
+    if type(value) is dict:
+        return {str(key): packed(each) for key, each in value.items()}
+    if value is None or type(value) in (bool, int, float, str):
+        return value
+    raise UndeclaredError(f"a world gives a {type(value).__name__}, but its contract declares none")
+
+
+def unpacked(value: Any) -> Any:
+    """The value again that `packed` took apart."""
+    if isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], dict) and value[0] in DECLARED:
+        return DECLARED[value[0]](**{name: unpacked(each) for name, each in value[1].items()})
+    return value
+
+
+class PipedWorld(World):
+    """The contract, spoken through a pipe to the world itself.
+
+    Args:
+        kind: class of that world, `package.module:Class`; this process need not import it.
+        kinematics: the robot's own model, where the guard shall have one.
+        begins: state in which the run begins, where it is not the usual one.
+        **options: for the class.
+
+    Raises:
+        WorldError: that world could not be made.
+    """
+
+    def __init__(self, kind: str, *, kinematics: HandKinematics | None = None, begins: str = "", **options: Any):
+        context = multiprocessing.get_context("spawn")
+        self._pipe, far_end = context.Pipe()
+        self._process = context.Process(target=_make_and_serve, args=(far_end, kind, begins, options), daemon=True)
+        self._process.start()
+        far_end.close()
+        try:
+            self.room = self._ask("room")
+        except WorldError:
+            self.close()
+            raise
+        self.clock = _PipedClock(self)
+        self.kinematics = kinematics
+
+    def observe(self) -> Observation:
+        """Latest proprioception; raises SensorLost."""
+        return self._ask("observe")
+
+    def look(self, camera: str) -> Frame:
+        """Latest frame; raises SensorLost."""
+        return self._ask("look", camera)
+
+    def send(self, command: Command) -> Command:
+        """Start a command."""
+        return self._ask("send", command)
+
+    def stop(self) -> None:
+        """End every motion now."""
+        self._ask("stop")
+
+    def close(self) -> None:
+        """End the world and its process; twice is once."""
+        if not self._pipe.closed:
+            self._pipe.close()
+            self._process.join(PATIENCE)
+            self._process.kill()
+
+    def _ask(self, what: str, *values: Any) -> Any:
+        try:
+            self._pipe.send((what, packed(values)))
+            error, answer = self._pipe.recv()
+        except (EOFError, OSError) as lost:
+            raise WorldError("the process of the world has ended") from lost
+        if error:
+            raise ERRORS.get(error, WorldError)(answer)
+        return unpacked(answer)
+
+
+class _PipedClock:
+    def __init__(self, world: PipedWorld) -> None:
+        self._ask = world._ask  # one half of the same thing
+
+    def now(self) -> float:
+        return self._ask("now")
+
+    def wait_until(self, time: float) -> None:
+        self._ask("wait_until", time)
+
+
+def _make_and_serve(pipe: Connection, kind: str, begins: str, options: Mapping[str, Any]) -> None:
+    """Be the world's process."""
+    try:
+        module, _, name = kind.partition(":")
+        world: World = getattr(importlib.import_module(module), name)(**options)
+        if begins:
+            if not isinstance(world, SupportsInitialStates):
+                raise WorldError(f"{name} has one beginning only")
+            world.set_initial_state(begins)
+    except Exception as error:
+        pipe.recv()
+        pipe.send((WorldError.__name__, f"no world: {type(error).__name__}: {error}"))
+        return
+    serve(pipe, world)
+
+
+def serve(pipe: Connection, world: World) -> None:
+    """Answer with a world what is asked at the other end of a pipe, until that is closed; then close the world."""
+    answers = {name: getattr(world, name) for name in CALLS}
+    answers |= {"now": world.clock.now, "wait_until": world.clock.wait_until, "room": lambda: world.room}
+    try:
+        while True:
+            what, values = pipe.recv()
+            try:
+                answer = "", packed(answers[what](*map(unpacked, values)))
+            except Exception as error:
+                answer = type(error).__name__, str(error)
+            pipe.send(answer)
+    except (EOFError, OSError):
+        world.close()
