@@ -70,7 +70,7 @@ class SeatSleeveTuning(Quantities):
         0.06,
         "m",
         "of the hand headward of the shoulder, from which there is room to go down behind it",
-        "design: radius of a shoulder, half a finger, and what the tracker may be wrong; above it, fingers met the shoulder",
+        "design: radius of a shoulder, half a finger and the tracker's error; above the shoulder, fingers met it",
     )
     law: PullLaw = field(default_factory=PullLaw)
 
@@ -80,8 +80,8 @@ class SeatSleeve(Skill):
 
     The lower half of the armhole lags behind the strap and comes along that way; an arm that sinks after the strap
     was let go draws the sleeve back by a tenth of its length; a strap that is let go of above the shoulder springs back
-    over it, one that is let go of behind it stays.  It ends with the hand still closed: a strap that is slackened before
-    it is let go of draws the armhole back (measured: to 0.53 of the upper arm; let go of under load: 0.71).
+    over it, one that is let go of behind it stays.  It ends with the hand still closed: a strap that is slackened
+    before it is let go of draws the armhole back (measured: to 0.53 of the upper arm; let go of under load: 0.71).
     It fails where the guard stops a load that is too high, and where the person moves; an arm that was never found is
     no reason to wait for it.
     """
