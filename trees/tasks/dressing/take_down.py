@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ....sim.world import Side
 from ....skills.control.withdraw import WithdrawTuning
 from ....skills.core.context import Context
+from ....skills.core.ports import Key
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
 from ....skills.find_corner import FindCorner
@@ -36,7 +38,7 @@ def take_down(context: Context) -> Stage:
         "take down",
         Navigate("go there", rail, goal="rail"),
         fallback("find the outside", outside, Navigate("go behind it", rail, goal="rail_back")),
-        fallback("take it", Retry("the other end first", by_both_ends, attempts=3), from_one_hand(context)),
+        fallback("take it", Retry("the other end first", by_both_ends, attempts=2), from_one_hand(context)),
         seconds=DRESSING.take_down_timeout,
     )
 
@@ -85,19 +87,26 @@ def take_ends(rail: Scope) -> Behaviour:
 
 def from_one_hand(context: Context) -> Behaviour:
     """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
-    one = Scope(context, "one hand", keys=("views", "holder", "former"))
+    first = Scope(context, "one hand", keys=("views", "holder", "former"))
+    second = Scope(context, "other hand", keys=("views", "holder", "former"))
     level = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
     return sequence(
         "from one hand",
-        Retreat("let go of the neckline", one),
-        SegmentAndGrasp("take it near the hook", one, hand="right"),
-        Unhook("lift it off", one, hand="right"),
-        ViewAround("look all round", one, hand="right"),
-        PreGraspManipulate("take one corner", one),
-        Retreat("let the first place go", one, hands=one["former"], ready="never", tuning=level),
-        ViewAround("look all round again", one, hand=one["holder"]),
-        PreGraspManipulate("take the other corner", one, min_distance=DRESSING.nearest_corner),
+        Retreat("let go of the neckline", first),
+        SegmentAndGrasp("take it near the hook", first, hand="right"),
+        Unhook("lift it off", first, hand="right"),
+        look_and_take(first, "right"),
+        Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=level),
+        look_and_take(second, first["holder"], min_distance=DRESSING.nearest_corner),
     )
+
+
+def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Retry:
+    """A corner of the gown that hangs from `hand`; after a miss it hangs otherwise, and that corner is left out."""
+    look = ViewAround("look all round", scope, hand=hand)
+    take = PreGraspManipulate("take a corner", scope, **ports)
+    once = sequence(f"{scope.prefix}once", look, take)
+    return Retry(f"{scope.prefix}until it holds a corner", once, attempts=DRESSING.corner_attempts)
 
 
 def _hands_open(context: Context) -> bool:

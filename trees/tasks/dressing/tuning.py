@@ -82,6 +82,9 @@ class DressingTuning(Quantities):
         "from which a sight of the inside counts, once the gown is drawn aside on its hook",
         "choice: sleeves and folds always show some of it",
     )
+    corner_attempts: int = quantity(
+        3, "1", "at a corner of a gown that hangs from one hand", "choice: each looks at the gown from all sides anew"
+    )
     nearest_corner: float = quantity(
         0.3, "m", "from the holding hand to the other corner, at least", "choice: not the corner that it holds"
     )
@@ -150,7 +153,7 @@ class DressingTuning(Quantities):
     )
     # time of each stage
     take_down_timeout: float = quantity(
-        260.0, "s", "for taking the gown down", "choice: three tries and one from one hand"
+        400.0, "s", "for taking the gown down", "choice: two tries and one from one hand, three at each corner"
     )
     lay_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
     dress_timeout: float = quantity(600.0, "s", "for dressing both arms", "choice: room for two misses at each arm")
