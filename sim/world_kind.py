@@ -2,6 +2,13 @@
 
     easy                          the friendliest world
     easy+falling_arms             that, with arms that fall and elbows that bend
+    easy+camera_extrinsics        cameras are turned and shifted a little against where they should be
+    easy+localisation             where the base stands in the map is known roughly, and drifts
+    easy+encoders                 the zero of every joint sensor is off
+    easy+late_images              images arrive late
+    easy+wrench_bias              wrists feel what is not there, and part of the gripper's own weight
+    easy+depth_noise              depth in steps, pixels that fly at edges, pixels without depth
+    easy+thinking_time            the world goes on while the robot works through images and plans
     hard                          with every difficulty there is
 
 How large each of them is, only the simulation knows: `scene/difficulties.py`.
@@ -14,7 +21,16 @@ from dataclasses import dataclass
 from .errors import CaretreeError
 
 EASY, HARD = "easy", "hard"
-DIFFICULTIES: tuple[str, ...] = ("falling_arms",)
+DIFFICULTIES: tuple[str, ...] = (
+    "falling_arms",
+    "camera_extrinsics",
+    "localisation",
+    "encoders",
+    "late_images",
+    "wrench_bias",
+    "depth_noise",
+    "thinking_time",
+)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,10 @@ SELF_PARSED = {
 }
 # said by --help, which must not import what knows them; a test compares
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
-WORLD_KINDS = "easy, easy+falling_arms, hard"
+WORLD_KINDS = (
+    "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
+    "easy+wrench_bias, easy+depth_noise, easy+thinking_time, hard"
+)
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
 

@@ -39,10 +39,15 @@ class Backdrop:
         self._links = list(visual_meshes())
         self.renderer.set_cloth(cloth.mesh.vertices, cloth.mesh.faces, *gown_colours(cloth.mesh, look))
 
-    def update(self, vertices: np.ndarray, configuration: np.ndarray) -> Renderer:
-        """Move everything to where it is now; returns the renderer, ready to draw."""
+    def update(self, vertices: np.ndarray, arms: np.ndarray, configuration: np.ndarray) -> Renderer:
+        """Move everything to where it is; returns the renderer, ready to draw.
+
+        Args:
+            vertices: (V, 3) of the gown [m].
+            arms: (2, 4, 3) of the person [m].
+            configuration: (nq,) of the robot.
+        """
         self.renderer.move_cloth(vertices)
-        arms = self.person.arms()
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
                 self.renderer.set_pose(f"arm{arm}{part}", _along(arms[arm, part], arms[arm, part + 1]))

@@ -22,7 +22,7 @@ from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
-from ..render.camera import CAMERA_VIEWS, Renderer, camera_intrinsics
+from ..render.camera import Renderer
 from ..render.live_view import LiveView
 from ..robot.body import RobotBody
 from ..robot.capsules import RobotCapsules
@@ -31,9 +31,11 @@ from ..scene.initial_state import InitialState
 from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
-from ..world import CAMERAS, SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World, WorldError
+from ..sensors.sensor_errors import SensorErrors
+from ..world import SIDES, Command, Frame, GripperOpening, Observation, Side, World, WorldError
 from ..world_kind import EASY, WorldKind
 from .backdrop import Backdrop
+from .cameras import Cameras, Exposure
 from .cloth import load_gown
 from .contact import Contact
 from .furniture import add_furniture
@@ -43,6 +45,7 @@ from .handle import Handle
 from .hook import Hook
 from .person import Person
 from .soft_world import SoftWorld
+from .thinking_time import ThinkingTime
 from .truth_source import TruthSource
 from .watchers import Watchers
 
@@ -99,6 +102,8 @@ class BulletWorld(World):
         self.kinematics = default_kinematics()
         self.timing: dict[str, float] = defaultdict(float)
         self._noise = np.random.default_rng([seed, 2])
+        self._errors = SensorErrors(seed, self.scene.kind)
+        self._thinking = ThinkingTime(seed, self.scene.kind)
         self._steps = 0
         self._asleep = False
         self._moving_person: list[float] = []
@@ -117,6 +122,7 @@ class BulletWorld(World):
         ]
         self._force_limit = np.full(2, 30.0)
         self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
+        self._cameras = Cameras(self._expose, self._backdrop, self.kinematics, self._errors, self._noise)
         self._truth = TruthSource(self.scene, capsules, self._person, self._hook, self._grips, self._contact)
         self._watchers = Watchers(self.truth_frame, self._draw)
         self._view = LiveView() if view else None
@@ -195,19 +201,22 @@ class BulletWorld(World):
     # -- senses --------------------------------------------------------------------------------------------
 
     def observe(self) -> Observation:
-        """Joint sensors exact, wrist wrenches with noise."""
-        reading = self._robot.read()
+        """Joint sensors exact but for `SensorErrors`, wrist wrenches with noise."""
+        now = self.clock.now()
+        reading = self._errors.joints(self._robot.read(), now)
+        hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
         wrench = np.zeros((2, 6))
         for n in range(2):
             wrench[n, :3] = self._grips[n].load
         wrench += self._contact.wrench(self._hands)
         wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
+        wrench = self._errors.wrench(wrench, self._hands, hands)
         force = np.maximum(reading.gripper_force, self._contact.squeeze(self._hands))
         for n, grip in enumerate(self._grips):
             if grip.kind == "arm":
                 force[n] = self._force_limit[n]
         return Observation(
-            time=self.clock.now(),
+            time=now,
             arm_positions=reading.arm_positions,
             arm_velocities=reading.arm_velocities,
             arm_efforts=reading.arm_efforts,
@@ -217,41 +226,30 @@ class BulletWorld(World):
             gripper_opening=reading.gripper_opening.copy(),
             gripper_force=force,
             wrench_hand_in_map=wrench,
-            pose_hand_in_map=np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES]),
+            pose_hand_in_map=hands,
         )
 
     def look(self, camera: str) -> Frame:
-        """Draw what a camera sees now, with the sensor's noise.
+        """What a camera sees now, or saw a moment ago, with the sensor's noise.
 
         Raises:
             SensorLost: there is no such camera.
         """
-        if camera not in CAMERAS:
-            raise SensorLost(f"there is no camera '{camera}'; there are {', '.join(CAMERAS)}")
         begin = wall.perf_counter()
-        reading = self._robot.read()
-        pose = self.kinematics.pose_camera_in_map(
-            camera, reading.pose_base_in_map, reading.arm_positions, reading.head_pan
-        )
-        renderer = self._backdrop.update(self._vertices_now(), self._robot.configuration(reading))
-        rgb, depth = renderer.photograph(camera, pose, self._noise)
+        frame = self._cameras.look(camera, self.clock.now())
+        self._thinking.saw()
         self.timing["cameras"] += wall.perf_counter() - begin
-        assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]
-        return Frame(
-            camera=camera,
-            stamp=self.clock.now(),
-            rgb=rgb,
-            depth=depth,
-            intrinsics=camera_intrinsics(camera),
-            pose_camera_in_map=pose,
-        )
+        return frame
 
     # -- commands ------------------------------------------------------------------------------------------
 
     def send(self, command: Command) -> Command:
-        """Start a command; fingers stop at what is between them."""
+        """Start a command, once it has been thought of; fingers stop at what is between them."""
+        self._thinking.decided(command)
+        self._advance_to(self.time.time)
         if not isinstance(command, GripperOpening):
-            return self._robot.command(command)
+            now = self.clock.now()
+            return self._errors.told(self._robot.command(self._errors.executed(command, now)), now)
         n = SIDES.index(command.side)
         grip = self._grips[n]
         self._force_limit[n] = command.force_limit
@@ -281,7 +279,9 @@ class BulletWorld(World):
     def _advance_to(self, time: float) -> None:
         begin = wall.perf_counter()
         recorded = self.timing["record"]
+        time = max(time, self.time.time + self._thinking.spend())
         while self.time.time < time - 1e-9:
+            self._cameras.pass_time(self.time.time)
             self._step()
             if self._watchers.due(self.time.time):
                 recording = wall.perf_counter()
@@ -404,7 +404,11 @@ class BulletWorld(World):
         return self._truth.frame(self.time.time, self._vertices_now(), self._robot)
 
     def _draw(self) -> Renderer:
-        return self._backdrop.update(self._vertices_now(), self._robot.configuration())
+        return self._backdrop.update(self._vertices_now(), self._person.arms(), self._robot.configuration())
+
+    def _expose(self) -> Exposure:
+        arms, reading = self._person.arms(), self._robot.read()
+        return Exposure(time=self.time.time, vertices=self._vertices_now(), arms=arms, reading=reading)
 
     def _vertices_now(self) -> np.ndarray:
         return self._vertices if self._asleep else self._cloth.vertices()

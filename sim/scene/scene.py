@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import CaretreeError
 from ..world import RoomMap
 from ..world_kind import EASY_KIND, WorldKind
+from .difficulties import stream
 from .falling_arms import with_falling_arms
 from .gown import GOWNS, GownMesh, GownSpec, build_gown
 from .gown_file import read_gown
@@ -97,7 +98,7 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None, ki
         dry_friction=(who.dry_friction[0] * friction, who.dry_friction[1] * friction),
     )
     if kind.has("falling_arms"):
-        who = with_falling_arms(who, _stream(seed, "falling_arms"), float(BED_HALF[0]))
+        who = with_falling_arms(who, stream(seed, "falling_arms"), float(BED_HALF[0]))
     middle = len(mesh.collar) // 2
     return Scene(
         seed=seed,
@@ -110,11 +111,6 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None, ki
         hang_vertex=int(mesh.collar[middle + rng.integers(-2, 3)]),
         hang_yaw=float(rng.uniform(-0.4, 0.4) + (np.pi if rng.random() < 0.5 else 0.0)),
     )
-
-
-def _stream(seed: int, difficulty: str) -> np.random.Generator:
-    """The random numbers from which one difficulty is drawn; they shift no other draw."""
-    return np.random.default_rng([seed, *difficulty.encode()])
 
 
 def _arm_pose(rng: np.random.Generator, low: float, high: float) -> tuple[float, float, float, float]:

@@ -38,7 +38,9 @@ def view(world, target):
     pose = looking_at(target + (0.0, 0.08, 0.30), target)
     seen = world.observe()
     renderer = world._backdrop.update(
-        world._vertices_now(), world.kinematics.configuration(seen.pose_base_in_map, seen.arm_positions)
+        world._vertices_now(),
+        world._person.arms(),
+        world.kinematics.configuration(seen.pose_base_in_map, seen.arm_positions),
     )
     rgb, depth = renderer.photograph("right_hand", pose, world._noise)
     return Frame(

@@ -13,4 +13,7 @@ def test_every_difficulty_has_its_sizes():
 
 def test_every_size_says_where_it_comes_from():
     sources = [row.source for row in rows(SIZES)]
-    assert all(source.startswith(("choice: ", "paper: ", "measured: ", "design requirement: ")) for source in sources)
+    assert all(
+        source.startswith(("choice: ", "paper: ", "datasheet: ", "measured: ", "design requirement: "))
+        for source in sources
+    )

@@ -1,0 +1,92 @@
+"""The robot's cameras in the simulated room."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..render.camera import CAMERA_VIEWS, camera_intrinsics
+from ..robot.body import JointReading
+from ..robot.kinematics import Kinematics
+from ..sensors.sensor_errors import SensorErrors
+from ..world import CAMERAS, Frame, SensorLost
+from .backdrop import Backdrop
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exposure:
+    """All that an image shows, at one instant: enough to draw it later.
+
+    Attributes:
+        time: world clock [s].
+        vertices: (V, 3) of the gown [m].
+        arms: (2, 4, 3) of the person [m].
+        reading: the robot's joints and base as they are.
+    """
+
+    time: float
+    vertices: np.ndarray
+    arms: np.ndarray
+    reading: JointReading
+
+
+class Cameras:
+    """Takes the frames that `World.look` gives.
+
+    Args:
+        expose: gives what there is to see now.
+        backdrop: draws it.
+        kinematics: of the robot, which puts the cameras where they are and where it takes them to be.
+        errors: of the sensors.
+        noise: of the images.
+    """
+
+    def __init__(
+        self,
+        expose: Callable[[], Exposure],
+        backdrop: Backdrop,
+        kinematics: Kinematics,
+        errors: SensorErrors,
+        noise: np.random.Generator,
+    ) -> None:
+        self._expose, self._backdrop, self._kinematics = expose, backdrop, kinematics
+        self._errors, self._noise = errors, noise
+
+    def pass_time(self, time: float) -> None:
+        """Keep what there is to see at `time` [s], if images of it will be delivered later."""
+        if self._errors.late and self._errors.late.due(time):
+            self._errors.late.keep(self._expose())
+
+    def look(self, camera: str, time: float) -> Frame:
+        """The image that arrived last at `time` [s], drawn only now.
+
+        Raises:
+            SensorLost: there is no such camera.
+        """
+        if camera not in CAMERAS:
+            raise SensorLost(f"there is no camera '{camera}'; there are {', '.join(CAMERAS)}")
+        late = self._errors.late
+        seen: Exposure = (late and late.newest(camera, time)) or self._expose()
+        reading = seen.reading
+        configuration = self._kinematics.configuration(
+            reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
+        )
+        renderer = self._backdrop.update(seen.vertices, seen.arms, configuration)
+        pose = self._errors.pose_camera(camera, self._pose(camera, reading))
+        rgb, depth = renderer.photograph(camera, pose, self._noise)
+        assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]
+        return Frame(
+            camera=camera,
+            stamp=seen.time,
+            rgb=rgb,
+            depth=self._errors.depth(depth),
+            intrinsics=camera_intrinsics(camera),
+            pose_camera_in_map=self._pose(camera, self._errors.joints(reading, seen.time)),
+        )
+
+    def _pose(self, camera: str, reading: JointReading) -> np.ndarray:
+        return self._kinematics.pose_camera_in_map(
+            camera, reading.pose_base_in_map, reading.arm_positions, reading.head_pan
+        )
