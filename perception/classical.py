@@ -24,7 +24,7 @@ from .estimates import (
     SleeveOpening,
     WornSleeve,
 )
-from .gown.collar import CollarTuning, collar_near_shoulder
+from .gown.collar import CollarTuning, collar_middle
 from .gown.hang_point import HangPointTuning, grasp_near_hang
 from .gown.hung_corner import HungCornerTuning, hook, hung_corner, shown_corner
 from .gown.hung_side import HungSideTuning, hung_side
@@ -183,9 +183,9 @@ class ClassicalSenses(Senses):
         """By the gown's colours at a grid of points on the front of the trunk."""
         return chest_cover(frame, self._bed, shoulders_in_map, self._tuning.chest_cover)
 
-    def collar_near_shoulder(self, frame: Frame, *, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-        """The end of the neck binding at the armhole that sits near the shoulder."""
-        return collar_near_shoulder(frame, side, shoulder_in_map, self._tuning.collar)
+    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray) -> GraspPoint:
+        """Half the neck binding's length from its ends."""
+        return collar_middle(frame, near_in_map, self._tuning.collar)
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""

@@ -15,11 +15,9 @@ GraspTarget = Literal[
     "collar_corner_right",
     "sleeve_left",
     "sleeve_right",
-    "collar_left",
-    "collar_right",
+    "collar_middle",
 ]
 SLEEVE_OF: dict[Side, GraspTarget] = {"left": "sleeve_left", "right": "sleeve_right"}
-COLLAR_OF: dict[Side, GraspTarget] = {"left": "collar_left", "right": "collar_right"}
 CORNER_OF: dict[Side, GraspTarget] = {"left": "collar_corner_left", "right": "collar_corner_right"}
 
 

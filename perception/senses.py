@@ -309,19 +309,18 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def collar_near_shoulder(self, frame: Frame, *, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-        """A place on the neckline near a shoulder from which the gown can be drawn to the neck.
+    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray) -> GraspPoint:
+        """The middle of a worn gown's neckline.
 
         Args:
             frame: a view from above the person.
-            side: of the person.
-            shoulder_in_map: (3,) [m].
+            near_in_map: (3,) middle between the shoulders [m].
 
         Returns:
-            Target `collar_left` or `collar_right`.
+            Target `collar_middle`; its confidence is the share of the neckline that shows.
 
         Raises:
-            PerceptionFailure: no neckline is seen near the shoulder.
+            PerceptionFailure: no neckline is seen on the person.
         """
 
     # -- the person --------------------------------------------------------------------------------------

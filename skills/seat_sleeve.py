@@ -31,10 +31,10 @@ class SeatSleeveTuning(Quantities):
         0.08, "m", "by which the strap is drawn headward at most", "choice: armhole's lag behind it"
     )
     max_beyond: float = quantity(
-        0.12,
+        0.08,
         "m",
         "of the hand headward of the shoulder, where the strap is drawn no farther",
-        "measured: drawn to 0.17 m from both sides, the collar came over the face (seed 105)",
+        "measured: drawn to 0.12 m and 0.17 m from both sides, the collar came over the face (seeds 103, 105)",
     )
     draw_speed: float = quantity(0.11, "m/s", "of the hand headward", "choice: below the guard's limit near the person")
     stall_time: float = quantity(

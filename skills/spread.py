@@ -1,4 +1,4 @@
-"""Take the collar near a shoulder, lift it a little, and draw it on until the sleeve sits at the shoulder."""
+"""Lift the collar by its middle and lay it down on the midline, below the throat."""
 
 from __future__ import annotations
 
@@ -7,69 +7,68 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
-from .belief.armhole_watch import ArmholeWatch
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import watch_arm
+from .belief.person_tracking import watch_arm, watch_of
 from .control.fingers import open_gripper
-from .control.hands import cloth_load, hand_now, move_hands
-from .control.pinch import pinch, reach_in
+from .control.hands import cloth_load, hand_now
+from .control.pinch import pinch_or_back_off, reach_in
 from .control.withdraw import withdraw
 from .core.ports import Input, Output
-from .core.reasons import Reason, SkillFailure
+from .core.reasons import Reason
 from .core.skill import Skill
-from .geometry.arm_path import UP, ArmPath
+from .geometry.arm_path import UP
 from .geometry.stances import HEADWARD, outwards
-from .motion.errors import MotionError
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpreadTuning(Quantities):
     """Numbers of `Spread`."""
 
-    tugs: int = quantity(
-        2, "1", "times that the collar is drawn", "choice: cloth that is stuck under the arm follows a little each time"
+    footward: float = quantity(
+        0.03, "m", "of the collar's middle from the line of the shoulders", "choice: below the throat, above the chest"
+    )
+    lies_well: float = quantity(
+        0.05, "m", "from there, aside, within which the collar is left as it is", "choice: as well as it is seen"
+    )
+    headward: float = quantity(
+        0.07, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"
     )
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
     )
-    lift: float = quantity(0.05, "m", "of the collar off the body before it is drawn", "choice: it does not rub")
-    distance: float = quantity(0.15, "m", "by which the collar is drawn at most", "choice: as far as to the neck")
-    speed: float = quantity(0.10, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
+    lift: float = quantity(
+        0.10,
+        "m",
+        "of the collar off the body before it is carried",
+        "measured: drawn along the body instead, it sprang back to where it lay; lifted by 0.10 to 0.18 m, it stayed",
+    )
+    speed: float = quantity(0.08, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
+    tolerance: float = quantity(0.01, "m", "to the end of a way", "choice: the width of a thread")
     timeout_factor: float = quantity(
-        2.0,
-        "1",
-        "of the time that the whole distance takes at full speed",
-        "choice: room for a guard that slows it down",
+        2.5, "1", "of the time that a way takes at full speed", "choice: room for a guard that slows it down"
     )
     max_load: float = quantity(
-        3.5, "N", "of the collar, at which it is as far as it goes", "choice: it is then where it can be"
-    )
-    seated: float = quantity(
-        -0.45,
-        "1",
-        "arm coordinate below which an armhole that is seen sits at the shoulder",
-        "choice: what is seen of a seated armhole leans over beyond the shoulder",
+        6.0, "N", "of the collar, at which it is carried no farther", "measured: 5 to 6 N bring it to the midline"
     )
     withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the collar")
 
 
 class Spread(Skill):
-    """Grasps the neckline's tape near one shoulder and draws it on, along the line of the upper arm and headward.
+    """Looks where the middle of the neckline lies, and brings it over the breastbone where it does not lie there.
 
-    That takes the sleeve back to the shoulder, from which it may have slipped while the other arm was dressed, and the
-    collar to the neck.  It fails where the collar could not be drawn even once.  The hand ends open and drawn back
-    after a success and after a missed grasp.
+    A sleeve that is drawn on takes the collar along, to its side or up to the throat; the slack then hides in a fold at
+    one shoulder.  Lifted by its middle and laid down on the midline, the collar shares it between both.  The hand ends
+    open and drawn back, after a missed grasp too.  A collar that lies well is left alone.
     """
 
-    side = Input(Side, doc="the person's side")
-    hand = Input(Side, doc="the robot's hand that draws the collar")
+    side = Input(Side, doc="side of the bed on which the robot stands")
+    hand = Input(Side, doc="the robot's hand that carries the collar")
     tuning = Input(SpreadTuning, default=SpreadTuning(), doc="numbers of this skill")
-    grasp = Output(GraspPoint, unit="m, map", doc="where the collar was taken")
+    grasp = Output(GraspPoint, unit="m, map", doc="where the middle of the collar was seen")
     reasons = (
         Reason.NOTHING_SEEN,
         Reason.ARM_LOST,
@@ -82,62 +81,55 @@ class Spread(Skill):
     )
 
     def steps(self) -> Iterator[None]:
-        """Draw the collar as long as the person does not move."""
-        yield from while_person_rests(self, self._twice())
+        """Bring the collar to the middle as long as the person does not move."""
+        yield from while_person_rests(self, self._centre())
 
-    def _twice(self) -> Iterator[None]:
-        """Draw the collar, and once more."""
-        for tug in range(self.tuning.tugs):
-            try:
-                yield from self._tug()
-            except (SkillFailure, PerceptionFailure, MotionError):
-                if tug == 0:
-                    raise
-                return  # it has been drawn once already
-
-    def _tug(self) -> Iterator[None]:
-        """Take the collar, draw it, let it go."""
+    def _centre(self) -> Iterator[None]:
+        """Look, take, lift, carry, lay down, let go."""
         tuning = self.tuning
-        self.note(f"looks for the collar near the {self.side} shoulder")
-        path = ArmPath.of(watch_arm(self, self.side))
-        point = self.context.senses.collar_near_shoulder(
-            self.world.look("head"), side=self.side, shoulder_in_map=path.points[0]
-        )
+        self.note("looks where the collar lies")
+        middle = self._between_shoulders()
+        point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle)
+        aside, ahead = point.position_in_map[0] - middle[0], (point.position_in_map - middle) @ HEADWARD
+        self.note(f"the collar's middle is {aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders")
+        self.grasp = point
+        if abs(aside) < tuning.lies_well and ahead < tuning.headward:
+            yield
+            return
         approach = _from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
         yield from reach_in(self, self.hand, point.position_in_map, approach, point.closing_in_map)
-        try:
-            yield from pinch(self, self.hand)
-        except SkillFailure as miss:
-            if miss.reason == Reason.GRASP_MISSED:
-                yield from open_gripper(self, self.hand)
-                yield from withdraw(self, [self.hand], tuning.withdrawal)
-            raise
-        self.note(f"draws the collar to the neck from the {self.side}")
-        lifted = hand_now(self, self.hand)
-        lifted[:3, 3] += tuning.lift * UP
-        yield from move_hands(self, {self.hand: lifted}, speed=tuning.speed, way="either")
-        yield from self._draw(path)
+        yield from pinch_or_back_off(self, self.hand)
+        low = hand_now(self, self.hand)[:3, 3]
+        place = low + (*(middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
+        self.note("carries the collar to the midline")
+        yield from self._carry(low + tuning.lift * UP)
+        yield from self._carry(place + tuning.lift * UP)
+        yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], low[2]))
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
-        self.grasp = point
 
-    def _draw(self, path: ArmPath) -> Iterator[None]:
-        """Draw until the armhole is seen at the shoulder, the collar has come far enough, or it pulls too hard."""
-        tuning, n, armhole = self.tuning, SIDES.index(self.hand), ArmholeWatch(self, self.side, self.hand)
-        way = unit(unit(-path.direction(0.0) * (1.0, 1.0, 0.0)) + HEADWARD)
-        start = hand_now(self, self.hand)[:3, 3]
-        end = self.now() + tuning.timeout_factor * tuning.distance / tuning.speed
+    def _between_shoulders(self) -> np.ndarray:
+        """(3,) middle between the shoulders, where the arms were seen last: under the gown they may not show [m].
+
+        Raises:
+            PerceptionFailure: one of them was never found, and does not show.
+        """
+        known = watch_of(self).arms
+        arms = [known[side] if side in known else watch_arm(self, side) for side in SIDES]
+        return np.mean([arm.points_in_map[0] for arm in arms], axis=0)
+
+    def _carry(self, goal: np.ndarray) -> Iterator[None]:
+        """Straight to `goal` (3,) [m], or as far as the collar comes."""
+        tuning, n = self.tuning, SIDES.index(self.hand)
+        way = float(np.linalg.norm(goal - hand_now(self, self.hand)[:3, 3]))
+        end = self.now() + tuning.timeout_factor * way / tuning.speed
         while self.now() < end:
-            here = self.world.observe().pose_hand_in_map[n, :3, 3]
+            rest = goal - self.world.observe().pose_hand_in_map[n, :3, 3]
             load = cloth_load(self, self.hand)
-            armhole.locate(path, here)
-            seated = armhole.coordinate is not None and armhole.coordinate < tuning.seated
-            if seated or (here - start) @ way > tuning.distance or np.linalg.norm(load) > tuning.max_load:
+            pulls = np.linalg.norm(load) > tuning.max_load and load @ rest < 0.0
+            if np.linalg.norm(rest) < tuning.tolerance or pulls:
                 return
-            gone = float((here - start) @ way)
-            self.note(f"draws the {self.side} collar: {gone * 100:.0f} cm, {np.linalg.norm(load):.1f} N")
-            linear = tuning.speed * way
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(linear, np.zeros(3))))
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(tuning.speed * unit(rest), np.zeros(3))))
             yield
 
 

@@ -9,7 +9,6 @@ from typing import Protocol
 import numpy as np
 
 from ...perception.estimates import (
-    COLLAR_OF,
     CORNER_OF,
     ArmPosture,
     Cover,
@@ -30,7 +29,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.robot.kinematics import planar_pose
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import Frame, Observation, Side
-from .scripted_person import laid_strap, lying_arm, lying_posture, mirrored
+from .scripted_person import laid_strap, lying_arm, lying_posture
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,13 +173,13 @@ class ScriptedSenses(Senses):
         """All of it."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 
-    def collar_near_shoulder(self, frame: Frame, *, side: Side, shoulder_in_map: np.ndarray) -> GraspPoint:
-        """Above the shoulder, taken from above."""
+    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray) -> GraspPoint:
+        """A little aside, taken from above."""
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,
-            target=COLLAR_OF[side],
-            position_in_map=mirrored(np.array((0.14, -0.5, 0.80)), side),
+            target="collar_middle",
+            position_in_map=np.array((0.10, -0.5, 0.80)),
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )

@@ -29,10 +29,10 @@ CALLS = {  # name -> scene, type, details from the scene
         estimates.SleeveOpening,
         lambda s: {"side": "right", "near_in_map": s.arms["right"][0]},
     ),
-    "collar_near_shoulder": (
+    "collar_middle": (
         "lying",
         estimates.GraspPoint,
-        lambda s: {"side": "right", "shoulder_in_map": s.arms["right"][0]},
+        lambda s: {"near_in_map": (s.arms["left"][0] + s.arms["right"][0]) / 2},
     ),
     "head": ("person", estimates.Head, lambda s: {}),
     "arm": ("person", estimates.ArmPosture, lambda s: {"side": "right"}),

@@ -1,10 +1,9 @@
-"""Corners and shoulder part of the neck binding."""
+"""Corners and middle of the neck binding."""
 
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.gown.collar import collar_near_shoulder, corner_candidates
-from caretree.perception.image.projection import project
+from caretree.perception.gown.collar import collar_middle, corner_candidates
 
 
 def corner_places(scene):
@@ -35,18 +34,23 @@ def test_a_confident_corner_is_a_corner(scenes):
     assert np.mean(np.array(errors) < 0.05) > 0.85
 
 
-def test_near_the_shoulder(scenes):
+def test_the_middle_of_a_neckline_that_lies_on_the_person(scenes):
+    for seed in range(3):
+        scene = scenes.lying(seed)
+        ends = corner_places(scene)
+        grasp = collar_middle(scene.frame(), ends.mean(axis=0))
+        away = np.linalg.norm(ends - grasp.position_in_map, axis=1)
+        assert abs(away[0] - away[1]) < 0.15, seed  # [m]: as far from one end as from the other
+        assert scene.distance_to_cloth(grasp.position_in_map) < 0.015
+        assert grasp.approach_in_map[2] < 0
+        assert 0.3 < grasp.confidence <= 1.0
+
+
+def test_no_neckline_far_from_the_person(scenes):
     scene = scenes.lying(0)
-    frame = scene.frame()
-    shoulder = scene.arms["right"][0]
-    grasp = collar_near_shoulder(frame, "right", shoulder)
-    away = np.linalg.norm(project(frame, grasp.position_in_map)[0, :2] - project(frame, shoulder)[0, :2])
-    assert away <= 151 * frame.intrinsics[0] / 466
-    assert scene.distance_to_cloth(grasp.position_in_map) < 0.015
-    assert grasp.approach_in_map[2] < 0
     with pytest.raises(PerceptionFailure) as far:
-        collar_near_shoulder(frame, "right", shoulder + np.array((0, 2.0, 0)))
-    assert far.value.kind == "out_of_reach"
+        collar_middle(scene.frame(), corner_places(scene).mean(axis=0) + np.array((0, 2.0, 0)))
+    assert far.value.kind == "nothing_seen"
 
 
 def test_nothing(black):

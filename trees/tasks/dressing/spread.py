@@ -1,4 +1,4 @@
-"""The stage `spread` of the dressing tree: draw up the collar where the chest shows, and sleeves that slipped down."""
+"""The stage `spread` of the dressing tree: draw up sleeves that slipped down, and lay the collar straight."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
-from ...nodes.decorators import Condition, RecoverBy, Retry, Stage, timed_stage
+from ...nodes.decorators import Condition, RecoverBy, Stage, timed_stage
 from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
 from .tuning import DRESSING
 
@@ -24,37 +24,31 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 
 
 def spread(context: Context) -> Stage:
-    """The stage `spread`: where the chest is not covered, the collar is drawn on the left, then on the right."""
-    bed = Scope(context, "bed", side="left")
-
-    def covered(name: str) -> Behaviour:
-        look = LookAtPerson(f"look whether {name}", bed, part="trunk")
-        return sequence(f"see whether {name}", look, Condition(name, _chest_covered, Reason.NOTHING_SEEN))
-
-    collars = (draw_collar(context, "left"), draw_collar(context, "right"))
-    drawn = sequence("draw it straight", *collars, covered("the chest is covered"))
+    """The stage `spread`: both sleeves up, the collar in the middle, the chest covered."""
     return timed_stage(
         "spread",
-        fallback("spread the gown", covered("it lies spread already"), drawn),
         settle_sleeve(context, "left"),
         settle_sleeve(context, "right"),
+        straighten_collar(context, "right"),
+        LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
+        Condition("the chest is covered", _chest_covered, Reason.NOTHING_SEEN),
         seconds=DRESSING.spread_timeout,
     )
 
 
-def draw_collar(context: Context, side: Side) -> Behaviour:
-    """Draw the collar to one shoulder, as far as it goes."""
-    shoulder = Scope(context, f"{side} shoulder", side=side)
-    draw = sequence(
-        f"draw the collar to the {side} shoulder",
-        Navigate("go to its side", shoulder, goal=f"bed_{side}"),
-        Navigate("stand there", shoulder, goal=stance(side, "shoulder")),
-        LookAtPerson("look", shoulder),
-        Retry("spread again", Spread("spread", shoulder, hand=PULLING[side]), attempts=2),
-        Retreat("leave", shoulder, base_distance=DRESSING.shoulder_back_off),
+def straighten_collar(context: Context, side: Side) -> Behaviour:
+    """From beside one shoulder, bring the collar's middle over the breastbone, as far as the hand gets there."""
+    collar = Scope(context, "collar", side=side, hand=PULLING[side])
+    straight = sequence(
+        "straighten the collar",
+        Navigate("stand there", collar, goal=stance(side, "shoulder")),
+        LookAtPerson("look", collar),
+        Spread("spread", collar),
+        Spread("spread again", collar),
+        Retreat("leave", collar, base_distance=DRESSING.shoulder_back_off),
     )
-    as_it_is = Retreat("leave it as it is", shoulder, base_distance=DRESSING.shoulder_back_off)
-    return fallback(f"the {side} shoulder, as far as it goes", draw, as_it_is)
+    as_it_is = Retreat("leave it as it is", collar, base_distance=DRESSING.shoulder_back_off)
+    return fallback("the collar, as far as it goes", straight, as_it_is)
 
 
 def settle_sleeve(context: Context, side: Side) -> Behaviour:
