@@ -35,7 +35,7 @@ class SpreadTuning(Quantities):
         0.05, "m", "from there, aside, within which the collar is left as it is", "choice: as well as it is seen"
     )
     headward: float = quantity(
-        0.07, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"
+        0.05, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"
     )
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"

@@ -14,7 +14,7 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 
-Stand = Literal["lift", "shoulder"]
+Stand = Literal["lift", "shoulder", "collar"]
 LIFTING: dict[Side, Side] = {"right": "left", "left": "right"}  # arm -> the robot's hand on the head side
 PULLING: dict[Side, Side] = {"right": "right", "left": "left"}  # arm -> the robot's hand on the feet side
 HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
@@ -31,6 +31,12 @@ class StanceTuning(Quantities):
     )
     shoulder: tuple[float, float] = quantity(
         (0.97, -0.62), "m", "x and y of the base that pulls the right sleeve from the elbow to the neck", _FOUND
+    )
+    collar: tuple[float, float] = quantity(
+        (0.80, -0.62),
+        "m",
+        "x and y of the base that lays the collar straight",
+        "measured: the right hand points down anywhere from 0.15 m right to 0.20 m left of the midline",
     )
     lane: float = quantity(
         0.77,
@@ -51,7 +57,7 @@ STANCES = StanceTuning()
 
 def stance(arm: Side, stand: Stand, *, tuning: StanceTuning = STANCES) -> np.ndarray:
     """Base pose (3,) in the map beside one of the person's arms, facing the bed [m, m, rad]."""
-    x, y = tuning.lift if stand == "lift" else tuning.shoulder
+    x, y = {"lift": tuning.lift, "shoulder": tuning.shoulder, "collar": tuning.collar}[stand]
     return np.array((x, y, np.pi)) if arm == "right" else np.array((-x, y, 0.0))
 
 

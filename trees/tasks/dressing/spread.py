@@ -41,7 +41,7 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
     collar = Scope(context, "collar", side=side, hand=PULLING[side])
     straight = sequence(
         "straighten the collar",
-        Navigate("stand there", collar, goal=stance(side, "shoulder")),
+        Navigate("stand there", collar, goal=stance(side, "collar")),
         LookAtPerson("look", collar),
         Spread("spread", collar),
         Spread("spread again", collar),
