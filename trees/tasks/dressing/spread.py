@@ -28,8 +28,10 @@ def spread(context: Context) -> Stage:
     return timed_stage(
         "spread",
         settle_sleeve(context, "left"),
+        will_do(context, "left"),
         settle_sleeve(context, "right"),
         straighten_collar(context, "right"),
+        will_do(context, "right"),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", _chest_covered, Reason.NOTHING_SEEN),
         seconds=DRESSING.spread_timeout,
@@ -83,10 +85,19 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
         put_down("first", sleeve),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, draw_up), attempts=3),
+            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, draw_up), attempts=DRESSING.settle_attempts),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
         put_down("in the end", sleeve),
+    )
+
+
+def will_do(context: Context, side: Side) -> Behaviour:
+    """Look from the same side of the bed whether the sleeve is up far enough."""
+    sleeve = arm_scope(context, f"{side} sleeve", side)
+    return sequence(
+        f"see whether the {side} sleeve will do",
+        LookAtPerson("look at the end", sleeve),
         CheckSleeve("will do", sleeve, max_cuff_distance=DRESSING.cuff_will_do),
     )
 
