@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal, Protocol, get_args
 
 import numpy as np
 
@@ -20,7 +20,8 @@ Side = Literal["left", "right"]
 Hands = Literal["left", "right", "both"]  # of the robot
 SIDES: tuple[Side, Side] = ("left", "right")
 CAMERAS = ("head", "left_hand", "right_hand")
-ARM_JOINTS: tuple[str, ...] = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")  # Baxter's names, shoulder to wrist
+ArmJoint = Literal["s0", "s1", "e0", "e1", "w0", "w1", "w2"]  # Baxter's names, shoulder to wrist
+ARM_JOINTS: tuple[ArmJoint, ...] = get_args(ArmJoint)
 
 
 class WorldError(CaretreeError):

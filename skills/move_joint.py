@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import ARM_JOINTS, SIDES, JointTrajectory, Side
+from ..sim.world import ARM_JOINTS, SIDES, ArmJoint, JointTrajectory, Side
 from .control.follow import follow
 from .core.ports import Input, Output
 from .core.reasons import Reason
@@ -29,7 +29,7 @@ class MoveJoint(Skill):
     """
 
     side = Input(Side, doc="the arm")
-    joint = Input(str, doc="name of the joint, shoulder to wrist: s0 s1 e0 e1 w0 w1 w2")
+    joint = Input(ArmJoint, doc="name of the joint, shoulder to wrist: s0 s1 e0 e1 w0 w1 w2")
     angle = Input(float, unit="rad", doc="by which the joint turns, or where it goes")
     relative = Input(bool, doc="whether `angle` counts from where the joint is", default=True)
     speed = Input(float, unit="rad/s", doc="of the joint", default=0.3)

@@ -28,9 +28,18 @@ def test_every_package_is_listed_by_hand():
     on_disk = {init.parent.relative_to(ROOT) for folder in FOLDERS for init in (ROOT / folder).rglob("__init__.py")}
     options = setup_cfg()["options"]
     packages = {f"caretree.{'.'.join(path.parts)}": path.as_posix() for path in on_disk}
+    packages["caretree"] = "caretree"  # __main__.py alone: the name is shared, so it has no __init__.py
+    assert [path.name for path in (ROOT / "caretree").iterdir() if path.suffix] == ["__main__.py"]
     assert set(listed(options["packages"])) == set(packages)
     places = dict(re.split(r"\s*=\s*", line) for line in listed(options["package_dir"]))
     assert places == packages
+
+
+def test_texts_that_commands_copy_are_shipped():
+    patterns = setup_cfg()["options.package_data"]["caretree.trees"].replace(",", " ").split()
+    assert {path.name for pattern in patterns for path in (ROOT / "trees").glob(pattern)} >= {
+        path.name for path in (ROOT / "trees/skeleton").iterdir()
+    }
 
 
 @pytest.mark.parametrize("folder", FOLDERS)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .nodes.composers import parallel as parallel
     from .nodes.composers import reactive_fallback as reactive_fallback
     from .nodes.composers import sequence as sequence
-    from .nodes.decorators import Condition as Condition
+    from .nodes.condition import Condition as Condition
     from .nodes.decorators import FailSafe as FailSafe
     from .nodes.decorators import RecoverBy as RecoverBy
     from .nodes.decorators import Retry as Retry
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .run.stages import TaskStage as TaskStage
 
 _HOME = {
-    "Condition": ".nodes.decorators",
+    "Condition": ".nodes.condition",
     "FailSafe": ".nodes.decorators",
     "RecoverBy": ".nodes.decorators",
     "Retry": ".nodes.decorators",

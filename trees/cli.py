@@ -1,4 +1,4 @@
-"""The command line: `caretree run|check|inject|replay|skills|report|trials|evaluate|gap|learn`.
+"""The command line: `caretree run|check|inject|replay|skills|new|export|report|trials|evaluate|...`.
 
 A user's mistake is answered by one sentence and exit status 2.
 """
@@ -27,7 +27,22 @@ WORLD_KINDS = (
     "easy+wrench_bias, easy+depth_noise, easy+thinking_time, hard"
 )
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
+EXPORTS = ("xml",)
+SHELLS = ("bash", "zsh")
 DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
+
+
+class _Version(argparse.Action):
+    """Prints the version; it is looked up only when it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *unused: object) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print(f"caretree {version('caretree')}")
+        except PackageNotFoundError:  # run from its sources
+            print("caretree, not installed")
+        parser.exit()
 
 
 def _kind_option(parser: argparse.ArgumentParser) -> None:
@@ -53,6 +68,7 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
 def build_parser(command: str = "") -> argparse.ArgumentParser:
     """The parser of all commands; `command` is the one that will be called."""
     parser = CommandParser(prog="caretree", description="Behaviour trees for assistive manipulation.")
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     run = commands.add_parser("run", help="run a task", description="Run a task and write its record.")
@@ -74,6 +90,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         help="a number of every leaf of that skill, see `caretree skills SKILL`; may be repeated",
     )
     run.add_argument("--tuning", metavar="FILE", help="YAML file of such numbers: skill, number, value")
+    run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
@@ -102,8 +119,23 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     skills = commands.add_parser("skills", help="list the skills; of one its ports, reasons and numbers")
     skills.add_argument("name", nargs="?", metavar="NAME", help="of a skill: present_sleeve or PresentSleeve")
 
+    new = commands.add_parser("new", help="begin a task: a task file that runs, with its scripted world and its test")
+    new.add_argument("name", metavar="TASK", help="name of the task, a Python name such as fetch_gown")
+    new.add_argument("--out", default=".", metavar="DIR", help="folder for its files (default: here)")
+
+    export = commands.add_parser("export", help="write a task's tree for other programs, such as Groot2")
+    export.add_argument("form", metavar="FORM", choices=EXPORTS, help="xml: BehaviorTree.CPP 4")
+    export.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    export.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
+    export.add_argument("--out", metavar="FILE", help="file to write (default: print it)")
+
     report = commands.add_parser("report", help="draw the page of a record, of a run cut short too")
     report.add_argument("directory", metavar="DIR")
+
+    completion = commands.add_parser("completion", help="print what makes a shell complete caretree's words")
+    completion.add_argument(
+        "shell", metavar="SHELL", choices=SHELLS, help='bash or zsh: eval "$(caretree completion bash)"'
+    )
 
     for name, (module, summary) in SELF_PARSED.items():
         if name == command:  # the others' modules stay unread: help must be instant

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -9,10 +10,17 @@ from typing import Any
 import numpy as np
 import yaml
 
+from ...sim.yaml_text import load_yaml
 from .errors import GapError
 from .table import read_table
 
 SYSTEMS = ("arm", "axis", "fall", "cloth")
+EPISODE_KEYS = ("file", "role", "phases", "pins", "mass")
+SET_KEYS = (
+    *("system", "episodes", "phases", "robot", "gravity", "mass", "diameter"),
+    *("mesh", "physics", "pins", "capsules", "markers"),
+)
+ALIKE = 0.75  # of the letters: `masss` is meant as mass, `name` is not
 ROLES = ("fit", "heldout", "repeat")
 
 
@@ -98,10 +106,11 @@ def load_set(folder: Path | str) -> MeasurementSet:
             f"{file}: no such file, a measurement set is a folder with measurement.yaml and one CSV per episode"
         )
     try:
-        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+        content = load_yaml(file.read_text(encoding="utf-8"))
     except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        raise GapError(f"{file}: row {mark.line + 1 if mark else 1} is not YAML") from None
+        mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None)
+        what = f"is not YAML{f': {problem}' if problem else ''}"
+        raise GapError(f"{file}: row {mark.line + 1 if mark else 1} {what}") from None
     except UnicodeDecodeError as error:
         raise GapError(f"{file}: byte {error.start + 1} is not UTF-8 text") from None
     if not isinstance(content, dict) or not content:
@@ -114,6 +123,7 @@ def load_set(folder: Path | str) -> MeasurementSet:
         raise GapError(f"{file}: `episodes` must list at least two entries with `file`")
     if len(listed) < 2:
         raise GapError(f"{file}: `episodes` lists one episode only, at least two are needed (one to fit, one held out)")
+    _refuse_misspelt(file, content, SET_KEYS)
     shared = _phases(file, content.get("phases"))
     episodes = [_episode(file, entry, shared) for entry in listed]
     names = [e.name for e in episodes]
@@ -129,6 +139,7 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
         entry = {"file": entry}
     if not isinstance(entry, dict) or not isinstance(entry.get("file"), str):
         raise GapError(f"{file}: every episode needs `file`, this one is {entry!r}")
+    _refuse_misspelt(file, entry, EPISODE_KEYS)
     role = entry.get("role", "")
     if role not in ("", None, *ROLES):
         raise GapError(f"{file}: role of {entry['file']} is {role!r}, it must be one of {', '.join(ROLES)}")
@@ -141,6 +152,18 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
         phases=_phases(file, entry.get("phases")) or shared,
         settings={k: v for k, v in entry.items() if k not in ("file", "role", "phases")},
     )
+
+
+def _refuse_misspelt(file: Path, given: dict[Any, Any], known: tuple[str, ...]) -> None:
+    """Notes of any name may stand in a set, but none that looks like a setting: `rolle` would hide held-out data.
+
+    Raises:
+        GapError: one does.
+    """
+    for key in given:
+        near = difflib.get_close_matches(str(key), known, n=1, cutoff=ALIKE) if key not in known else []
+        if near:
+            raise GapError(f"{file}: there is no setting {key!r}, did you mean {near[0]}?")
 
 
 def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:

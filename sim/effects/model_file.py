@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from ..yaml_text import load_yaml
 from .body.body_registry import BODY_EFFECTS
 from .effect import EffectError
 from .joint.joint_registry import JOINT_EFFECTS
@@ -62,9 +63,10 @@ def load_model(path: Path | str) -> EffectModel:
     if not path.is_file():
         raise EffectError(f"{path}: no such file")
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError):
-        raise EffectError(f"{path}: not YAML") from None
+        content = load_yaml(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        problem = getattr(error, "problem", None)
+        raise EffectError(f"{path}: not YAML{f': {problem}' if problem else ''}") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise EffectError(f"{path}: `format` must be {FORMAT}")
     system = content.get("system")

@@ -156,7 +156,7 @@ def read_run(directory: Path) -> dict[str, Any]:
         run = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise RecordError(f"{directory} holds no {RUN_FILE}: it is not a run record") from error
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise RecordError(f"{path} is damaged: {error}") from error
     if not isinstance(run, dict):
         raise RecordError(f"{path} holds a {type(run).__name__}, but an object with task and outcome is asked for")

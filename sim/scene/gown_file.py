@@ -20,6 +20,7 @@ from typing import Any
 import yaml
 
 from ..errors import CaretreeError
+from ..yaml_text import load_yaml
 from .gown import GOWNS, GownSpec
 
 FORMAT = "caretree-gown-1"
@@ -100,10 +101,12 @@ def read_gown(path: str | Path) -> GownFile:
     if not path.is_file():
         raise CaretreeError(f"{path}: there is no such gown file")
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = load_yaml(path.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         where = getattr(error, "problem_mark", None)
-        raise CaretreeError(f"{path}{f':{where.line + 1}' if where else ''}: this is not YAML") from error
+        problem = getattr(error, "problem", None)
+        what = f"this is not YAML{f': {problem}' if problem else ''}"
+        raise CaretreeError(f"{path}{f':{where.line + 1}' if where else ''}: {what}") from error
     try:
         return _checked(content)
     except CaretreeError as error:

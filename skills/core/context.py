@@ -157,6 +157,11 @@ class Context:
             raise CaretreeError("this run has no senses: the task's build() offers none with context.offer_senses(...)")
         return self._senses
 
+    @property
+    def has_senses(self) -> bool:
+        """Whether this run has senses, given or offered."""
+        return self._senses is not None
+
     def offer_senses(self, senses: Senses) -> None:
         """Set the senses of a task or an example; those that the run was given, or was offered first, win."""
         if self._senses is None:

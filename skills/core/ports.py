@@ -5,7 +5,7 @@
         force = Input(float, unit="N", doc="of the grip at most", default=20.0)
         held = Output(GraspPoint, doc="where the cloth is held")  # Grasp(..., held=Key("held"))
 
-An input read before it was written, or a value of the wrong type, raises PortError; `caretree check` finds
+An input read before it was written, or a value of the wrong type, raises PortError, NaN too; `caretree check` finds
 both before anything moves.  Outputs are unset whenever their skill is entered, so no skill sees stale data.
 `caretree skills NAME` prints types, units and documentation.
 """
@@ -16,6 +16,8 @@ import types
 import typing
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar, overload
+
+import numpy as np
 
 from ...sim.errors import CaretreeError
 
@@ -124,6 +126,13 @@ class Board:
         return frozenset(self._values)
 
 
+def _is_nan(value: object) -> bool:
+    """Whether a number, or one of an array, is none."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind == "f" and bool(np.isnan(value).any())
+    return isinstance(value, float) and value != value
+
+
 class _Port(Generic[T]):
     """Common part of inputs and outputs: a name, a type, a unit, a sentence, and a place in the owner's `bindings`."""
 
@@ -192,6 +201,8 @@ class Input(_Port[T]):
             raise PortError(f"{type(owner).__name__} needs {self.name}={type_name(self.kind)} or a Key")
         if not isinstance(value, Key):
             self._check(owner, value)
+            if _is_nan(value):
+                raise PortError(f"{type(owner).__name__}.{self.name} is {value}, which is no number")
         return value
 
 

@@ -7,7 +7,7 @@ import pytest
 from caretree.skills.core.skill import Skill
 from caretree.trees.proof.check import check
 from caretree.trees.run.runner import run
-from caretree.trees.run.task import Task
+from caretree.trees.run.task import Task, load_task
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
@@ -32,6 +32,18 @@ def test_files_that_are_named_exist():
         if not (ROOT / file).exists()
     }
     assert lost == set()
+
+
+XML = [(page.name, text) for page in PAGES for text in re.findall(r"```xml\n(.*?)```", page.read_text(), re.S)]
+
+
+@pytest.mark.parametrize(("page", "text"), XML, ids=[page for page, _ in XML])
+def test_xml_blocks_run(page, text, tmp_path):
+    (tmp_path / "page.xml").write_text(text)
+    task = load_task(str(tmp_path / "page.xml"))
+    world, senses = task.scripted(0)
+    assert check(task).ok
+    assert run(task, world, senses=senses).outcome == "success"
 
 
 BLOCKS = [(page.name, code) for page in PAGES for code in re.findall(r"```python\n(.*?)```", page.read_text(), re.S)]

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -289,3 +290,39 @@ def test_help_is_instant_because_nothing_heavy_is_imported():
     assert done.stdout.splitlines()[-1] == "[]"
     for command in ("run", "check", "inject", "replay", "trials", "evaluate", "gap", "learn"):
         assert command in done.stdout
+
+
+def test_the_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"caretree {metadata.version('caretree')}\n"
+
+
+def test_a_task_with_faults_that_show_is_not_run_unless_told(tmp_path, capsys):
+    (tmp_path / "unsafe.py").write_text("""
+from caretree.skills import MoveJoint
+
+
+def build(context):
+    return MoveJoint("h", context, side="left", joint="w1", angle=0.1)
+""")
+    assert main(["run", "unsafe.py", "--world", "scripted", "--out", "r"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("caretree: h: it moves the robot, but no FailSafe is above it; `caretree check unsafe.py`")
+    assert not (tmp_path / "r").exists()
+    assert main(["run", "unsafe.py", "--world", "scripted", "--unchecked", "--out", "r"]) == 0
+
+
+def test_a_name_that_no_font_can_draw_ends_no_run(tmp_path, capsys):
+    (tmp_path / "odd.py").write_text("""
+from caretree.skills import HoldStill, Retreat
+from caretree.trees import FailSafe
+
+
+def build(context):
+    hold = HoldStill("\\u6301\\u3064\\u202e\\ud800", context, seconds=0.1)
+    return FailSafe("safely", hold, Retreat("let go", context, hand_distance=0.0, ready="never"))
+""")
+    assert main(["run", "odd.py", "--world", "scripted", "--out", "r"]) == 0
+    assert "success: The task is done." in capsys.readouterr().out

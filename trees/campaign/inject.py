@@ -7,11 +7,12 @@ no arm is held, and, unless the task succeeded, the fingers are open.
 from __future__ import annotations
 
 import collections
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+import py_trees
 from py_trees.behaviour import Behaviour
 
 from ...perception.senses import Senses
@@ -85,6 +86,7 @@ class Campaign:
         self._seed = seed
         self._faults = faults
         self._reached: set[tuple[str, str]] = set()
+        self._missed: set[tuple[str, str]] = set()  # places that a run of their own did not come to
         run = self._prepare(())
         self.nodes = [node.name for node in run.root.iterate() if isinstance(node, Skill)]
         self._movers = {node.name for node in run.root.iterate() if isinstance(node, Skill) and node.commands}
@@ -103,7 +105,7 @@ class Campaign:
         moving = [node for node in order if node in self._movers]
         # to see the safe branch at work, the run is stopped where it is deepest in the task
         self._interrupt_at = moving[-1] if moving else None
-        self._triggers = _triggers(run.root, set(order))
+        self._triggers = triggers_of(run.root)
 
     def plan(self) -> list[FaultKey]:
         """Every node, phase and fault."""
@@ -115,21 +117,22 @@ class Campaign:
             yield self._row(*key)
 
     def _row(self, node: str, phase: str, fault: str) -> Row:
-        stop_at, trigger = self._stop_at(node, phase), self._triggers.get(node)
+        stop_at, trigger = self._stop_at(node, phase), self._triggers[node]
         needed = (node, "step") if phase == "cancel" else (node, phase)
-        reachable = stop_at is not None if node in self._safe else needed in self._reached or trigger is not None
-        if not reachable:
+        reachable = stop_at is not None if node in self._safe else needed in self._reached or bool(trigger)
+        if not reachable or self._missed & {(node, "start"), (node, phase)}:
             return Row(node=node, phase=phase, fault=fault, outcome="not_reached")
         run = self._prepare((FaultSpec(fault, node, phase),))
         if stop_at is not None:
             run.context.observers.append(lambda name, now: _stop(run, name, now, stop_at))
-        if trigger is not None and needed not in self._reached:
-            run.context.observers.append(_Fail(*trigger))
+        if trigger and needed not in self._reached:
+            run.context.observers.append(_Fail(trigger, needed))
         world = run.world
         assert isinstance(world, FaultyWorld)
         try:
             result = _finished(run)
-            if not world.begun:
+            if not world.begun:  # whatever the fault
+                self._missed.add((node, phase))
                 return Row(node=node, phase=phase, fault=fault, outcome="not_reached")
             return Row(
                 node=node,
@@ -165,29 +168,49 @@ def _finished(run: Run) -> RunResult:
     return result
 
 
-def _triggers(root: Behaviour, stepped: set[str]) -> dict[str, tuple[str, Reason]]:
-    """Skill in a recovery -> the skill that must fail, and the reason, for that recovery to run."""
-    found: dict[str, tuple[str, Reason]] = {}
-    for node in root.iterate():
-        if isinstance(node, RecoverBy):
-            causes = [leaf.name for leaf in node.body.iterate() if isinstance(leaf, Skill) and leaf.name in stepped]
-            for reason, recovery in node.recoveries.items():
-                for leaf in recovery.iterate():
-                    if causes and isinstance(leaf, Skill):
-                        found.setdefault(leaf.name, (causes[0], reason))
-    return found
+def triggers_of(root: Behaviour) -> dict[str, dict[str, Reason]]:
+    """What must fail, and why, for a skill to run at all: skill -> skills -> reason; empty where nothing need fail.
+
+    A recovery runs when its body fails for one of its reasons, an alternative when all before it have failed.
+    """
+    return {leaf.name: _needed(leaf) for leaf in root.iterate() if isinstance(leaf, Skill)}
+
+
+def _needed(leaf: Behaviour) -> dict[str, Reason]:
+    made: dict[str, Reason] = {}
+    child = leaf
+    while child.parent is not None:
+        above = child.parent
+        if isinstance(above, RecoverBy) and child is not above.body:
+            reason = next(reason for reason, tree in above.recoveries.items() if tree is child)
+            made |= dict.fromkeys(_deciding(above.body), reason)
+        elif isinstance(above, py_trees.composites.Selector):
+            for earlier in above.children[: above.children.index(child)]:
+                made |= dict.fromkeys(_deciding(earlier), Reason.INTERNAL_ERROR)  # nobody recovers from that
+        child = above
+    return made
+
+
+def _deciding(node: Behaviour) -> list[str]:
+    """Skills whose failure makes `node` fail, the earliest ones."""
+    if isinstance(node, Skill):
+        return [node.name]
+    if isinstance(node, py_trees.composites.Selector):
+        return [name for child in node.children for name in _deciding(child)]
+    return next((found for child in node.children if (found := _deciding(child))), [])
 
 
 class _Fail:
-    """Makes one skill fail once for a given reason, as if by its own doing."""
+    """Makes skills fail, as if by their own doing, until the run has come to where it should."""
 
-    def __init__(self, skill: str, reason: Reason) -> None:
-        self._skill, self._reason, self._armed = skill, reason, True
+    def __init__(self, skills: Mapping[str, Reason], goal: tuple[str, str]) -> None:
+        self._skills, self._goal, self._armed = skills, goal, True
 
     def __call__(self, name: str, phase: Phase) -> None:
-        if self._armed and name == self._skill and phase == "step":
+        if (name, phase) == self._goal:
             self._armed = False
-            raise SkillFailure(self._reason, "made to fail by the campaign")
+        elif self._armed and name in self._skills and phase == "start":
+            raise SkillFailure(self._skills[name], "made to fail by the campaign")
 
 
 def _stop(run: Run, name: str, phase: Phase, at: str) -> None:

@@ -7,16 +7,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...sim.errors import CaretreeError
 from ...sim.faults import FaultyWorld, parse_fault
-from ...sim.record.record import RUN_FILE, TRACE_FILE, read_finished_run, versions
-from ...sim.world_kind import EASY
+from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
 from ..run.runner import Run
 from ..run.task import load_task
 from ..run.trace import canonical
 from ..run.worlds import make_world, prepare_stage
+from .recorded import recorded
 
 
 @dataclass(frozen=True)
@@ -41,44 +40,38 @@ def replay(directory: Path) -> Replay:
         CaretreeError: the record is damaged or unfinished, or its task or world is not there.
         KeyboardInterrupt: the operator ended the second run.
     """
-    record = read_finished_run(directory)
-    try:
-        task, seed, world_name = str(record["task"]), int(record["seed"]), str(record["world"])
-        parameters: dict[str, Any] = dict(record.get("parameters") or {})
-    except (KeyError, TypeError, ValueError) as error:
-        raise CaretreeError(f"{directory / RUN_FILE} is damaged: task, seed and world are asked for") from error
+    given = recorded(directory)
     before = read_trace(directory / TRACE_FILE)
-    loaded = load_task(task)
+    loaded = load_task(given.task)
+    faults = [parse_fault(text) for text in given.inject]
     inner, senses = make_world(
-        world_name,
+        given.world,
         loaded,
-        seed=seed,
-        gown=parameters.get("gown"),
-        person=parameters.get("person"),
-        model=parameters.get("model"),
-        kind=parameters.get("world_kind", EASY),  # records from before there were kinds
+        seed=given.seed,
+        gown=given.gown,
+        person=given.person,
+        model=given.model,
+        kind=given.world_kind,
     )
-    stage = parameters.get("stage")
-    faults = [parse_fault(text) for text in parameters.get("inject") or []]
     try:
         world = FaultyWorld(inner, faults) if faults else inner
         run = Run(
             loaded,
             world,
-            seed=seed,
-            rate_hz=float(parameters.get("rate_hz", 15.0)),
+            seed=given.seed,
+            rate_hz=given.rate_hz,
             senses=senses,
-            params=loaded.parameters(stage),
-            settings=Settings(parameters.get("tuning")),
+            params=loaded.parameters(given.stage),
+            settings=Settings(given.tuning),
         )
-        prepare_stage(inner, loaded, stage)
+        prepare_stage(inner, loaded, given.stage)
         run.run()
         if run.interrupted:
             raise KeyboardInterrupt
     finally:
         inner.close()
     difference = first_difference(before, run.trace.events)
-    now, then = versions(), record.get("versions") or {}
+    now, then = versions(), given.versions
     changed = [
         f"{name}: {then[name]}, now {now[name]}" for name in sorted(now) if name in then and then[name] != now[name]
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ..proof.check import check, fresh_tree
+from ..proof.check import check, fresh_tree, rehearse
 from ..proof.draw import drawn
 from ..run.task import load_task
 
@@ -20,6 +20,10 @@ def main(options: argparse.Namespace) -> int:
         print("\n".join(drawn(fresh_tree(task))))
         return 0
     report = check(task)
+    if report.ok:  # else it would only show once more what was found
+        rehearsal = rehearse(task)
+        report.findings += rehearsal.findings
+        report.notes += rehearsal.notes
     for finding in report.findings:
         print(f"fault: {finding}")
     for note in report.notes:

@@ -21,6 +21,7 @@ from ...sim.record.recorder import Recorder
 from ...sim.world import World
 from ...sim.world_kind import WorldKind
 from ...skills.core.settings import Settings
+from ..proof.check import check_quickly
 from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
@@ -54,6 +55,8 @@ def main(options: argparse.Namespace) -> int:
         CaretreeError: the input is bad, or some of the record could not be written.
     """
     task = load_task(options.task)
+    if not options.unchecked:
+        _refuse_faulty(task, options.stage)
     faults = [parse_fault(text) for text in options.inject]
     settings = read_settings(options.set, options.tuning)
     parameters = {
@@ -91,6 +94,20 @@ def main(options: argparse.Namespace) -> int:
                 inner.close()
     finally:
         claim.release()
+
+
+def _refuse_faulty(task: Task, stage: str | None) -> None:
+    """Refuse a task with faults that show without running it.
+
+    Raises:
+        CaretreeError: it has some.
+    """
+    findings = check_quickly(task, stage).findings
+    if findings:
+        more = f", and {len(findings) - 1} more" if len(findings) > 1 else ""
+        raise CaretreeError(
+            f"{findings[0]}{more}; `caretree check {task.file}` tells all, `run --unchecked` runs it nevertheless"
+        )
 
 
 def _run(
@@ -188,8 +205,8 @@ def _report(directory: Path) -> Path | None:
         from ..report.page import write_report  # matplotlib is needed only here
 
         return write_report(directory)
-    except (ImportError, CaretreeError, ValueError) as error:
-        print(f"no report: {error}")
+    except Exception as error:  # a font without a sign of a skill's name must not end what has run
+        print(f"no report: {said(error)}")
         return None
 
 

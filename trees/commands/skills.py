@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import argparse
 import difflib
-import importlib
 import inspect
-import pkgutil
 import textwrap
 
-from ... import skills
 from ...sim.errors import CaretreeError
 from ...sim.quantity import Quantities, rows
 from ...skills.core.ports import Input, Output, ports_of, type_name
 from ...skills.core.settings import TUNING, setting_name
 from ...skills.core.skill import Skill
+from ..run.catalogue import all_skills
 
 WIDTH = 110  # characters of a line
 
@@ -37,16 +35,6 @@ def main(options: argparse.Namespace) -> int:
         raise CaretreeError(f"no skill is called {options.name!r}; {hint}")
     print("\n".join(described(kind)))
     return 0
-
-
-def all_skills() -> dict[str, type[Skill]]:
-    """The leaves of the package by their names: `present_sleeve` -> `PresentSleeve`."""
-    for info in pkgutil.iter_modules(skills.__path__):
-        if not info.ispkg:
-            importlib.import_module(f"{skills.__name__}.{info.name}")
-    home = f"{skills.__name__}."
-    found = {setting_name(kind): kind for kind in Skill.registry if kind.__module__.startswith(home)}
-    return dict(sorted(found.items()))
 
 
 def described(kind: type[Skill]) -> list[str]:

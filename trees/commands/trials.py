@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...sim.command_line import INTERRUPTED
+from ...sim.command_line import INTERRUPTED, SEEDS
 from ...sim.errors import CaretreeError
 from ..campaign.trials import TABLE, Plan, run_trials
 from ..run.stop_signals import StopSignals
 
+TRIALS_MAX = 100_000  # a run takes a second at least
 PASSED_ON = ("world", "world-kind", "gown", "person", "model", "tuning")  # to every `caretree run`
 
 
@@ -58,15 +59,21 @@ def parse_seeds(count: int | None, seeds: str | None) -> tuple[int, ...]:
         number = 10 if count is None else count
         if number < 1:
             raise CaretreeError(f"-n is {number}, but at least 1 trial is asked for")
+        if number > TRIALS_MAX:
+            raise CaretreeError(f"-n is {number}, but at most {TRIALS_MAX} trials are run at a time")
         return tuple(range(number))
     try:
         if "-" in seeds:
             first, last = (int(part) for part in seeds.split("-"))
+            if last - first >= TRIALS_MAX:
+                raise CaretreeError(f"--seeds is {seeds!r}, but at most {TRIALS_MAX} trials are run at a time")
             found = tuple(range(first, last + 1))
         else:
             found = tuple(int(part) for part in seeds.split(","))
     except ValueError as error:
         raise CaretreeError(f"--seeds is {seeds!r}, but A-B like 0-9 or a list like 3,7,9 is asked for") from error
+    if any(not 0 <= each < SEEDS for each in found):
+        raise CaretreeError(f"--seeds is {seeds!r}, but a seed is a whole number from 0 to {SEEDS - 1}")
     if not found:
         raise CaretreeError(f"--seeds is {seeds!r}, but A must not be above B")
     if count is not None and count != len(found):

@@ -13,13 +13,12 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from ...perception.errors import PerceptionFailure
 from ...sim.record.record import StageResult
 from ...skills.core.context import Context
-from ...skills.core.ports import PortError
-from ...skills.core.reasons import Failure, Reason, SkillFailure
+from ...skills.core.reasons import Failure, Reason
 from ...skills.core.skill import Skill
 from .composers import TreeError, check_children, sequence
+from .condition import Condition
 from .failures import failure_of
 
 
@@ -350,46 +349,6 @@ class FailSafe(Wrapper):
             return Status.RUNNING
         self.made_safe = self.safe.status == Status.SUCCESS
         self.entered = not self.made_safe  # owed to an outer fail-safe or to the runner's last resort
-        return Status.FAILURE
-
-
-class Condition(Behaviour):
-    """A leaf that asks a question of the context.
-
-    Args:
-        name: of the node.
-        test: says whether it holds; any truth value, numpy's too.  A SkillFailure carries its own reason.
-        reason: why it fails otherwise.
-    """
-
-    def __init__(self, name: str, test: Callable[[Context], object], reason: Reason = Reason.PRECONDITION) -> None:
-        super().__init__(name)
-        self.test = test
-        self.reason = reason
-        self.failure: Failure | None = None
-        self.context: Context | None = None
-
-    def bind(self, context: Context) -> None:
-        """Join a run."""
-        self.context = context
-
-    def update(self) -> Status:
-        """Ask."""
-        self.failure = None
-        if self.context is None:
-            raise TreeError(f"{self.name!r} is not bound to a run; only the runner ticks a tree")
-        try:
-            if bool(self.test(self.context)):
-                return Status.SUCCESS
-            self.failure = Failure(self.reason, "", self.name)
-        except SkillFailure as stop:
-            self.failure = Failure(stop.reason, stop.detail, self.name)
-        except (PortError, PerceptionFailure) as error:
-            self.failure = Failure(self.reason, str(error), self.name)
-        except Exception as error:
-            self.context.report(error)
-            self.failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", self.name)
-        self.feedback_message = self.failure.sentence()
         return Status.FAILURE
 
 

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import collections
 from dataclasses import dataclass, field
+from typing import Any
 
 import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy
 
 from ...skills.core.context import Context
+from ...skills.core.reasons import Reason
 from ...skills.core.skill import Skill
 from ..guard.guard import GuardedWorld
 from ..nodes.composers import commanding
-from ..nodes.decorators import FailSafe, RecoverBy, Retry
+from ..nodes.condition import Condition
+from ..nodes.decorators import FailSafe, RecoverBy, Retry, Wrapper
+from ..run.runner import Run
 from ..run.task import Task
 from ..run.trace import paths_of
 from .explore import FROM_OUTSIDE, Explorer
+from .leaves import leaf_findings
 from .wiring import Wiring
 
 # py_trees' own nodes that break a law of this project when skills are below them.
@@ -60,15 +65,7 @@ def check(task: Task) -> CheckReport:
     Raises:
         TaskError: the tree cannot even be built.
     """
-    report = CheckReport()
-    root = fresh_tree(task)
-    paths = paths_of(root)
-    report.skills = sum(isinstance(node, Skill) for node in root.iterate())
-    report.findings += _names(root) + _nodes(root, paths) + _fail_safes(root, paths)
-    report.notes += _idle_recoveries(root, paths)
-    wiring = Wiring(paths)
-    wiring.check(root)
-    report.findings += wiring.findings
+    report = check_quickly(task)
     explorer = Explorer(fresh_tree(task))
     explorer.explore()
     report.findings += explorer.findings
@@ -78,15 +75,74 @@ def check(task: Task) -> CheckReport:
     return report
 
 
+def check_quickly(task: Task, stage: str | None = None) -> CheckReport:
+    """The part of a check that takes no time: names, nodes, leaves, fail-safes and wiring; `caretree run` asks for it.
+
+    Args:
+        task: to check.
+        stage: that is run alone, or a span of them; None for the whole task.
+
+    Raises:
+        TaskError: the tree cannot even be built, or there is no such stage.
+    """
+    report = CheckReport()
+    root, context = _built(task, **task.parameters(stage))
+    paths = paths_of(root)
+    report.skills = sum(isinstance(node, Skill) for node in root.iterate())
+    report.findings += _names(root) + _nodes(root, paths) + _fail_safes(root, paths)
+    report.findings += leaf_findings(root, context, paths)
+    report.notes += _idle_recoveries(root, paths)
+    wiring = Wiring(paths)
+    wiring.check(root)
+    report.findings += wiring.findings
+    return report
+
+
+def rehearse(task: Task) -> CheckReport:
+    """Run the task once on its scripted world: errors of its own code are findings, another bad end is a note.
+
+    Raises:
+        TaskError: the tree cannot even be built.
+    """
+    report = CheckReport(complete=True)
+    world, senses = task.scripted(0)
+    try:
+        run = Run(task, world, senses=senses)
+        result = run.run()
+    finally:
+        world.close()
+    if run.interrupted:
+        raise KeyboardInterrupt
+    errors: dict[str, str] = {}  # by what happened: the leaf tells it first, then those above
+    for event in run.trace.events:
+        if event.get("reason") == Reason.INTERNAL_ERROR.name and event.get("detail"):
+            errors.setdefault(event["detail"], event["node"])
+    report.findings += [f"{node}: on the scripted world, it makes an error: {error}" for error, node in errors.items()]
+    if run.context.errors and not errors:  # a node of py_trees' own, or the runner
+        report.findings.append(f"on its scripted world: {result.reason}")
+    elif result.outcome != "success" and not errors:
+        report.notes.append(f"on its scripted world it ends as {result.outcome.replace('_', ' ')}: {result.reason}")
+    return report
+
+
 def fresh_tree(task: Task) -> Behaviour:
     """The task's tree, built on its scripted world.
 
     Raises:
         TaskError: it cannot be built.
     """
+    return _built(task)[0]
+
+
+def _built(task: Task, **params: Any) -> tuple[Behaviour, Context]:
     world, senses = task.scripted(0)
     guard = GuardedWorld(world)
-    return task.build(Context(world=guard, guard=guard, senses=senses))
+    context = Context(world=guard, guard=guard, senses=senses)
+    root = task.build(context, **params)
+    for node in root.iterate():
+        if isinstance(node, (Wrapper, Condition)):
+            node.bind(context)
+    return root, context
 
 
 def _names(root: Behaviour) -> list[str]:

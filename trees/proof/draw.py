@@ -6,6 +6,7 @@ from py_trees.behaviour import Behaviour
 
 from ...skills.core.ports import Key
 from ...skills.core.skill import Skill
+from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Stage
 
 
@@ -35,6 +36,9 @@ def drawn(node: Behaviour, depth: int = 0, when: str = "") -> list[str]:
 
 
 def _data(node: Behaviour) -> str:
+    if isinstance(node, Condition):
+        read = ", ".join(key.name for key in node.reads().values())
+        return f"; reads {read}" if read else ""
     if not isinstance(node, Skill):
         return ""
     keys = {

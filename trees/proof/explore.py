@@ -20,7 +20,8 @@ from ...skills.core.context import Context
 from ...skills.core.ports import Key
 from ...skills.core.reasons import Failure, Reason
 from ...skills.core.skill import Skill
-from ..nodes.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
+from ..nodes.condition import Condition
+from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
 FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE)
@@ -50,7 +51,8 @@ class Stub(Behaviour):
         self.leaf = leaf
         self.parent = leaf.parent
         self.commands = isinstance(leaf, Skill) and leaf.commands
-        self.reads = [k.name for k in self._bound(leaf, "inputs")]
+        asked = leaf.reads().values() if isinstance(leaf, Condition) else self._bound(leaf, "inputs")
+        self.reads = [key.name for key in asked]
         self.writes = [k.name for k in self._bound(leaf, "outputs")]
         self.failure: Failure | None = None
         self._explorer = explorer

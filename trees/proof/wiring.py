@@ -11,6 +11,7 @@ from py_trees.common import ParallelPolicy
 
 from ...skills.core.ports import Key, assignable, type_name
 from ...skills.core.skill import Skill
+from ..nodes.condition import Condition, inputs_of
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout
 
 Have = dict[str, Any]  # key -> type of what is written there on every way
@@ -68,6 +69,10 @@ class Wiring:
         """What is written after `node` succeeded, and after it failed."""
         if isinstance(node, Skill):
             return self._skill(node, have)
+        if isinstance(node, Condition):
+            kinds = inputs_of(node.test)
+            self._reads(node, {name: (key, kinds.get(name, Any)) for name, key in node.reads().items()}, have)
+            return have, have
         if isinstance(node, (Retry, RecoverBy)):
             return self._repeated(node, have)
         if isinstance(node, FailSafe):
@@ -93,26 +98,27 @@ class Wiring:
         return have, have
 
     def _skill(self, skill: Skill, have: Have) -> tuple[Have, Have]:
-        for name, port in skill.inputs():
-            bound = skill.bindings[name]
-            if not isinstance(bound, Key):
-                continue
-            if bound.name not in have:
-                writers = ", ".join(repr(each) for each in self._writers.get(bound.name, [])) or "nobody"
-                self._say(
-                    f"{self._paths[skill]}: input {name} reads {bound.name!r}, which is not written on every way "
-                    f"to here (written by {writers})"
-                )
-            elif not assignable(have[bound.name], port.kind):
-                self._say(
-                    f"{self._paths[skill]}: input {name} takes {type_name(port.kind)}, but {bound.name!r} "
-                    f"holds {type_name(have[bound.name])}"
-                )
+        inputs = {name: (bound, p.kind) for name, p in skill.inputs() if isinstance(bound := skill.bindings[name], Key)}
+        self._reads(skill, inputs, have)
         mine = {
             bound.name: port.kind for name, port in skill.outputs() if isinstance(bound := skill.bindings[name], Key)
         }
         kept = without(have, set(mine))
         return {**kept, **mine}, kept
+
+    def _reads(self, leaf: Behaviour, inputs: dict[str, tuple[Key, Any]], have: Have) -> None:
+        for name, (key, kind) in inputs.items():
+            if key.name not in have:
+                writers = ", ".join(repr(each) for each in self._writers.get(key.name, [])) or "nobody"
+                self._say(
+                    f"{self._paths[leaf]}: input {name} reads {key.name!r}, which is not written on every way "
+                    f"to here (written by {writers})"
+                )
+            elif not assignable(have[key.name], kind):
+                self._say(
+                    f"{self._paths[leaf]}: input {name} takes {type_name(kind)}, but {key.name!r} "
+                    f"holds {type_name(have[key.name])}"
+                )
 
     def _repeated(self, node: Retry | RecoverBy, have: Have) -> tuple[Have, Have]:
         """A later attempt begins with the body's own data unset, so the body may not count on it."""

@@ -49,7 +49,7 @@ def read_trace(path: Path) -> list[dict[str, Any]]:
     for number, line in enumerate(lines, start=1):
         try:
             event = json.loads(line)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             if number == len(lines):
                 break
             raise CaretreeError(f"{path}:{number} is damaged: {error}") from error

@@ -5,9 +5,11 @@ A module may also have
 - `scripted(seed) -> (ScriptedWorld, Senses or None)`: the world on which `caretree check`, `caretree inject` and
   `--world scripted` try the task;
 - `STAGES`, a dictionary of `TaskStage` by name and in order: `--stage` then runs some of them alone, and `build` is
-  given their names as `stages`.
+  given their names as `stages`;
+- `senses(context) -> Senses`: what sees, unless the run was given others; called before `build`;
+- `CONDITIONS`, the functions that its conditions ask, so that a tree in XML can name them.
 
-A user's own file works the same: `caretree run path/to/task.py`.
+A user's own file works the same: `caretree run path/to/task.py`; so does a tree in XML, `path/to/task.xml`.
 """
 
 from __future__ import annotations
@@ -15,7 +17,6 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
-import pkgutil
 import sys
 import traceback
 from collections.abc import Callable, Mapping
@@ -33,6 +34,12 @@ from ...sim.world import World
 from ...skills.core.context import Context
 from ...skills.core.settings import SettingError
 from .. import tasks
+from ..btcpp.builder import Builder
+from ..btcpp.document import XmlError
+from ..btcpp.files import TreeFiles
+from ..btcpp.vocabulary import Vocabulary
+from ..tasks import task_names
+from .shape import ShapeError, check_shape
 from .stages import TaskStage, span_of
 
 JUDGED = ("dressing",)  # tasks after which somebody should be dressed
@@ -52,6 +59,8 @@ class Task:
         file: where it is written.
         script: `scripted(seed)` of its module, if it has one: the scripted world and senses to try it on.
         stages: by name and in order, if its module names any.
+        senses: `senses(context)` of its module, if it has one.
+        module: that it is written in, which has its own skills and conditions.
     """
 
     name: str
@@ -59,6 +68,8 @@ class Task:
     file: Path
     script: Callable[[int], tuple[World, Senses | None]] | None = None
     stages: Mapping[str, TaskStage] = field(default_factory=dict)
+    senses: Callable[[Context], Senses] | None = None
+    module: ModuleType | None = None
 
     def parameters(self, stage: str | None) -> dict[str, Any]:
         """What `build` is given to run a stage or a span of them alone; nothing for the whole task (None).
@@ -112,23 +123,24 @@ class Task:
         except TypeError as error:
             raise TaskError(f"{self._line()}: task {self.name!r}: build(context, ...) {error}") from error
         try:
+            if self.senses is not None:
+                context.offer_senses(self.senses(context))
             root = self.function(context, **params)
-        except SettingError:
-            raise  # a mistake on the command line, not in the file
+        except (SettingError, XmlError):
+            raise  # a mistake on the command line, or one that says its own line
         except (Exception, SystemExit) as error:
             raise TaskError(_located(self.file, error)) from error
         if not isinstance(root, Behaviour):
             raise TaskError(f"{self._line()}: build() returned {type(root).__name__}, but a tree's root is asked for")
+        try:
+            check_shape(root)
+        except ShapeError as error:
+            raise TaskError(f"{self._line()}: build() returned no tree: {error}") from error
         return root
 
     def _line(self) -> str:
         code = getattr(self.function, "__code__", None)
         return f"{self.file}:{code.co_firstlineno if code else 1}"
-
-
-def task_names() -> list[str]:
-    """Names of the tasks that come with the package."""
-    return sorted(info.name for info in pkgutil.iter_modules(tasks.__path__) if not info.name.startswith("_"))
 
 
 def load_task(name: str) -> Task:
@@ -138,6 +150,8 @@ def load_task(name: str) -> Task:
         TaskError: there is none, or its file is broken.
     """
     path = Path(name)
+    if path.suffix == ".xml":
+        return _load_xml(path)
     if path.suffix == ".py" or path.parent != Path("."):
         if (
             path.suffix == ".py"
@@ -147,18 +161,45 @@ def load_task(name: str) -> Task:
             return load_task(path.stem)  # a task of the package, named by its path
         return _load_file(path)
     if name not in task_names():
-        raise TaskError(f"unknown task {name!r}; there are {', '.join(task_names())}, or give the path of a .py file")
+        raise TaskError(
+            f"unknown task {name!r}; there are {', '.join(task_names())}, or give the path of a .py or .xml file"
+        )
+    return _task(name, *_named_module(name))
+
+
+def _named_module(name: str) -> tuple[ModuleType, Path]:
+    """The module of a task of the package, and its file."""
     module_name = f"{tasks.__name__}.{name}"
     spec = importlib.util.find_spec(module_name)
     file = _shown(Path(spec.origin)) if spec is not None and spec.origin else Path(f"{name}.py")
     try:
-        module = importlib.import_module(module_name)
+        return importlib.import_module(module_name), file
     except (Exception, SystemExit) as error:
         raise TaskError(_located(file, error)) from error
-    return _task(name, module, file)
+
+
+def _load_xml(path: Path) -> Task:
+    """A tree in XML: skills, conditions, senses and scripted world come from the Python that it names, if any."""
+    files = TreeFiles(path)
+    modules = [
+        _named_module(each.name)[0] if each.name in task_names() else _module_at(each.path()) for each in files.python
+    ]
+    vocabulary = Vocabulary.of(modules)
+
+    def build(context: Context) -> Behaviour:
+        return Builder(files, vocabulary, context).build()
+
+    first = modules[0] if modules else None
+    script, senses = getattr(first, "scripted", None), getattr(first, "senses", None)
+    return Task(path.stem, build, path, script, senses=senses, module=first)
 
 
 def _load_file(path: Path) -> Task:
+    return _task(path.stem, _module_at(path), path)
+
+
+def _module_at(path: Path) -> ModuleType:
+    """A task file, run as a module."""
     if not path.is_file():
         wrong = "is a folder, but a .py file is asked for" if path.is_dir() else "does not exist"
         raise TaskError(f"task file {path} {wrong}; named tasks are {', '.join(task_names())}")
@@ -173,7 +214,7 @@ def _load_file(path: Path) -> Task:
         exec(code, module.__dict__)  # running the user's own file is the point
     except (Exception, SystemExit) as error:
         raise TaskError(_located(path, error)) from error
-    return _task(path.stem, module, path)
+    return module
 
 
 def _task(name: str, module: ModuleType, file: Path) -> Task:
@@ -185,7 +226,10 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
         isinstance(key, str) and key.isidentifier() and isinstance(stage, TaskStage) for key, stage in stages.items()
     ):
         raise TaskError(f"{file}:1: STAGES is a dictionary of TaskStage by names of letters, digits and underscores")
-    return Task(name, cast(Callable[..., Behaviour], build), file, getattr(module, "scripted", None), stages)
+    function = cast(Callable[..., Behaviour], build)
+    return Task(
+        name, function, file, getattr(module, "scripted", None), stages, getattr(module, "senses", None), module
+    )
 
 
 def _located(file: Path, error: Exception | SystemExit) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from ...sim.errors import CaretreeError
+from ...sim.yaml_text import load_yaml
 from ...skills.core.settings import Settings
 
 
@@ -31,7 +32,7 @@ def read_settings(assignments: Sequence[str], file: str | None = None) -> Settin
                 f"--set is {text!r}, but SKILL.NUMBER=VALUE is asked for, as present_sleeve.max_load=3.5"
             )
         try:
-            values.setdefault(skill, {})[number] = yaml.safe_load(value)
+            values.setdefault(skill, {})[number] = load_yaml(value)
         except yaml.YAMLError:
             raise CaretreeError(f"--set {name}: {value!r} is no number, truth value or list of numbers") from None
     return Settings(values)
@@ -39,7 +40,7 @@ def read_settings(assignments: Sequence[str], file: str | None = None) -> Settin
 
 def _from_file(path: Path) -> dict[str, dict[str, Any]]:
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = load_yaml(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise CaretreeError(f"tuning file {path} cannot be read: {error.strerror or error}") from error
     except yaml.MarkedYAMLError as error:

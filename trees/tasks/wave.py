@@ -15,6 +15,14 @@ from ..nodes.composers import sequence
 from ..nodes.decorators import FailSafe, RecoverBy, Stage, Timeout
 
 
+def fingers_apart(context: Context) -> bool:
+    """No finger is shut altogether."""
+    return bool(context.world.observe().gripper_opening.min() > 0.0)
+
+
+CONDITIONS = (fingers_apart,)
+
+
 def build(context: Context, side: Side = "left") -> Behaviour:
     """Wave once with `side`; if a command is lost, wait and try again."""
     where = Key("wave_before")
@@ -30,7 +38,7 @@ def build(context: Context, side: Side = "left") -> Behaviour:
         "greet",
         Stage(
             "wave",
-            lambda context: context.world.observe().gripper_opening.min() > 0.0,
+            fingers_apart,
             Timeout("wave in time", again, seconds=60.0),
         ),
         Stage("hold", None, HoldStill("hold still", context, seconds=2.0)),

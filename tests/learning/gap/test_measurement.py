@@ -24,9 +24,24 @@ def test_phases_reach_every_episode(axis_set):
     assert all(e.phases[0].name == "reach" for e in load_set(folder).episodes)
 
 
+def test_notes_of_any_other_name_may_stand_in_a_set(axis_set):
+    folder = axis_set()
+    edit(folder, name="drawer", source="lab", description="pulled by hand")
+    assert load_set(folder).settings["name"] == "drawer"
+
+
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
+        (lambda f: edit(f, masss=2.0), ("measurement.yaml", "there is no setting 'masss', did you mean mass?")),
+        (
+            lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "e1.csv", "rolle": "heldout"}]),
+            ("measurement.yaml", "there is no setting 'rolle', did you mean role?"),
+        ),
+        (
+            lambda f: (f / "measurement.yaml").write_text("system: axis\nmass: 1\nmass: 2\n"),
+            ("measurement.yaml", "row 3", "'mass' is given twice"),
+        ),
         (lambda f: edit(f, system="boat"), ("measurement.yaml", "system is 'boat'", "arm, axis, fall, cloth")),
         (lambda f: edit(f, episodes=[{"file": "e0.csv"}]), ("measurement.yaml", "one episode only")),
         (lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "gone.csv"}]), ("gone.csv", "no such file")),

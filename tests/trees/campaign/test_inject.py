@@ -8,8 +8,8 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
-from caretree.trees.campaign.inject import Campaign, Row, table
-from caretree.trees.nodes.composers import sequence
+from caretree.trees.campaign.inject import Campaign, Row, table, triggers_of
+from caretree.trees.nodes.composers import fallback, sequence
 from caretree.trees.nodes.decorators import FailSafe, RecoverBy
 from caretree.trees.run.runner import Run, run
 from caretree.trees.run.task import load_task, task_names
@@ -159,7 +159,10 @@ def test_what_is_not_reached_is_said():
         return FailSafe("safe", never, Release("let go", context))
 
     rows = list(campaign(task_of(build), faults=("occlusion",)).rows())
-    assert {(row.node, row.phase) for row in rows if row.outcome != "not_reached"} == {("look", "start")}
+    reached = {(row.node, row.phase) for row in rows if row.outcome != "not_reached"}
+    assert ("look", "start") in reached
+    assert ("look", "step") not in reached, "it ends at once"
+    assert ("recover", "start") in reached, "look is made to fail"
     assert Row(node="a", phase="step", fault="b", outcome="not_reached").survived
     assert not Row(node="a", phase="step", fault="b", outcome="failure").survived
 
@@ -199,3 +202,28 @@ def test_an_operator_who_ends_a_run_ends_the_campaign():
     rows = campaign(task_of(build), faults=("occlusion",)).rows()
     with pytest.raises(KeyboardInterrupt):
         list(rows)
+
+
+def test_alternatives_and_recoveries_inside_each_other_are_reached():
+    def plan(context, name):
+        return Plan(name, context, outcomes=[True])
+
+    def build(context):
+        def recovery():
+            return fallback("r", plan(context, "recovery"), plan(context, "other recovery"))
+
+        first = fallback("first", plan(context, "a"), plan(context, "b"))
+        second = sequence("second", plan(context, "c"), plan(context, "d"))
+        body = RecoverBy("again", fallback("f", first, second), {Reason.GRASP_MISSED: recovery})
+        return FailSafe("safe", body, Release("release", context))
+
+    task = task_of(build)
+    found = triggers_of(build(Run(task, ScriptedWorld()).context))
+    assert found["a"] == {}
+    assert set(found["b"]) == {"a"}
+    assert set(found["c"]) == set(found["d"]) == {"a", "b"}
+    assert found["recovery"] == {"a": Reason.GRASP_MISSED, "b": Reason.GRASP_MISSED, "c": Reason.GRASP_MISSED}
+    assert found["other recovery"] == {**found["recovery"], "recovery": Reason.INTERNAL_ERROR}
+    campaign = Campaign(task, lambda: (ScriptedWorld(), None), faults=("stale_frame",))
+    reached = {row.node for row in campaign.rows() if row.outcome != "not_reached" and row.phase == "start"}
+    assert reached == {"a", "b", "c", "d", "recovery", "other recovery", "release"}

@@ -199,6 +199,10 @@ def test_seeds(count, seeds, expected):
         (None, "a-b", "A-B like 0-9"),
         (None, "5-3", "above B"),
         (4, "0-9", "names 10 seeds"),
+        (None, "0-99999999999", "at most 100000 trials"),
+        (10**12, None, "at most 100000 trials"),
+        (None, "4294967296", "from 0 to 4294967295"),
+        (None, "3,-1", "A-B like 0-9"),
     ],
 )
 def test_bad_seeds_are_one_sentence(count, seeds, message):

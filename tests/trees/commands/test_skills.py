@@ -1,7 +1,7 @@
 import pytest
 from caretree.skills.core.ports import ports_of
 from caretree.trees.cli import main
-from caretree.trees.commands.skills import all_skills
+from caretree.trees.run.catalogue import all_skills
 
 
 def test_the_list_names_every_leaf(capsys):

@@ -12,28 +12,35 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
 from caretree.trees.nodes.composers import fallback, parallel, reactive_fallback, sequence
 from caretree.trees.nodes.decorators import Condition, FailSafe, RecoverBy, Retry, Stage, Timeout
-from caretree.trees.proof.check import check
+from caretree.trees.proof.check import check, check_quickly, rehearse
 from caretree.trees.proof.explore import Explorer
 from caretree.trees.run.task import TaskError, load_task
 
 from ..planted import Release, task_of
 
 
-class Make(Skill):
+class Leaf(Skill):
+    """Ends at once."""
+
+    def steps(self):
+        yield
+
+
+class Make(Leaf):
     made = Output(float)
     reasons = (Reason.GRASP_MISSED,)
 
 
-class Use(Skill):
+class Use(Leaf):
     used = Input(float)
     reasons = (Reason.UNREACHABLE,)
 
 
-class Name(Skill):
+class Name(Leaf):
     word = Output(str)
 
 
-class See(Skill):
+class See(Leaf):
     commands = False
     seen = Output(float)
 
@@ -343,3 +350,28 @@ def test_a_scripted_twin_has_to_be_whole():
         check(task_of(build, lambda seed: (ScriptedWorld(seed=seed), half())))
     with pytest.raises(TaskError, match=r"^planted\.py:1: scripted\(\) gave dict as senses, which is no Senses$"):
         check(task_of(build, lambda seed: (ScriptedWorld(seed=seed), {"arm": None})))
+
+
+class Wrong(Leaf):
+    def steps(self):
+        yield
+        raise KeyError("over here")
+
+
+def test_a_rehearsal_finds_errors_of_the_tasks_own_code():
+    assert rehearse(task_of(lambda context: safe(context, Leaf("leaf", context)))).findings == []
+    report = rehearse(task_of(lambda context: safe(context, sequence("s", Wrong("wrong", context)))))
+    assert report.findings == ["safe/s/wrong: on the scripted world, it makes an error: KeyError: 'over here'"], (
+        "once, where it was made"
+    )
+    missed = rehearse(task_of(lambda context: safe(context, Condition("c", lambda c: False))))
+    assert missed.findings == []
+    assert missed.notes[0].startswith("on its scripted world it ends as safe stop: The stage could not begin")
+
+
+def test_the_quick_part_asks_no_combination():
+    report = check_quickly(task_of(lambda context: safe(context, Use("use", context, used=K))))
+    assert report.findings == [
+        "safe/use: input used reads 'k', which is not written on every way to here (written by nobody)"
+    ]
+    assert report.executions == 0

@@ -146,7 +146,9 @@ def test_a_broken_file_is_told_with_its_line(tmp_path, change, line, said):
 
 
 def test_unknown_tasks_files_and_parameters():
-    with pytest.raises(TaskError, match=r"unknown task 'dance'; there are .*wave.*, or give the path of a \.py file"):
+    with pytest.raises(
+        TaskError, match=r"unknown task 'dance'; there are .*wave.*, or give the path of a \.py or \.xml file"
+    ):
         load_task("dance")
     with pytest.raises(TaskError, match=r"task file nowhere/x\.py does not exist"):
         load_task("nowhere/x.py")

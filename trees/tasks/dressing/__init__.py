@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from py_trees.behaviour import Behaviour
 
 from ....perception.classical import ClassicalSenses
+from ....perception.senses import Senses
 from ....sim.world import World
 from ....skills.core.context import Context
 from ....skills.scripted.rehearsal import rehearsal
@@ -25,10 +26,10 @@ from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe
 from ...run.stages import TaskStage
 from .dress import dress
-from .lay import lay
+from .lay import holds_gown, lay
 from .safe import make_safe
-from .spread import spread
-from .take_down import take_down
+from .spread import chest_covered, spread
+from .take_down import both_ends, hands_open, take_down
 
 STAGES = {
     "take_down": TaskStage(take_down, begins="gown_on_hook"),
@@ -37,10 +38,16 @@ STAGES = {
     "spread": TaskStage(spread, begins="gown_worn"),
 }
 
+CONDITIONS = (both_ends, chest_covered, hands_open, holds_gown)
+
+
+def senses(context: Context) -> Senses:
+    """What sees, unless the run was given others."""
+    return ClassicalSenses(context.world.room, context.rng)
+
 
 def build(context: Context, stages: Sequence[str] = tuple(STAGES)) -> Behaviour:
     """All stages, or only those of the given names."""
-    context.offer_senses(ClassicalSenses(context.world.room, context.rng))
     body = sequence("dressing", *(STAGES[stage].build(context) for stage in stages))
     return FailSafe("dress safely", body, make_safe(context))
 

@@ -21,11 +21,11 @@ def lay(context: Context) -> Stage:
         StretchNeckline("stretch the neckline", gown),
         FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence),
         LayGown("lay it on the person", gown),
-        precondition=_holds_gown,
+        precondition=holds_gown,
         seconds=DRESSING.lay_timeout,
     )
 
 
-def _holds_gown(context: Context) -> bool:
+def holds_gown(context: Context) -> bool:
     """Both hands together carry what a gown weighs [N]."""
     return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > DRESSING.gown_weight)

@@ -16,7 +16,8 @@ from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
-from ...nodes.decorators import Condition, RecoverBy, Stage, timed_stage
+from ...nodes.condition import Condition
+from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
 from .tuning import DRESSING
 
@@ -33,7 +34,7 @@ def spread(context: Context) -> Stage:
         straighten_collar(context, "right"),
         will_do(context, "right"),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
-        Condition("the chest is covered", _chest_covered, Reason.NOTHING_SEEN),
+        Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
         seconds=DRESSING.spread_timeout,
     )
 
@@ -102,7 +103,7 @@ def will_do(context: Context, side: Side) -> Behaviour:
     )
 
 
-def _chest_covered(context: Context) -> bool:
+def chest_covered(context: Context) -> bool:
     """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
     bed = context.world.room.bed
     shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + DRESSING.shoulders_on_bed

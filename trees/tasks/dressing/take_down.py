@@ -23,7 +23,8 @@ from ....skills.take_down import TakeDown
 from ....skills.unhook import Unhook
 from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
-from ...nodes.decorators import Condition, Retry, Stage, timed_stage
+from ...nodes.condition import Condition
+from ...nodes.decorators import Retry, Stage, timed_stage
 from .tuning import DRESSING
 
 
@@ -31,7 +32,7 @@ def take_down(context: Context) -> Stage:
     """The stage `take_down`."""
     rail = Scope(context, "rail", keys=("hook", "corner", "sleeve", "other_sleeve", "hand", "other_hand"))
     outside = FlipSideCheck("outside to the front", rail, hung=True, min_confidence=0.0)
-    free = fallback("free hands", Condition("nothing is held", _hands_open), Retreat("let go of both ends", rail))
+    free = fallback("free hands", Condition("nothing is held", hands_open), Retreat("let go of both ends", rail))
     off = TakeDown("lift it off the hook", rail)
     by_both_ends = sequence("by both ends of the neckline", free, take_ends(rail), off)
     return timed_stage(
@@ -55,11 +56,6 @@ def take_ends(rail: Scope) -> Behaviour:
         other = {"hand": rail["other_hand"], "sleeve": rail["other_sleeve"], "corner": None, "length": lengths[1]}
         return TakeCorner(name, aside, **other, **ports)
 
-    def complete(context: Context) -> bool:
-        """Both strips together are as long as a neckline."""
-        shortest, longest = DRESSING.neckline
-        return shortest < sum(context.board.get(key.name) for key in lengths) < longest
-
     return sequence(
         "take both ends",
         FindCorner("look for a corner", rail),
@@ -81,7 +77,9 @@ def take_ends(rail: Scope) -> Behaviour:
                 take_other("take it from farther round"),
             ),
         ),
-        Condition("both ends of the neckline", complete, Reason.GRASP_MISSED),
+        Condition(
+            "both ends of the neckline", both_ends, Reason.GRASP_MISSED, length=lengths[0], other_length=lengths[1]
+        ),
     )
 
 
@@ -101,6 +99,12 @@ def from_one_hand(context: Context) -> Behaviour:
     )
 
 
+def both_ends(_: Context, length: float, other_length: float) -> bool:
+    """Both strips together [m] are as long as a neckline."""
+    shortest, longest = DRESSING.neckline
+    return shortest < length + other_length < longest
+
+
 def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Retry:
     """A corner of the gown that hangs from `hand`; after a miss it hangs otherwise, and that corner is left out."""
     look = ViewAround("look all round", scope, hand=hand)
@@ -109,6 +113,6 @@ def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Retry:
     return Retry(f"{scope.prefix}until it holds a corner", once, attempts=DRESSING.corner_attempts)
 
 
-def _hands_open(context: Context) -> bool:
+def hands_open(context: Context) -> bool:
     """Both grippers stand open [m]."""
     return bool(np.all(context.world.observe().gripper_opening > DRESSING.empty_opening))

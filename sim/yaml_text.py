@@ -1,0 +1,55 @@
+"""YAML as people write it into settings: a key given twice, or text that grows when it is read, is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+PARTS_MAX = 1_000_000  # values of a file once its aliases are written out
+
+
+class YamlProblem(yaml.MarkedYAMLError):
+    """What YAML allows and settings do not; has the place as the others have."""
+
+
+def load_yaml(text: str) -> Any:
+    """The content of a text.
+
+    Raises:
+        yaml.MarkedYAMLError: it is no YAML, gives a key twice, or holds more than settings need.
+    """
+    try:
+        node = yaml.compose(text, Loader=yaml.SafeLoader)
+        if node is not None:
+            _size(node, {})
+        return yaml.safe_load(text)
+    except RecursionError:
+        raise YamlProblem(problem="values lie too deep in each other") from None
+    except ValueError as error:  # a date that is none, a number too long for Python
+        raise YamlProblem(problem=str(error)) from None
+
+
+def _size(node: yaml.Node, known: dict[int, int | None]) -> int:
+    """How many values a node stands for, each alias written out; `known` has None for those in progress."""
+    if id(node) in known:
+        size = known[id(node)]
+        if size is None:
+            raise YamlProblem(problem="a value contains itself", problem_mark=node.start_mark)
+        return size
+    known[id(node)] = None
+    size = 1
+    if isinstance(node, yaml.MappingNode):
+        seen = set()
+        for key, value in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    raise YamlProblem(problem=f"{key.value!r} is given twice", problem_mark=key.start_mark)
+                seen.add(key.value)
+            size += _size(key, known) + _size(value, known)
+    elif isinstance(node, yaml.SequenceNode):
+        size += sum(_size(item, known) for item in node.value)
+    if size > PARTS_MAX:
+        raise YamlProblem(problem="its aliases stand for more values than any setting", problem_mark=node.start_mark)
+    known[id(node)] = size
+    return size
