@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from .raise_corner import RaiseCorner as RaiseCorner
     from .release_arm import ReleaseArm as ReleaseArm
     from .retreat import Retreat as Retreat
-    from .seat_sleeve import SeatSleeve as SeatSleeve
     from .segment_and_grasp import SegmentAndGrasp as SegmentAndGrasp
     from .spread import Spread as Spread
     from .stretch_neckline import StretchNeckline as StretchNeckline
@@ -78,7 +77,6 @@ _HOME = {
     "ReleaseArm": ".release_arm",
     "Retreat": ".retreat",
     "Scope": ".core.scope",
-    "SeatSleeve": ".seat_sleeve",
     "SegmentAndGrasp": ".segment_and_grasp",
     "Skill": ".core.skill",
     "SkillFailure": ".core.reasons",

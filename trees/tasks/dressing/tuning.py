@@ -111,16 +111,10 @@ class DressingTuning(Quantities):
     armhole_goal: float = quantity(
         -0.25, "1", "arm coordinate at which the armhole ends the pull where it is seen", "choice: beyond the shoulder"
     )
-    seat_load_share: float = quantity(
-        0.9,
-        "1",
-        "load at which seating draws no farther, in times of the pull's",
-        "choice: a little less than the pull",
-    )
     back_off_distance: float = quantity(0.25, "m", "of the base from a dressed arm", "choice: the arm comes into view")
     # settling the sleeves and the collar
     cuff_sits: float = quantity(
-        0.17,
+        0.185,
         "m",
         "from the shoulder to the cuff, above which the sleeve is drawn up again",
         "measured: on arms that lie, five runs: cuffs at 0.13, 0.13, 0.17, 0.18, 0.19, 0.20, 0.22, 0.24 m, armholes at "
