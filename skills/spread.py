@@ -40,6 +40,8 @@ class SpreadTuning(Quantities):
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
     )
+    opening: float = quantity(0.05, "m", "of the fingers on the way in", "choice: wider, one goes down beside the chest")
+    depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the body is right below it")
     lift: float = quantity(
         0.10,
         "m",
@@ -97,7 +99,15 @@ class Spread(Skill):
             yield
             return
         approach = _from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
-        yield from reach_in(self, self.hand, point.position_in_map, approach, point.closing_in_map)
+        yield from reach_in(
+            self,
+            self.hand,
+            point.position_in_map,
+            approach,
+            point.closing_in_map,
+            opening=tuning.opening,
+            depth=tuning.depth,
+        )
         yield from pinch_or_back_off(self, self.hand)
         low = hand_now(self, self.hand)[:3, 3]
         place = low + (*(middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
