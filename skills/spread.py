@@ -40,7 +40,9 @@ class SpreadTuning(Quantities):
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
     )
-    opening: float = quantity(0.05, "m", "of the fingers on the way in", "choice: wider, one goes down beside the chest")
+    opening: float = quantity(
+        0.05, "m", "of the fingers on the way in", "choice: wider, one goes down beside the chest"
+    )
     depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the body is right below it")
     lift: float = quantity(
         0.10,
