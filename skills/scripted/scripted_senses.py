@@ -179,7 +179,7 @@ class ScriptedSenses(Senses):
             stamp=frame.stamp,
             confidence=0.9,
             target="collar_middle",
-            position_in_map=np.array((0.10, -0.5, 0.80)),
+            position_in_map=np.array((0.10, -0.5, 0.83)),
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )

@@ -121,6 +121,12 @@ GRANTED = {
     "trees/nodes/decorators.py": [
         "caretree.sim.record.record may know the truth"
     ],  # how a stage ended is written there
+    "trees/nodes/condition.py": [  # of a function, for the inputs that it takes
+        "inspect is not among the libraries that are known to be harmless"
+    ],
+    "trees/tasks/__init__.py": [  # lists the tasks that there are
+        "pkgutil is not among the libraries that are known to be harmless"
+    ],
     "trees/tasks/dressing/__init__.py": [  # offers a world to rehearse on
         "caretree.skills.scripted.rehearsal may know the truth",
         "caretree.skills.scripted.scripted_senses may know the truth",

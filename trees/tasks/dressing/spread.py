@@ -13,7 +13,6 @@ from ....skills.core.scope import Scope
 from ....skills.geometry.stances import PULLING, stance
 from ....skills.look_at_person import LookAtPerson
 from ....skills.navigate import Navigate
-from ....skills.retreat import Retreat
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
@@ -48,9 +47,9 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
         LookAtPerson("look", collar),
         Spread("spread", collar),
         Spread("spread again", collar),
-        Retreat("leave", collar, base_distance=DRESSING.shoulder_back_off),
+        back_off("leave", collar, DRESSING.shoulder_back_off),
     )
-    as_it_is = Retreat("leave it as it is", collar, base_distance=DRESSING.shoulder_back_off)
+    as_it_is = back_off("leave it as it is", collar, DRESSING.shoulder_back_off)
     return fallback("the collar, as far as it goes", straight, as_it_is)
 
 
