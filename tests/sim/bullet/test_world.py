@@ -217,7 +217,7 @@ def test_a_hand_that_is_driven_into_the_chest_is_held_back_and_everyone_sees_it(
         world.clock.wait_until(world.clock.now() + 0.05)
     wrench = world.observe().wrench_hand_in_map
     trunk = PERSON_PARTS.index("trunk")
-    assert 200.0 < frames[-1].person_force[trunk] < 600.0  # there the motors give way
+    assert 30.0 < frames[-1].person_force[trunk] < 120.0  # there the motors give way: ISO/TS 15066 allows 140 N
     assert np.linalg.norm(wrench[0, :3]) == pytest.approx(frames[-1].person_force[trunk], rel=0.1)
     assert np.abs(wrench[1]).max() < 1.0  # the other hand touches nothing
     assert a[2] + radius - frames[-1].gripper_pose[0, 2] < 0.03  # it was told to go down by 9 cm

@@ -31,7 +31,7 @@ def completed(folder, *line):
         (["run", "dre"], ["dressing"]),
         (["run", "fe"], ["fetch.py", "fetch.xml"]),
         (["run", "wave", "--world", ""], ["bullet", "scripted"]),
-        (["run", "wave", "--world-kind", "e"], ["easy", "easy+falling_arms"]),
+        (["run", "wave", "--world-kind", "easy+f"], ["easy+falling_arms"]),
         (["run", "wave", "--out", "f"], ["folder"]),
         (["run", "wave", "--tuning", "fetch.y"], ["fetch.yaml"]),
         (["inject", "wave", "--sam"], ["--sample"]),
