@@ -86,7 +86,12 @@ def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_
 
 def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
     raising = [node for node in nodes if Reason.PERSON_MOVED in getattr(node, "reasons", ())]
-    assert {node.name.split("/")[-1] for node in raising} >= {"lift", "grasp the sleeve", "present the sleeve", "pull up"}
+    assert {node.name.split("/")[-1] for node in raising} >= {
+        "lift",
+        "grasp the sleeve",
+        "present the sleeve",
+        "pull up",
+    }
     for side in ("left", "right"):
         again = next(node for node in nodes if isinstance(node, RecoverBy) and node.name == f"dress the {side} arm")
         first = again.recoveries[Reason.PERSON_MOVED].children[0]
