@@ -39,9 +39,12 @@ def spread(context: Context) -> Stage:
 
 
 def straighten_collar(context: Context, side: Side) -> Behaviour:
-    """From beside one shoulder, bring the collar's middle over the breastbone, as far as the hand gets there."""
+    """From beside one shoulder, bring the collar's middle over the breastbone.
+
+    A collar that is seen off its place and that the hand cannot get is no success: the person is not dressed neatly.
+    """
     collar = Scope(context, "collar", side=side, hand=PULLING[side])
-    straight = sequence(
+    return sequence(
         "straighten the collar",
         Navigate("stand there", collar, goal=stance(side, "collar")),
         LookAtPerson("look", collar),
@@ -49,8 +52,6 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
         Spread("spread again", collar),
         back_off("leave", collar, DRESSING.shoulder_back_off),
     )
-    as_it_is = back_off("leave it as it is", collar, DRESSING.shoulder_back_off)
-    return fallback("the collar, as far as it goes", straight, as_it_is)
 
 
 def settle_sleeve(context: Context, side: Side) -> Behaviour:
