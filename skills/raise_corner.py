@@ -60,6 +60,9 @@ class RaiseCornerTuning(Quantities):
 class RaiseCorner(Skill):
     """Carries a corner to the side and above the hook, along an arc on which the neckline is all but straight.
 
+    A gown on one hook rolls itself up, its corners before it.  The corner goes sideways first, which unrolls it, and only
+    then behind the rail: straight there it would turn its half of the gown round the sleeve, and the back panel would lie
+    below the front when the gown is laid (docs/results.md).
     The hand stops early where it carries so much that the hook might lose the gown.  It fails where the corner weighs
     too much below the hook (folds behind it were taken too) or too little in the end (the corner was lost).
     """
@@ -69,7 +72,8 @@ class RaiseCorner(Skill):
     angle = Input(
         float,
         unit="rad",
-        doc="by which the corner goes from sideways to behind the rail; the other half of the gown turns to the robot",
+        doc="by which the corner goes from sideways to behind the rail in the end; the other half of the gown turns "
+        "to the robot",
         default=float(np.deg2rad(30.0)),
     )
     min_load = Input(float, unit="N", doc="least load that the hand must carry in the end", default=0.8)
@@ -93,7 +97,7 @@ class RaiseCorner(Skill):
             level = max(level, tuning.min_distance)
             tries = Tries(MotionError)
             for share in tuning.angle_shares:
-                angle = share * self.angle
+                angle = share * self.angle if rise > 0.0 else 0.0
                 aside = np.cos(angle) * sideways + np.sin(angle) * base[:, 0]
                 pose[:3, 3] = hook + level * aside + rise * base[:, 2]
                 with tries:
