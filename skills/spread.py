@@ -12,7 +12,7 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist, Side
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import watch_arm, watch_of
+from .belief.shoulders import between_shoulders, off_middle
 from .control.fingers import open_gripper
 from .control.hands import cloth_load, hand_now
 from .control.pinch import pinch_or_back_off, reach_in
@@ -92,9 +92,9 @@ class Spread(Skill):
         """Look, take, lift, carry, lay down, let go."""
         tuning = self.tuning
         self.note("looks where the collar lies")
-        middle = self._between_shoulders()
+        middle = between_shoulders(self)
         point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle)
-        aside, ahead = point.position_in_map[0] - middle[0], (point.position_in_map - middle) @ HEADWARD
+        aside, ahead = off_middle(point.position_in_map, middle)
         self.note(f"the collar's middle is {aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders")
         self.grasp = point
         if abs(aside) < tuning.lies_well and ahead < tuning.headward:
@@ -119,16 +119,6 @@ class Spread(Skill):
         yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], low[2]))
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
-
-    def _between_shoulders(self) -> np.ndarray:
-        """(3,) middle between the shoulders, where the arms were seen last: under the gown they may not show [m].
-
-        Raises:
-            PerceptionFailure: one of them was never found, and does not show.
-        """
-        known = watch_of(self).arms
-        arms = [known[side] if side in known else watch_arm(self, side) for side in SIDES]
-        return np.mean([arm.points_in_map[0] for arm in arms], axis=0)
 
     def _carry(self, goal: np.ndarray) -> Iterator[None]:
         """Straight to `goal` (3,) [m], or as far as the collar comes."""

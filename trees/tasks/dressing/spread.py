@@ -6,6 +6,7 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import Side
+from ....skills.check_collar import CheckCollar
 from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
@@ -39,18 +40,23 @@ def spread(context: Context) -> Stage:
 
 
 def straighten_collar(context: Context, side: Side) -> Behaviour:
-    """From beside one shoulder, bring the collar's middle over the breastbone.
+    """From beside one shoulder, bring the collar's middle over the breastbone, and look at it in the end.
 
-    A collar that is seen off its place and that the hand cannot get is no success: the person is not dressed neatly.
+    Where the hand cannot bring it there, it may lie well enough all the same.
     """
     collar = Scope(context, "collar", side=side, hand=PULLING[side])
     return sequence(
         "straighten the collar",
         Navigate("stand there", collar, goal=stance(side, "collar")),
         LookAtPerson("look", collar),
-        Spread("spread", collar),
-        Spread("spread again", collar),
+        fallback(
+            "bring it to the middle",
+            sequence("twice", Spread("spread", collar), Spread("spread again", collar)),
+            back_off("let it go", collar),
+        ),
         back_off("leave", collar, DRESSING.shoulder_back_off),
+        LookAtPerson("look at the end", collar),
+        CheckCollar("lies in the middle", collar),
     )
 
 

@@ -1,0 +1,47 @@
+"""Whether the collar lies in the middle between the shoulders, as far as it shows."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import GraspPoint
+from caretree.skills.check_collar import CheckCollar
+from caretree.skills.core.reasons import Reason
+from caretree.skills.scripted.scripted_person import lying_posture
+from py_trees.common import Status
+
+from .bench import LeafBench, beside_bed
+
+MIDDLE = np.mean([lying_posture(side).points_in_map[0] for side in ("left", "right")], axis=0)  # of the shoulders [m]
+
+
+def collar(aside, headward):
+    """A collar whose middle lies so far off the middle between the shoulders [m]; y is towards the feet."""
+    return GraspPoint(
+        stamp=0.0,
+        confidence=0.9,
+        target="collar_middle",
+        position_in_map=MIDDLE + (aside, -headward, 0.1),
+        approach_in_map=np.array((0.0, 0.0, -1.0)),
+        closing_in_map=np.array((0.0, 1.0, 0.0)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("seen", "reason"),
+    [
+        (collar(0.0, 0.0), None),
+        (collar(-0.05, 0.08), None),
+        (collar(0.09, 0.0), Reason.COLLAR_ASIDE),
+        (collar(-0.09, 0.0), Reason.COLLAR_ASIDE),
+        (collar(0.0, 0.12), Reason.COLLAR_ASIDE),
+        (collar(0.0, -0.12), Reason.COLLAR_ASIDE),
+        (PerceptionFailure(Problem.NOTHING_SEEN, "neck binding"), Reason.NOTHING_SEEN),
+    ],
+)
+def test_a_collar_off_its_place_or_unseen_is_no_success(seen, reason):
+    run = LeafBench(
+        lambda context: CheckCollar("lies well", context),
+        beside_bed(collar_middle=seen, arm=lambda frame, side, **_: lying_posture(side)),
+    )
+    assert run.ended(seconds=1.0) == reason
+    assert run.skill.status == (Status.SUCCESS if reason is None else Status.FAILURE)
