@@ -183,9 +183,9 @@ class ClassicalSenses(Senses):
         """By the gown's colours at a grid of points on the front of the trunk."""
         return chest_cover(frame, self._bed, shoulders_in_map, self._tuning.chest_cover)
 
-    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray) -> GraspPoint:
+    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
         """Half the neck binding's length from its ends."""
-        return collar_middle(frame, near_in_map, self._tuning.collar)
+        return collar_middle(frame, near_in_map, below, self._tuning.collar)
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""

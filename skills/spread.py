@@ -20,8 +20,10 @@ from .control.withdraw import withdraw
 from .core.ports import Input, Output
 from .core.reasons import Reason
 from .core.skill import Skill
+from .core.tries import Tries
 from .geometry.arm_path import UP
 from .geometry.stances import HEADWARD, outwards
+from .motion.errors import MotionError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +52,18 @@ class SpreadTuning(Quantities):
         "of the collar off the body before it is carried",
         "measured: drawn along the body instead, it sprang back to where it lay; lifted by 0.10 to 0.18 m, it stayed",
     )
+    below: tuple[float, ...] = quantity(
+        (0.05, 0.08, 0.11),
+        "m",
+        "footward of the collar's middle, where the cloth is grasped, tried one after the other",
+        "measured: at the middle itself the neck was in the hand's way in 5 of 6 whole runs",
+    )
+    beyond: float = quantity(
+        0.09,
+        "m",
+        "by which the collar is carried beyond its place, and then drawn back along the body",
+        "measured: let go of at its place, it sprang back by 6 to 16 cm; drawn back to it, by less than 3 cm",
+    )
     speed: float = quantity(0.08, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
     tolerance: float = quantity(0.01, "m", "to the end of a way", "choice: the width of a thread")
     timeout_factor: float = quantity(
@@ -65,8 +79,9 @@ class Spread(Skill):
     """Looks where the middle of the neckline lies, and brings it over the breastbone where it does not lie there.
 
     A sleeve that is drawn on takes the collar along, to its side or up to the throat; the slack then hides in a fold at
-    one shoulder.  Lifted by its middle and laid down on the midline, the collar shares it between both.  The hand ends
-    open and drawn back, after a missed grasp too.  A collar that lies well is left alone.
+    one shoulder.  Lifted by the cloth below its middle, carried past the midline and drawn back to it, the collar
+    shares it between both.  A collar that lies well is left alone.  The hand ends open and drawn back, after a missed
+    grasp too.
     """
 
     side = Input(Side, doc="side of the bed on which the robot stands")
@@ -100,25 +115,33 @@ class Spread(Skill):
         if abs(aside) < tuning.lies_well and ahead < tuning.headward:
             yield
             return
-        approach = _from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
-        yield from reach_in(
-            self,
-            self.hand,
-            point.position_in_map,
-            approach,
-            point.closing_in_map,
-            opening=tuning.opening,
-            depth=tuning.depth,
-        )
-        yield from pinch_or_back_off(self, self.hand)
+        yield from self._take(middle)
         low = hand_now(self, self.hand)[:3, 3]
-        place = low + (*(middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
+        way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
+        past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from self._carry(low + tuning.lift * UP)
-        yield from self._carry(place + tuning.lift * UP)
+        yield from self._carry(past + tuning.lift * UP)
         yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], low[2]))
+        yield from self._carry(low + way)
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
+
+    def _take(self, middle: np.ndarray) -> Iterator[None]:
+        """Grasp the cloth below the collar's middle, as near to it as the hand gets."""
+        tuning, tries = self.tuning, Tries(MotionError)
+        for below in tuning.below:
+            point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle, below=below)
+            approach = _from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
+            place, closing = point.position_in_map, point.closing_in_map
+            with tries:
+                yield from reach_in(
+                    self, self.hand, place, approach, closing, opening=tuning.opening, depth=tuning.depth
+                )
+                break
+        else:
+            raise tries.last
+        yield from pinch_or_back_off(self, self.hand)
 
     def _carry(self, goal: np.ndarray) -> Iterator[None]:
         """Straight to `goal` (3,) [m], or as far as the collar comes."""

@@ -13,7 +13,7 @@ from ..estimates import GraspPoint
 from ..image.cloud import across, clusters, geodesic, main_direction, surface_normal, unit
 from ..image.garment import gown_labels
 from ..image.projection import points_in_map
-from ..image.surfaces import Surface
+from ..image.surfaces import GOWN_SURFACES, Surface
 from .gown_facts import GOWN
 
 
@@ -169,7 +169,9 @@ def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.nd
     return float(score)
 
 
-def collar_middle(frame: Frame, near_in_map: np.ndarray, tuning: CollarTuning = DEFAULT) -> GraspPoint:
+def collar_middle(
+    frame: Frame, near_in_map: np.ndarray, below: float = 0.0, tuning: CollarTuning = DEFAULT
+) -> GraspPoint:
     """The middle of a worn gown's neckline, half its length along the tape from either end.
 
     What is hidden of the tape is shared between its ends.  A taut half hides nothing, and a slack one has folds: the
@@ -178,6 +180,7 @@ def collar_middle(frame: Frame, near_in_map: np.ndarray, tuning: CollarTuning = 
     Args:
         frame: a view from above the person.
         near_in_map: (3,) middle between the shoulders [m].
+        below: how far footward of the middle the cloth is to be grasped, y in the map being towards the feet [m].
         tuning: numbers of the search.
 
     Returns:
@@ -202,6 +205,14 @@ def collar_middle(frame: Frame, near_in_map: np.ndarray, tuning: CollarTuning = 
     strip = points[np.argsort(np.abs(along - place))[: tuning.min_points]]
     position = np.median(strip, axis=0)
     strip = points[np.linalg.norm(points - position, axis=1) < tuning.grasp_length]
+    along = main_direction(strip)
+    if below > 0.0:
+        cloth = points_in_map(frame)[np.isin(gown_labels(frame), GOWN_SURFACES) & (frame.depth > 0)]
+        from_grasp = np.linalg.norm((cloth - position - (0.0, below, 0.0))[:, :2], axis=1)
+        if np.count_nonzero(from_grasp < tuning.grasp_length / 3) < tuning.min_points:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "cloth below the collar")
+        position = np.median(cloth[from_grasp < tuning.grasp_length / 3], axis=0)
+        strip = cloth[from_grasp < tuning.grasp_length]
     normal = surface_normal(strip, frame.pose_camera_in_map[:3, 3])
     return GraspPoint(
         stamp=frame.stamp,
@@ -209,7 +220,7 @@ def collar_middle(frame: Frame, near_in_map: np.ndarray, tuning: CollarTuning = 
         target="collar_middle",
         position_in_map=position,
         approach_in_map=-normal,
-        closing_in_map=across(main_direction(strip), -normal),
+        closing_in_map=across(along, -normal),
     )
 
 

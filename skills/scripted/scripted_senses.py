@@ -173,13 +173,13 @@ class ScriptedSenses(Senses):
         """All of it."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 
-    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray) -> GraspPoint:
+    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
         """A little aside, taken from above."""
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,
             target="collar_middle",
-            position_in_map=np.array((0.10, -0.5, 0.83)),
+            position_in_map=np.array((0.06, -0.5 + below, 0.83)),
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
