@@ -198,7 +198,7 @@ def collar_middle(
     along = geodesic(points, tip, tuning.worn_step)
     other = int(np.argmax(along))
     back = geodesic(points, other, tuning.worn_step)
-    doubt = np.array([_hidden_at(points, end, way, near_in_map, tuning) for end, way in ((tip, along), (other, back))])
+    doubt = np.array([hidden_at(points, end, way, near_in_map, tuning) for end, way in ((tip, along), (other, back))])
     shown = float(along[other])
     hidden = max(0.0, GOWN.neckline_length - shown)
     place = float(np.clip(GOWN.neckline_length / 2 - hidden * doubt[0] / doubt.sum(), 0.0, shown))
@@ -224,7 +224,7 @@ def collar_middle(
     )
 
 
-def _hidden_at(points: np.ndarray, end: int, way: np.ndarray, middle: np.ndarray, tuning: CollarTuning) -> float:
+def hidden_at(points: np.ndarray, end: int, way: np.ndarray, middle: np.ndarray, tuning: CollarTuning) -> float:
     """Doubt (above 0) in an end of the tape: how much it bends, and how far inside of a shoulder seam it ends.
 
     Args:

@@ -54,3 +54,14 @@ def test_folds_that_were_taken_too_are_felt_below_the_hook():
 def test_a_corner_that_slips_on_the_way_is_missed():
     run = bench(lambda height: 1.2 if height < 0.0 else 0.1)
     assert ended(run) == Reason.GRASP_MISSED
+
+
+def test_the_corner_goes_sideways_below_the_hook_and_behind_the_rail_above_it():
+    run = bench(lambda height: 1.2)
+    way = []
+    assert ended(run, each_tick=lambda: way.append(hand_from_base(run.world, "right") - (AHEAD, 0.0, UP))) is None
+    ahead, left, up = np.array(way).T
+    below = up < -0.05  # [m]
+    assert left[below].min() < -0.30  # [m]: as far aside as the strip is long
+    assert ahead[below].max() < 0.03  # [m]: not behind the rail
+    assert ahead[-1] > 0.12  # [m]: in the end

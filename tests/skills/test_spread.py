@@ -1,5 +1,7 @@
 """The collar is taken by its middle, lifted, and laid down on the midline; one that lies well is left alone."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
@@ -10,15 +12,15 @@ from caretree.skills.spread import Spread
 
 from .bench import LeafBench, beside_bed, pulls
 
-STAND = (0.97, -0.62, np.pi)  # beside the right shoulder, facing the bed [m, m, rad]
+STAND = (0.80, -0.62, np.pi)  # beside the right shoulder, facing the bed [m, m, rad]
 HEIGHT = 0.83  # of the collar on the chest [m]
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(*, aside=0.14, y=-0.50, cloth=HELD, collar=True, each_tick=lambda bench: None):
-    """The right hand, from the right side of the bed; the collar's middle lies `aside` [m] and at `y` [m]."""
-    point = GraspPoint(
+def collar_at(aside, y):
+    """The collar's middle `aside` of the midline and at `y` in the map [m]."""
+    return GraspPoint(
         stamp=0.0,
         confidence=0.9,
         target="collar_middle",
@@ -26,11 +28,15 @@ def bench(*, aside=0.14, y=-0.50, cloth=HELD, collar=True, each_tick=lambda benc
         approach_in_map=np.array((0.0, 0.0, -1.0)),
         closing_in_map=np.array((0.0, 1.0, 0.0)),
     )
+
+
+def bench(*, aside=0.14, cloth=HELD, collar=None, each_tick=lambda bench: None):
+    """The right hand, from the right side of the bed; the collar's middle lies `aside` [m]."""
     return LeafBench(
         lambda context: Spread("spread", context, side="right", hand="right"),
         beside_bed(
             stand=STAND,
-            collar_middle=point if collar else HIDDEN,
+            collar_middle=collar or collar_at(aside, -0.50),
             gripped_cloth=cloth,
             arm=lambda frame, side, **_: lying_posture(side),
         ),
@@ -57,8 +63,16 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_on_the_midline():
 
 def test_it_is_carried_above_the_body():
     way = carried(bench_that_ended())
-    moving = np.abs(way[:, 0] - way[0, 0]) > 0.03
-    assert way[moving & (np.abs(way[:, 0] - way[-1, 0]) > 0.03), 2].min() > way[0, 2] + 0.07  # [m]
+    way = way[: np.argmin(way[:, 0])]
+    between = (way[:, 0] < way[0, 0] - 0.03) & (way[:, 0] > way[-1, 0] + 0.03)
+    assert way[between, 2].min() > way[0, 2] + 0.07  # [m]
+
+
+def test_it_goes_past_the_midline_and_is_drawn_back_along_the_body():
+    way = carried(bench_that_ended())
+    assert way[:, 0].min() - way[-1, 0] == pytest.approx(-0.08, abs=0.03)  # [m]
+    back = way[np.argmin(way[:, 0]) :]
+    assert back[back[:, 0] > way[:, 0].min() + 0.02, 2].max() < way[0, 2] + 0.02  # [m]
 
 
 def bench_that_ended():
@@ -93,6 +107,21 @@ def test_a_miss_ends_with_the_hand_open_and_drawn_back():
 
 
 def test_a_collar_that_does_not_show_is_told_and_no_hand_moves():
-    run = bench(collar=False)
+    run = bench(collar=HIDDEN)
     assert run.ended() == Reason.NOTHING_SEEN
     assert run.way("right")[-1] == pytest.approx(run.start.pose_hand_in_map[1, :3, 3], abs=0.005)
+
+
+def test_where_the_hand_does_not_get_to_the_collar_it_takes_the_cloth_farther_down():
+    asked = []
+
+    def collar(frame, *, near_in_map, below=0.0):
+        asked.append(below)
+        near = seen.position_in_map + ((0.0, 0.0, 0.9) if 0.0 < below < 0.06 else (0.0, below, 0.0))  # out of reach
+        return dataclasses.replace(seen, position_in_map=near)
+
+    seen = collar_at(0.14, -0.50)
+    run = bench(collar=collar)
+    assert run.ended() is None
+    assert asked == [0.0, 0.05, 0.08]
+    assert carried(run)[0] == pytest.approx((0.14, -0.42, HEIGHT), abs=0.03)

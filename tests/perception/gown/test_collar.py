@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.gown.collar import collar_middle, corner_candidates
+from caretree.perception.gown.collar import DEFAULT, collar_middle, corner_candidates, hidden_at
 
 
 def corner_places(scene):
@@ -44,6 +44,40 @@ def test_the_middle_of_a_neckline_that_lies_on_the_person(scenes):
         assert scene.distance_to_cloth(grasp.position_in_map) < 0.015
         assert grasp.approach_in_map[2] < 0
         assert 0.3 < grasp.confidence <= 1.0
+
+
+def test_cloth_below_the_middle_is_grasped_where_it_lies(scenes):
+    scene = scenes.lying(1)
+    middle = corner_places(scene).mean(axis=0)
+    frame = scene.frame()
+    at, below = collar_middle(frame, middle), collar_middle(frame, middle, below=0.08)
+    assert (below.position_in_map - at.position_in_map)[:2] == pytest.approx((0.0, 0.08), abs=0.015)
+    assert scene.distance_to_cloth(below.position_in_map) < 0.015
+    with pytest.raises(PerceptionFailure):
+        collar_middle(frame, middle, below=2.0)  # [m]: beyond the hem
+
+
+def tape(bend, end=0.36):
+    """Points (n, 3) of a neckline from x = -0.36 m to `end`, whose left half runs in waves `bend` high [m]."""
+    x = np.linspace(-0.36, end, 400)
+    return np.column_stack([x, np.where(x < 0.0, bend * np.sin(x * 60.0), 0.0), np.zeros_like(x)])
+
+
+def doubts(points):
+    """Doubt in the left end and in the right end."""
+    step = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    ways = (0, step), (len(points) - 1, step[-1] - step)
+    return [hidden_at(points, end, way, np.zeros(3), DEFAULT) for end, way in ways]
+
+
+def test_more_ishidden_at_an_end_whose_half_is_not_straight():
+    left, right = doubts(tape(bend=0.02))
+    assert left > 2.0 * right
+
+
+def test_more_ishidden_at_an_end_inside_of_the_shoulder_seam():
+    left, right = doubts(tape(bend=0.0, end=0.20))
+    assert right > 2.0 * left
 
 
 def test_no_neckline_far_from_the_person(scenes):
