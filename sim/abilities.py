@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from .record.recorder import Recorder
+    from .render.camera import Renderer
     from .world import Side
 
 
@@ -56,6 +57,23 @@ class SupportsRecording(Protocol):
             on_error: told once when recording fails, or the display (`DisplayError`): the world's time goes on, as
                 the robot may hold a person's arm.
         """
+        ...
+
+
+class RoomView(Protocol):
+    """Shows the room to people, as it goes on."""
+
+    def show(self, time: float, room: Renderer) -> None:
+        """Show the room at `time` [s]."""
+        ...
+
+
+@runtime_checkable
+class SupportsViewing(Protocol):
+    """A world with a room that people can watch."""
+
+    def attach_view(self, view: RoomView) -> None:
+        """Show every frame from now on in `view`; an error of it is told like one of recording."""
         ...
 
 

@@ -17,6 +17,7 @@ from .errors import CaretreeError
 BAD_INPUT = 2
 INTERRUPTED = 130  # as shells count a Ctrl-C
 SEEDS = 2**32
+PORTS = 2**16
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -50,6 +51,17 @@ def seed(text: str) -> int:
     """
     if not text.isascii() or not text.isdigit() or int(text) >= SEEDS:
         raise argparse.ArgumentTypeError(f"{text!r} is no seed: a whole number from 0 to {SEEDS - 1} is asked for")
+    return int(text)
+
+
+def port(text: str) -> int:
+    """Type of an argument that names a port.
+
+    Raises:
+        ArgumentTypeError: it is none.
+    """
+    if not text.isascii() or not text.isdigit() or not 0 < int(text) < PORTS:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port: a whole number from 1 to {PORTS - 1} is asked for")
     return int(text)
 
 

@@ -27,6 +27,8 @@ ALLOWED_SIM = {
 OUTSIDE_THE_TREE = {
     "trees/report/page.py",
     "trees/report/figures.py",
+    "trees/watch/live.py",
+    "trees/watch/playback.py",
     "trees/campaign/trial.py",
     "trees/campaign/trials.py",
     "trees/commands/evaluate.py",

@@ -12,7 +12,7 @@ import io
 import sys
 from collections.abc import Sequence
 
-from ..sim.command_line import CommandParser, answered, seed
+from ..sim.command_line import CommandParser, answered, port, seed
 from ..sim.errors import CaretreeError
 from .run.worlds import WORLDS
 
@@ -92,6 +92,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument("--tuning", metavar="FILE", help="YAML file of such numbers: skill, number, value")
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
+    run.add_argument("--port", type=port, metavar="N", help="of the view (default: the first free one from 8080 on)")
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
@@ -128,6 +129,10 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     export.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     export.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
     export.add_argument("--out", metavar="FILE", help="file to write (default: print it)")
+
+    view = commands.add_parser("view", help="look at a record in the browser, with a time slider")
+    view.add_argument("directory", metavar="DIR")
+    view.add_argument("--port", type=port, metavar="N", help="default: the first free one from 8080 on")
 
     report = commands.add_parser("report", help="draw the page of a record, of a run cut short too")
     report.add_argument("directory", metavar="DIR")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..render.appearance import draw_appearance, gown_colours
-from ..render.camera import Renderer, looking_at
+from ..render.camera import Renderer
+from ..render.diorama import Diorama, Furniture, along
 from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
 from ..robot.kinematics import Kinematics
 from ..robot.visual import visual_meshes
@@ -13,9 +14,6 @@ from ..scene.person_spec import ARM_SEGMENTS
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
 from .cloth import Cloth
 from .person import Person
-
-SPECTATOR = looking_at(np.array((0.2, -2.85, 2.7)), np.array((0.75, 0.6, 0.65)))  # the video's camera
-SPECTATOR_SIZE = (480, 360)
 
 
 class Backdrop:
@@ -26,6 +24,10 @@ class Backdrop:
         cloth: the gown.
         person: the manikin.
         kinematics: of the robot.
+
+    Attributes:
+        renderer: what the robot's cameras are drawn from.
+        diorama: what people watch.
     """
 
     def __init__(self, scene: Scene, cloth: Cloth, person: Person, kinematics: Kinematics) -> None:
@@ -38,6 +40,9 @@ class Backdrop:
             self.renderer.add_rigid(f"robot_{name}", vertices, faces, 255.0 * np.asarray(rgb))
         self._links = list(visual_meshes())
         self.renderer.set_cloth(cloth.mesh.vertices, cloth.mesh.faces, *gown_colours(cloth.mesh, look))
+        furniture = Furniture(bed_xy=scene.bed_xy, bed_top=BED_TOP, rail=(*scene.rail_xy, RAIL_HEIGHT))
+        lengths = np.tile(scene.person.arm_lengths, (2, 1))
+        self.diorama = Diorama(look, furniture, person.trunk, person.radii(), lengths)
 
     def update(self, vertices: np.ndarray, arms: np.ndarray, configuration: np.ndarray) -> Renderer:
         """Move everything to where it is; returns the renderer, ready to draw.
@@ -50,7 +55,7 @@ class Backdrop:
         self.renderer.move_cloth(vertices)
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
-                self.renderer.set_pose(f"arm{arm}{part}", _along(arms[arm, part], arms[arm, part + 1]))
+                self.renderer.set_pose(f"arm{arm}{part}", along(arms[arm, part], arms[arm, part + 1]))
         poses = self.kinematics.link_poses(configuration)
         for name in self._links:
             self.renderer.set_pose(f"robot_{name}", poses[name])
@@ -100,13 +105,3 @@ class Backdrop:
                 tip = np.array((0.0, 0.0, lengths[part]))
                 add(f"arm{arm}{part}", *capsule_mesh(np.zeros(3), tip, radii[part]), skin)
             add(f"shoulder{arm}", *sphere_mesh(self.person.arms()[arm, 0], radii[0] * 1.15), skin)
-
-
-def _along(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Pose (4, 4) at a with z towards b."""
-    z = (b - a) / np.linalg.norm(b - a)
-    x = np.cross((0.0, 1.0, 0.1), z)
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = x, np.cross(z, x), z, a
-    return pose

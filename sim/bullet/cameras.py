@@ -41,6 +41,9 @@ class Cameras:
         kinematics: of the robot, which puts the cameras where they are and where it takes them to be.
         errors: of the sensors.
         noise: of the images.
+
+    Attributes:
+        last: by camera, the image that was looked at last.
     """
 
     def __init__(
@@ -53,6 +56,7 @@ class Cameras:
     ) -> None:
         self._expose, self._backdrop, self._kinematics = expose, backdrop, kinematics
         self._errors, self._noise = errors, noise
+        self.last: dict[str, Frame] = {}
 
     def pass_time(self, time: float) -> None:
         """Keep what there is to see at `time` [s], if images of it will be delivered later."""
@@ -77,7 +81,7 @@ class Cameras:
         pose = self._errors.pose_camera(camera, self._pose(camera, reading))
         rgb, depth = renderer.photograph(camera, pose, self._noise)
         assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]
-        return Frame(
+        self.last[camera] = Frame(
             camera=camera,
             stamp=seen.time,
             rgb=rgb,
@@ -85,6 +89,7 @@ class Cameras:
             intrinsics=camera_intrinsics(camera),
             pose_camera_in_map=self._pose(camera, self._errors.joints(reading, seen.time)),
         )
+        return self.last[camera]
 
     def _pose(self, camera: str, reading: JointReading) -> np.ndarray:
         return self._kinematics.pose_camera_in_map(

@@ -23,7 +23,6 @@ from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
 from ..render.camera import Renderer
-from ..render.live_view import LiveView
 from ..robot.body import RobotBody
 from ..robot.capsules import RobotCapsules
 from ..robot.kinematics import default_kinematics
@@ -47,7 +46,7 @@ from .person import Person
 from .soft_world import SoftWorld
 from .thinking_time import ThinkingTime
 from .truth_source import TruthSource
-from .watchers import Watchers
+from .watchers import RoomView, Watchers
 
 TIME_STEP = 0.0025  # of the room [s]
 ROBOT_STEPS = 2  # room steps per robot step
@@ -67,7 +66,6 @@ class BulletWorld(World):
         person: name of the person; drawn from the seed when omitted.
         model: model file of the gap workflow whose effects act on the gown.
         kind: how hard the world is made, see `sim/world_kind.py`.
-        view: serve a live 3D view to the browser; its address is printed.
 
     Attributes:
         scene: what was drawn; truth, not for skills.
@@ -90,7 +88,6 @@ class BulletWorld(World):
         person: str | None = None,
         model: str | None = None,
         kind: str = EASY,
-        view: bool = False,
     ) -> None:
         self._effects = None if model is None else gown_effects(model)
         self.scene = draw_scene(seed, gown, person, WorldKind.named(kind))
@@ -124,11 +121,7 @@ class BulletWorld(World):
         self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
         self._cameras = Cameras(self._expose, self._backdrop, self.kinematics, self._errors, self._noise)
         self._truth = TruthSource(self.scene, capsules, self._person, self._hook, self._grips, self._contact)
-        self._watchers = Watchers(self.truth_frame, self._draw)
-        self._view = LiveView() if view else None
-        if self._view:
-            print(f"live view: {self._view.url}", flush=True)
-            self._watchers.show(self._view)
+        self._watchers = Watchers(self.truth_frame, self._draw, self._backdrop.diorama, self._cameras.last)
         self._settle(SETTLE)
 
     def _build(self) -> None:
@@ -264,8 +257,6 @@ class BulletWorld(World):
 
     def close(self) -> None:
         """End both physics clients."""
-        if self._view:
-            self._view.close()
         self._client.disconnect()
         self._robot_client.disconnect()
 
@@ -398,6 +389,10 @@ class BulletWorld(World):
     def attach_recorder(self, recorder: Recorder, on_error: Callable[[Exception], None]) -> None:
         """Give every frame from now on to `recorder`, and whatever fails in showing or recording it to `on_error`."""
         self._watchers.record(recorder, self._truth.static(), on_error)
+
+    def attach_view(self, view: RoomView) -> None:
+        """Show every frame from now on in `view`."""
+        self._watchers.show(view)
 
     def truth_frame(self) -> TruthFrame:
         """Everything that is known about this instant."""

@@ -6,22 +6,27 @@ import hashlib
 import json
 import shutil
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import RecordError
+from ..fence import said
+from .background import Background
 from .folder_claim import FolderClaim
 from .record import (
     ERRORS_FILE,
+    LOOKS_FOLDER,
     REPORT_FILE,
     RESERVE_FILE,
     RUN_FILE,
     SPOOL_FOLDER,
     TRACE_FILE,
+    TREE_FILE,
     TRUTH_FILE,
     VIDEO_FILE,
     RunResult,
@@ -34,6 +39,9 @@ from .spool import Spool, disk_error, write_npz
 from .truth import TruthFrame, TruthStatic
 from .video import VideoWriter
 
+PICTURE_GAP_MAX = (
+    0.64  # [s] of world clock: so far apart are pictures of the video at most, however slow they are drawn
+)
 FRAME_PERIOD = 0.08  # [s] of world clock between truth frames: 12.5 a second, DESIGN.md asks for at least 10
 
 
@@ -51,6 +59,9 @@ class Recorder:
         directory: created if needed, or the claim on it; given back at the end.
         task, seed, world: what runs, on which world.
         parameters: everything else needed to run it again (gown, person, faults, model).
+
+    Attributes:
+        caption: stage and skill, written on the pictures of the video.
 
     Raises:
         RecordError: the folder cannot be written, another run is writing it, or it already holds a finished run.
@@ -82,6 +93,9 @@ class Recorder:
         self._hash = hashlib.sha256()
         self._spool: Spool | None = None
         self._video: VideoWriter | None = None
+        self._background: Background | None = None
+        self._filmed = float("-inf")
+        self.caption: tuple[str, str] = ("", "")
         self._problem: RecordError | None = None  # the first
         self._done = False
         try:
@@ -101,8 +115,9 @@ class Recorder:
         """Make room where a run was cut short."""
         if not (self.directory / RUN_FILE).exists():
             return
-        shutil.rmtree(self.directory / SPOOL_FOLDER, ignore_errors=True)
-        for name in (TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE, RESERVE_FILE):
+        for folder in (SPOOL_FOLDER, LOOKS_FOLDER):
+            shutil.rmtree(self.directory / folder, ignore_errors=True)
+        for name in (TREE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE, RESERVE_FILE):
             (self.directory / name).unlink(missing_ok=True)
 
     def begin(self, static: TruthStatic) -> None:
@@ -158,9 +173,37 @@ class Recorder:
         if self._problem is not None:
             return
         with self._noted():
-            if self._video is None:
-                self._video = VideoWriter(self.directory / VIDEO_FILE, width=image.shape[1], height=image.shape[0])
-            self._video.add(t, image)
+            self._add_picture(t, image)
+
+    def _add_picture(self, t: float, image: np.ndarray) -> None:
+        if self._video is None:
+            self._video = VideoWriter(self.directory / VIDEO_FILE, width=image.shape[1], height=image.shape[0])
+        self._video.add(t, image)
+
+    def _film(self, t: float, draw: Callable[[], np.ndarray]) -> None:
+        try:
+            self._add_picture(t, draw())
+        except RecordError:
+            raise
+        except Exception as error:
+            raise RecordError(f"a picture of the video cannot be drawn: {said(error)}") from error
+
+    def film(self, t: float, draw: Callable[[], np.ndarray]) -> None:
+        """Have a picture drawn and added to the video beside the run; left out where drawing cannot keep up.
+
+        Args:
+            t: from when on it is shown [s] of the world clock.
+            draw: gives it, (H, W, 3) uint8; called in a thread of its own, so it must touch nothing that changes.
+
+        Raises:
+            RecordError: an earlier picture could not be added.
+        """
+        if self._problem is not None:
+            return
+        with self._noted():
+            self._background = self._background or Background()
+            if self._background.give(partial(self._film, t, draw), wait=t - self._filmed > PICTURE_GAP_MAX - 1e-9):
+                self._filmed = t
 
     @contextmanager
     def _noted(self) -> Iterator[None]:
@@ -175,6 +218,10 @@ class Recorder:
     def _make_room(self) -> None:
         if self._reserve is not None:
             self._reserve.free()
+
+    def note(self, **entries: Any) -> None:
+        """Keep further entries of run.json, to be written with the outcome."""
+        self._run.update(entries)
 
     def finish(self, result: RunResult) -> None:
         """Write truth.npz and the outcome, and close everything.
@@ -223,7 +270,7 @@ class Recorder:
 
     def _close_files(self) -> None:
         """Close what is open; an error keeps neither the others nor run.json from being written."""
-        for file in (self._trace, self._spool, self._video):
+        for file in (self._background, self._trace, self._spool, self._video):  # nobody films into a closed video
             if file is not None:
                 with suppress(RecordError), self._noted():
                     try:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import numpy as np
 
 from ..errors import CaretreeError
@@ -47,6 +50,16 @@ def looking_at(eye: np.ndarray, target: np.ndarray, up: tuple[float, float, floa
     return pose
 
 
+class Body(NamedTuple):
+    """A rigid body: vertices (n, 3) in its own frame [m], faces and colours (m, 3), pose (4, 4)."""
+
+    name: str
+    vertices: np.ndarray
+    faces: np.ndarray
+    colours: np.ndarray
+    pose_in_map: np.ndarray
+
+
 class Renderer:
     """Holds what there is to see and draws it from anywhere.
 
@@ -58,6 +71,7 @@ class Renderer:
         self.light = light
         self.ids: dict[str, int] = {}
         self._local: dict[str, np.ndarray] = {}
+        self._faces: dict[str, np.ndarray] = {}  # of each body alone
         self._poses: dict[str, np.ndarray] = {}
         self._slices: dict[str, slice] = {}
         self._parts: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # vertices, faces, colours
@@ -82,7 +96,7 @@ class Renderer:
         vertices, faces = np.asarray(vertices, dtype=float), np.asarray(faces, dtype=np.int64)
         start = sum(len(v) for v, _, _ in self._parts)
         self._slices[name] = slice(start, start + len(vertices))
-        self._local[name] = vertices
+        self._local[name], self._faces[name] = vertices, faces
         self._poses[name] = np.eye(4)
         self.ids[name] = len(self.ids) + 1
         colours = np.broadcast_to(np.asarray(colour, dtype=float), (len(faces), 3))
@@ -100,6 +114,20 @@ class Renderer:
         self._poses[name] = pose_in_map
         if self._rigid is not None:
             self._place(name, self._rigid.vertices)
+
+    def move_vertices(self, name: str, vertices: np.ndarray) -> None:
+        """Change the shape of a body: as many vertices (n, 3) as it had, in its own frame [m].
+
+        Raises:
+            CaretreeError: no such body.
+        """
+        if name in self._local:
+            self._local[name] = np.asarray(vertices, dtype=float)
+        self.set_pose(name, self._poses.get(name, np.eye(4)))
+
+    def remove_cloth(self) -> None:
+        """Draw no cloth any more."""
+        self._cloth = None
 
     def set_cloth(
         self,
@@ -124,6 +152,16 @@ class Renderer:
     def move_cloth(self, vertices: np.ndarray) -> None:
         """New positions (V, 3) of the cloth's vertices in the map [m]."""
         self._cloth_vertices = np.asarray(vertices, dtype=float)
+
+    def bodies(self) -> Iterator[Body]:
+        """Every rigid body as it is now, in the order in which they were added."""
+        for (name, vertices), (_, _, colours) in zip(self._local.items(), self._parts, strict=True):
+            yield Body(name, vertices, self._faces[name], colours, self._poses[name])
+
+    @property
+    def cloth(self) -> tuple[np.ndarray, ...] | None:
+        """Vertices (V, 3), then what `set_cloth` was given beside them; None where there is no cloth."""
+        return None if self._cloth is None else (self._cloth_vertices, *self._cloth)
 
     def triangles(self) -> Triangles:
         """The whole scene as it is now."""

@@ -75,7 +75,7 @@ class Picture:
     cosine: np.ndarray
 
 
-@njit()
+@njit(nogil=True)
 def _vertex_light(vertices, faces, lamp, ambient, intensity):
     """Light on the front and the back of every vertex, (n, 2)."""
     n = vertices.shape[0]
@@ -102,10 +102,12 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
     return light
 
 
-@njit(inline="always")  # a call for every face would cost
-def _clip_near(points, uv, light, faces, f, shade, near, corner):
+@njit(inline="always", nogil=True)  # a call for every face would cost
+def _clip_near(points, uv, light, faces, f, shade, near, closed, corner):
     """Clip face `f` against the near plane into `corner`; returns how many corners it has then: 0, 3 or 4."""
     count = 0
+    if closed and shade == 1:  # the far side of a closed body
+        return count
     for k in range(3):
         i, j = faces[f, k], faces[f, (k + 1) % 3]
         zi, zj = points[i, 2], points[j, 2]
@@ -124,8 +126,10 @@ def _clip_near(points, uv, light, faces, f, shade, near, corner):
     return count
 
 
-@njit()
-def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pitch, rgb, depth, owner, cosine):
+@njit(nogil=True)
+def _draw(
+    points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pitch, closed, rgb, depth, owner, cosine
+):
     """Fill the buffers; `points` are in the optical frame."""
     height, width = depth.shape
     corner = np.empty((4, 6))  # x, y, z, u, v, light of the clipped polygon
@@ -140,7 +144,7 @@ def _draw(points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, n
         shade = 0 if outside else 1
         norm = np.sqrt(nx * nx + ny * ny + nz * nz)
         distance = abs(towards) / (norm + 1e-15)  # from the camera to the plane of the face
-        count = _clip_near(points, uv, light, faces, f, shade, near, corner)
+        count = _clip_near(points, uv, light, faces, f, shade, near, closed * ids[f], corner)
         for k in range(count):
             pixel[k, 0] = fx * corner[k, 0] / corner[k, 2] + cx
             pixel[k, 1] = fy * corner[k, 1] / corner[k, 2] + cy
@@ -194,6 +198,7 @@ def rasterise(
     pose_camera_in_map: np.ndarray,
     size: tuple[int, int],
     print_pitch: float = 0.035,
+    closed: bool = False,
 ) -> Picture:
     """Draw `triangles` as a pinhole camera sees them.
 
@@ -204,6 +209,7 @@ def rasterise(
         pose_camera_in_map: (4, 4), optical frame: x right, y down, z forward.
         size: (width, height) [px].
         print_pitch: distance between the dots of the print [m].
+        closed: all but body 0, the cloth, are closed bodies: their far sides need not be drawn.
     """
     width, height = size
     fx, fy, cx, cy = intrinsics
@@ -237,6 +243,7 @@ def rasterise(
         float(cy),
         NEAR,
         print_pitch,
+        closed,
         rgb,
         depth,
         ids,

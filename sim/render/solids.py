@@ -54,6 +54,18 @@ def cylinder_mesh(start: np.ndarray, end: np.ndarray, radius: float, sides: int 
     return _turned(start, end, profile, sides)
 
 
+def loft_mesh(start: np.ndarray, end: np.ndarray, shares: np.ndarray, radii: np.ndarray, sides: int = 16) -> Mesh:
+    """An open tube whose radius [m] is `radii` (n,) at the `shares` (n,) of the way between `start` and `end` (3,)."""
+    profile = [(float(r), 0.0, float(s)) for r, s in zip(radii, shares, strict=True)]
+    return _turned(start, end, profile, sides)
+
+
+def ellipsoid_mesh(centre: np.ndarray, half_axes: np.ndarray, sides: int = 16) -> Mesh:
+    """An ellipsoid with its axes along x, y and z."""
+    vertices, faces = sphere_mesh(np.zeros(3), 1.0, sides)
+    return vertices * half_axes + centre, faces
+
+
 def _turned(start: np.ndarray, end: np.ndarray, profile: list[tuple[float, float, float]], sides: int) -> Mesh:
     """Turn a profile of (radius, offset along the axis [m], share of the axis) around start-end."""
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)

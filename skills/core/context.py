@@ -167,6 +167,11 @@ class Context:
         if self._senses is None:
             self._senses = senses
 
+    def watch_senses(self, watch: Callable[[Senses], Senses]) -> None:
+        """Have what the senses answer told to those who look on: `watch` gives senses that answer the same."""
+        if self._senses is not None:
+            self._senses = watch(self._senses)
+
     def notify(self, name: str, phase: Phase) -> None:
         """Tell the observers which phase a skill enters."""
         for observer in self.observers:

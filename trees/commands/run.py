@@ -7,14 +7,14 @@ import errno
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...perception.senses import Senses
 from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.command_line import drop_output
 from ...sim.errors import CaretreeError, DisplayError, RecordError
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
-from ...sim.fence import said
+from ...sim.fence import fenced, said
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
@@ -22,11 +22,16 @@ from ...sim.world import World
 from ...sim.world_kind import WorldKind
 from ...skills.core.settings import Settings
 from ..proof.check import check_quickly
+from ..report.looks import LookLog, Witness
+from ..report.outline import outline_of, write_outline
 from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import read_settings
 from ..run.worlds import make_world, prepare_stage
+
+if TYPE_CHECKING:
+    from ..watch.live import LiveView
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
 RATE_HZ = 15.0
@@ -70,6 +75,7 @@ def main(options: argparse.Namespace) -> int:
         "tuning": settings.values,
     }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
+    view = _view(options)
     # claimed before the world is built, which takes a while: two runs begun together get a folder each
     claim = (
         FolderClaim(Path(options.out))
@@ -86,14 +92,32 @@ def main(options: argparse.Namespace) -> int:
                 person=options.person,
                 model=options.model,
                 kind=options.world_kind,
-                view=options.view,
             )
             try:
-                return _run(options, task, inner, senses, faults, settings, parameters, claim, signals)
+                return _run(options, task, inner, senses, faults, settings, parameters, claim, signals, view)
             finally:
                 inner.close()
     finally:
         claim.release()
+        if view is not None:
+            view.close()
+
+
+def _view(options: argparse.Namespace) -> LiveView | None:
+    """The page that somebody asked for.
+
+    Raises:
+        CaretreeError: it cannot be served, or a port is given for none.
+    """
+    if not options.view:
+        if options.port is not None:
+            raise CaretreeError("--port is the port of the view: give --view too")
+        return None
+    from ..watch.live import LiveView  # viser is needed only here
+
+    view = LiveView(f"{options.task}, seed {options.seed}", options.port)
+    print(f"live view: {view.url}", flush=True)
+    return view
 
 
 def _refuse_faulty(task: Task, stage: str | None) -> None:
@@ -120,6 +144,7 @@ def _run(
     parameters: dict[str, Any],
     claim: FolderClaim,
     signals: StopSignals,
+    view: LiveView | None,
 ) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
     events = _Events()
@@ -129,27 +154,38 @@ def _run(
         seed=options.seed,
         rate_hz=RATE_HZ,
         recorder=events,
-        on_progress=show,
+        on_progress=events.progress,
         senses=senses,
         params=task.parameters(options.stage),
         settings=settings,
+        before_tick=view.before_tick if view else None,
     )
+    witness = Witness()
+    run.context.watch_senses(witness.watch)
     prepare_stage(inner, task, options.stage)
     directory = claim.directory
     recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
-    events.recorder = recorder
+    events.recorder, events.looks, events.view = recorder, LookLog(directory, witness), view
     try:
+        write_outline(directory, outline_of(run.root))
+        if view is not None:
+            view.follow(run, inner, witness)
         if isinstance(inner, SupportsRecording):
             inner.attach_recorder(recorder, run.lost)
         signals.run = run
         result = run.run()
         of_world = inner.timing if isinstance(inner, HasTiming) else {}
+        if isinstance(world, FaultyWorld):
+            recorder.note(faults=[{"fault": str(spec), "t": time} for spec, time in world.begun])
         problem = _finish(recorder, replace(result, timing=_timing(result.timing, of_world)))
     finally:
         recorder.close()
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
     if isinstance(world, FaultyWorld):
         _tell_faults(world)
+    if view is not None:
+        fenced(view.finish, lambda error: print(f"the view failed: {said(error)}"))(result.reason)
+        print(f"look at it again: caretree view {directory}")
     print(f"{result.outcome.replace('_', ' ')}: {result.reason}")
     for path in written:
         if path is not None and path.exists():
@@ -169,14 +205,28 @@ def _finish(recorder: Recorder, result: RunResult) -> RecordError | None:
 
 
 class _Events:
-    """Hands events to the recorder, which exists only once the task is known to build."""
+    """Hands on what happens, to the recorder and the view, which exist only once the task is known to build."""
 
     recorder: Recorder | None = None
+    looks: LookLog | None = None
+    view: LiveView | None = None
 
     def event(self, event: Mapping[str, Any]) -> None:
         """Append one event."""
         if self.recorder is not None:
             self.recorder.event(event)
+        if self.looks is not None:
+            self.looks.event(event)
+
+    def progress(self, progress: Progress) -> None:
+        """Write stage and skill on the video and the page, and tell the operator."""
+        if self.recorder is not None and progress.status == "running":
+            stage = self.recorder.caption[0]
+            words = f"{progress.name}{f': {progress.message}' if progress.message else ''}"
+            self.recorder.caption = (progress.name, "") if progress.kind == "stage" else (stage, words)
+        if self.view is not None:
+            self.view.progress(progress)
+        show(progress)
 
 
 def _tell_faults(world: FaultyWorld) -> None:

@@ -103,6 +103,11 @@ class GuardedWorld:
         if what == "arm" and arm is not None:
             self._held[side] = arm
 
+    @property
+    def seen(self) -> Observation | None:
+        """What was sensed last, for those who watch; None before anything was."""
+        return self._last
+
     def held_arms(self) -> Mapping[Side, str]:
         """By hand, the person's arm that it holds, as the zone names it."""
         return self._held

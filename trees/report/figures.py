@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 WIDTH = 9.6  # [in] of every figure, so that their time axes line up
 COLOURS = {"left": "#1f6fb2", "right": "#c8641b"}
+PARTS = {"upper_arm": "-", "forearm": "--", "hand": ":", "arm": "-"}  # of the side's colour; the rest has its own
+OTHERS = {"head": "#7b3fa0", "trunk": "#566573", "torso": "#566573", "legs": "#8d6e63"}
 STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "running": "#d9a53a"}
+FAULT = {"color": "#7b3fa0", "linewidth": 1.0, "linestyle": ":"}
 LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
 ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 40
 
@@ -55,13 +58,19 @@ def _png(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def timeline(stages: Sequence[Mapping[str, Any]], spans: Sequence[Span], end: float) -> bytes:
-    """Stages and skills as bars over time (PNG).
+def timeline(
+    stages: Sequence[Mapping[str, Any]],
+    spans: Sequence[Span],
+    end: float,
+    faults: Sequence[tuple[float, str]] = (),
+) -> bytes:
+    """Stages and skills as bars over time, failures and faults marked (PNG).
 
     Args:
         stages: of run.json.
         spans: of the skills, in order of their start.
         end: of the time axis [s].
+        faults: that were played, when [s] and which.
     """
     bars: list[tuple[str, list[tuple[float, float, str]]]] = []
     for stage in stages:
@@ -85,6 +94,20 @@ def timeline(stages: Sequence[Mapping[str, Any]], spans: Sequence[Span], end: fl
                 color=STATUS.get(status, STATUS["running"]),
                 alpha=1.0 if row < first_skill else 0.75,
             )
+    rows = {name: first_skill + k for k, name in enumerate(names[:ROWS_MAX])}
+    failed = [span for span in spans if span.status == "FAILURE" and span.name in rows]
+    axis.plot(
+        [span.t_end for span in failed],
+        [rows[span.name] for span in failed],
+        linestyle="",
+        marker="x",
+        markersize=4.5,
+        markeredgewidth=1.3,
+        color="#7d1f18",
+    )
+    for t, which in faults:
+        axis.axvline(t, **FAULT)
+        axis.annotate(which, (t, -0.6), rotation=30, fontsize=7, color=FAULT["color"], annotation_clip=False)
     axis.set_yticks(range(len(bars)), [name for name, _ in bars])
     for label in axis.get_yticklabels()[:first_skill]:
         label.set_fontweight("bold")
@@ -122,69 +145,119 @@ def _legend(axis: Axes) -> None:
     axis.legend(fontsize=7, loc="lower left", bbox_to_anchor=(0.0, 0.97), frameon=False, ncols=4, borderpad=0.1)
 
 
-def curves(series: Series) -> bytes:
-    """Loads, forces, hands, sleeves, stretch and, where recorded, harm over time, with the limits drawn (PNG)."""
-    told = series.clearance is not None and series.wrists is not None
-    figure, (load, force, distance, speed, sleeves, stretch, *harm) = _figure(8 if told else 6, 12.8 if told else 9.6)
-    t = series.t
-    _both(load, t, np.where(series.holds, series.load, np.nan))
+def curves(series: Series, faults: Sequence[tuple[float, str]] = ()) -> bytes | None:
+    """Those curves over time that hold something, with the limits drawn (PNG); None where none does.
+
+    Loads, forces, hands, sleeves, stretch of the cloth and, where recorded, harm: a task without a gown has no sleeves.
+
+    Args:
+        series: of the run.
+        faults: that were played, when [s] and which.
+    """
+    drawn = [draw for draw, has in _panels(series) if has]
+    if not drawn or not len(series.t):
+        return None
+    figure, axes = _figure(len(drawn), 1.6 * len(drawn) + 0.3)
+    for axis, draw in zip(axes, drawn, strict=True):
+        draw(axis, series)
+        for t, _ in faults:
+            axis.axvline(t, **FAULT)
+    axes[-1].set_xlabel("time [s]", fontsize=8)
+    axes[-1].set_xlim(0, max(float(series.t[-1]), 1e-3))
+    figure.align_ylabels()
+    return _png(figure)
+
+
+def _panels(series: Series) -> list[tuple[Callable[[Axes, Series], None], bool]]:
+    """What can be drawn, and whether there is anything to show of it."""
+    return [
+        (_loads, bool(series.holds.any())),
+        (_forces, bool(np.nan_to_num(series.person_force).any())),
+        (_distances, bool(np.isfinite(series.distance).any())),
+        (_speeds, bool(np.nan_to_num(series.speed).any())),
+        (_sleeves, bool(np.nan_to_num(series.upper_arm).any())),
+        (_stretch, bool(np.isfinite(series.stretch_max).any() and series.holds.any())),
+        (_clearance, series.clearance is not None and bool(np.isfinite(series.clearance).any())),
+        (_wrists, series.wrists is not None and bool(np.isfinite(series.wrists).any())),
+    ]
+
+
+def _loads(load: Axes, series: Series) -> None:
+    _both(load, series.t, np.where(series.holds, series.load, np.nan))
     load.set_ylabel("cloth load [N]", fontsize=8)
     _line(load, DEFAULT.cloth_load_slow, "slow down")
     _line(load, DEFAULT.cloth_load_stop, "stop")
     load.set_ylim(0, 1.25 * max(DEFAULT.cloth_load_stop, float(np.nanmax(series.load, initial=0.0))))
 
+
+def part_style(part: str) -> dict[str, Any]:
+    """Colour and line of a part of the body: both arms as everywhere, by their side."""
+    side, _, rest = part.partition("_")
+    if side in COLOURS:
+        return {"color": COLOURS[side], "linestyle": PARTS.get(rest, "-")}
+    return {"color": OTHERS.get(part, "#2f7d5b"), "linestyle": "-"}
+
+
+def _forces(force: Axes, series: Series) -> None:
     order = np.argsort(-np.nan_to_num(series.person_force).max(axis=0, initial=0.0))
     for part in order[:4]:
-        force.plot(t, series.person_force[:, part], linewidth=1.0, label=series.person_parts[part].replace("_", " "))
+        name = series.person_parts[part]
+        curve = series.person_force[:, part]
+        force.plot(series.t, curve, linewidth=1.0, label=name.replace("_", " "), **part_style(name))
     force.set_ylabel("force on person [N]", fontsize=8)
-    force.set_ylim(bottom=0)
-    if len(order):
-        _line(force, DEFAULT.arm_load_stop, "stop, if it lasts")
-        force.set_ylim(0, 1.25 * max(DEFAULT.arm_load_stop, float(np.nanmax(series.person_force, initial=0.0))))
-        _legend(force)
+    _line(force, DEFAULT.arm_load_stop, "stop, if it lasts")
+    force.set_ylim(0, 1.25 * max(DEFAULT.arm_load_stop, float(np.nanmax(series.person_force, initial=0.0))))
+    _legend(force)
 
-    _both(distance, t, series.distance)
+
+def _distances(distance: Axes, series: Series) -> None:
+    _both(distance, series.t, series.distance)
     distance.set_ylabel("hand to person [m]", fontsize=8)
     distance.set_ylim(0, 1.0)
     _line(distance, DEFAULT.near_person, "near")
 
+
+def _speeds(speed: Axes, series: Series) -> None:
     near = np.where(series.distance < DEFAULT.near_person, series.speed, np.nan)
     for k, side in enumerate(SIDES):
-        speed.plot(t, series.speed[:, k], color=COLOURS[side], linewidth=0.7, alpha=0.35, label=f"{side}, farther away")
-        speed.plot(t, near[:, k], color=COLOURS[side], linewidth=1.2, label=f"{side}, near the person")
+        away = f"{side}, farther away"
+        speed.plot(series.t, series.speed[:, k], color=COLOURS[side], linewidth=0.7, alpha=0.35, label=away)
+        speed.plot(series.t, near[:, k], color=COLOURS[side], linewidth=1.2, label=f"{side}, near the person")
     speed.set_ylabel("hand speed [m/s]", fontsize=8)
     _line(speed, DEFAULT.hand_speed, "limit, near")
     speed.set_ylim(0, max(2.2 * DEFAULT.hand_speed, 1.1 * float(np.nanmax(series.speed, initial=0.0))))
     _legend(speed)
 
-    _both(sleeves, t, series.upper_arm)
+
+def _sleeves(sleeves: Axes, series: Series) -> None:
+    _both(sleeves, series.t, series.upper_arm)
     sleeves.set_ylabel("armhole up the\nupper arm", fontsize=8)
     sleeves.set_ylim(0, 1.15)
     _line(sleeves, UPPER_ARM_MIN, "at least")
 
-    stretch.plot(t, series.stretch_p99, color="#566573", linewidth=1.0, label="99th percentile")
-    stretch.plot(t, series.stretch_max, color="#a9b4bd", linewidth=1.0, label="longest")
+
+def _stretch(stretch: Axes, series: Series) -> None:
+    stretch.plot(series.t, series.stretch_p99, color="#566573", linewidth=1.0, label="99th percentile")
+    stretch.plot(series.t, series.stretch_max, color="#a9b4bd", linewidth=1.0, label="longest")
     stretch.set_ylabel("edge over rest", fontsize=8)
     _line(stretch, STRETCH_P99_MAX, "99th at most")
     _line(stretch, STRETCH_MAX, "longest at most")
     stretch.set_ylim(0.9, 1.12 * max(STRETCH_MAX, float(np.nanmax(series.stretch_max, initial=0.0))))
     _legend(stretch)
 
-    if series.clearance is not None and series.wrists is not None:
-        _clearance(harm[0], t, series.clearance)
-        _both(harm[1], t, series.wrists)
-        harm[1].set_ylabel("wrist above\nmattress [m]", fontsize=8)
-        _line(harm[1], WRIST_ABOVE_BED_MAX, "at the end")
-        harm[1].set_ylim(0, max(1.5 * WRIST_ABOVE_BED_MAX, 1.1 * float(np.nanmax(series.wrists, initial=0.0))))
-    last = harm[-1] if harm else stretch
-    last.set_xlabel("time [s]", fontsize=8)
-    last.set_xlim(0, max(float(t[-1]), 1e-3))
-    figure.align_ylabels()
-    return _png(figure)
+
+def _wrists(wrists: Axes, series: Series) -> None:
+    assert series.wrists is not None
+    _both(wrists, series.t, series.wrists)
+    wrists.set_ylabel("wrist above\nmattress [m]", fontsize=8)
+    _line(wrists, WRIST_ABOVE_BED_MAX, "at the end")
+    wrists.set_ylim(0, max(1.5 * WRIST_ABOVE_BED_MAX, 1.1 * float(np.nanmax(series.wrists, initial=0.0))))
 
 
-def _clearance(axis: Axes, t: np.ndarray, gaps: np.ndarray) -> None:
+def _clearance(axis: Axes, series: Series) -> None:
     """From the robot to head and neck, and to the rest of the body, below the skin too."""
+    assert series.clearance is not None
+    t, gaps = series.t, series.clearance
     for k, (name, colour, limit) in enumerate(
         (("head and neck", "#7b3fa0", ROBOT_DEPTH_HEAD_MAX), ("rest of the body", "#566573", ROBOT_DEPTH_MAX))
     ):

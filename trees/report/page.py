@@ -14,12 +14,15 @@ from ...sim.errors import CaretreeError
 from ...sim.evaluate import limits
 from ...sim.evaluate.series import read_series
 from ...sim.evaluate.verdict import Verdict, evaluate
-from ...sim.record.record import REPORT_FILE, TRACE_FILE, VIDEO_FILE, is_finished, read_run
+from ...sim.record.record import REPORT_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, is_finished, read_run
 from ...sim.record.spool import disk_error
 from ...sim.record.video import read_pictures
 from ..run.task import JUDGED
 from . import figures as report_figures
+from .looks import Look, drawn, read_looks
+from .outline import outline_html, read_outline, states_at
 from .timeline import Span, read_trace, spans_of
+from .why import Attempt, decisive, failed_attempts, look_at
 
 TEMPLATE = Path(__file__).with_name("report_template.html")
 FRAMES_MAX = 12
@@ -89,6 +92,7 @@ def build_report(directory: Path) -> str:
     stages = [stage for stage in run.get("stages") or () if isinstance(stage, Mapping)]
     sentence = run.get("reason") or ("The run ended." if outcome else "The run was cut short before it had an outcome.")
     task, seed, world = (_text(run.get(key)) for key in ("task", "seed", "world"))
+    why = _section("What went wrong", _or_sentence(lambda: _why(directory, run, stages)))
     return string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=f"{task}, seed {seed}",
         outcome=SENTENCES.get(outcome or "", "cut short"),
@@ -97,13 +101,21 @@ def build_report(directory: Path) -> str:
         sentence=_text(sentence),
         facts=_facts(run),
         verdict=_or_sentence(lambda: _verdict(directory, run)),
+        why_failed="" if outcome == "success" else why,
+        why=why if outcome == "success" else "",
         stages=_stages(stages),
-        timeline=_or_sentence(lambda: _timeline(directory, stages)),
-        frames=_or_sentence(lambda: _frames(directory, run, stages)),
-        curves=_or_sentence(lambda: _image(report_figures.curves(read_series(directory)), "curves over time")),
+        timeline=_or_sentence(lambda: _timeline(directory, run, stages)),
+        frames=_section("Key frames", _or_sentence(lambda: _frames(directory, run, stages))),
+        curves=_section("Forces, hands and cloth", _or_sentence(lambda: _curves(directory, run))),
+        tree=_or_sentence(lambda: _tree(directory)),
         timing=_timing(run),
         details=_text(json.dumps({key: run.get(key) for key in ("parameters", "versions", "trace_hash")}, indent=1)),
     )
+
+
+def _section(title: str, content: str) -> str:
+    """A section of the page; none where there is nothing to show."""
+    return f"<section><h2>{title}</h2>{content}</section>" if content else ""
 
 
 def _text(value: object) -> str:
@@ -230,9 +242,83 @@ def _stages(stages: Sequence[Mapping[str, Any]]) -> str:
     return _table(("stage", "ended as", "attempts", "began", "took", "reason"), rows, numeric=(2, 3, 4))
 
 
-def _timeline(directory: Path, stages: Sequence[Mapping[str, Any]]) -> str:
+def _why(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
+    """The failure that decided, with what was seen, and every other one."""
+    attempts = failed_attempts(spans_of(read_trace(directory / TRACE_FILE)), stages)
+    looks = read_looks(directory)
+    worst = decisive(run, attempts)
+    content = "" if worst is None else _decisive(directory, run, worst, look_at(worst, looks))
+    if not attempts:
+        return content
+    rows = [
+        (
+            ", ".join(f"{t:.1f} s" for t in attempt.times),
+            _text(attempt.stage),
+            f'<span title="{_text(attempt.span.path)}">{_text(attempt.span.name)}</span>',
+            _text(attempt.sentence),
+            _text(attempt.span.detail),
+        )
+        for attempt in attempts
+    ]
+    said = "What failed on the way, and was recovered from" if worst is None else "Everything that failed"
+    return f"{content}<h3>{said}</h3>" + _table(("when", "stage", "skill", "why", "numbers"), rows)
+
+
+def _decisive(directory: Path, run: Mapping[str, Any], attempt: Attempt, look: Look | None) -> str:
+    """The failure that ended the run: where, why, and the last picture before it."""
+    span, t = attempt.span, attempt.times[-1]
+    words = f"<p><b>{_text(span.name)}</b> failed at {t:.1f} s: {_text(attempt.sentence)} {_text(span.detail)}</p>"
+    figures = []
+    if look is not None:
+        found = "".join(
+            f'<li><span class="{"yes" if each.found else "no"}">{_text(each.asked.replace("_", " "))}</span>'
+            f" {_text(each.words)}</li>"
+            for each in look.findings
+        )
+        figures.append(
+            f"<figure>{_image(report_figures.jpeg(drawn(look)), 'what the camera saw', 'jpeg')}<figcaption>"
+            f"the {_text(look.camera.replace('_', ' '))} camera, and what perception made of it<ul>{found}</ul>"
+            "</figcaption></figure>"
+        )
+    start = run.get("video_start_s")
+    if (directory / VIDEO_FILE).exists():
+        (picture,) = read_pictures(directory / VIDEO_FILE, [max(0.0, t - float(start or 0.0))])
+        shown = _image(report_figures.jpeg(picture), "the room at the failure", "jpeg")
+        figures.append(f"<figure>{shown}<figcaption>the room at that moment</figcaption></figure>")
+    return words + (f'<div class="frames wide">{"".join(figures)}</div>' if figures else "")
+
+
+def _faults(run: Mapping[str, Any]) -> list[tuple[float, str]]:
+    """The faults that were played, when [s] and which."""
+    faults = run.get("faults")
+    entries = [each for each in faults if isinstance(each, Mapping)] if isinstance(faults, list) else []
+    return [(float(each["t"]), str(each.get("fault"))) for each in entries if isinstance(each.get("t"), (int, float))]
+
+
+def _curves(directory: Path, run: Mapping[str, Any]) -> str:
+    """Curves from the truth; a scripted world has none, and nobody misses them."""
+    if run.get("world") == "scripted" and not (directory / TRUTH_FILE).exists():
+        return ""
+    picture = report_figures.curves(read_series(directory), _faults(run))
+    return "" if picture is None else _image(picture, "curves over time")
+
+
+def _tree(directory: Path) -> str:
+    """The tree with what each node came to in the end."""
+    events = read_trace(directory / TRACE_FILE)
+    rows = read_outline(directory, events)
+    if not rows:
+        return ""
+    content = outline_html(rows, states_at(events), folded=False)
+    return (
+        f"<details><summary>The tree, and what each node came to last ({len(rows)} nodes)</summary>{content}</details>"
+    )
+
+
+def _timeline(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
     spans = spans_of(read_trace(directory / TRACE_FILE))
     times = [span.t_end for span in spans]
+    times += [t for t, _ in _faults(run)]
     times += [stage["t_end"] for stage in stages if isinstance(stage.get("t_end"), (int, float))]
     if not times:
         return '<p class="soft">Nothing took time.</p>'
@@ -245,7 +331,8 @@ def _timeline(directory: Path, stages: Sequence[Mapping[str, Any]]) -> str:
             ("running", "cut short"),
         )
     )
-    return f"<p>{key}</p>" + _image(report_figures.timeline(stages, spans, max(times)), "stages and skills over time")
+    picture = report_figures.timeline(stages, spans, max(times), _faults(run))
+    return f"<p>{key}</p>" + _image(picture, "stages and skills over time")
 
 
 def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
@@ -253,7 +340,7 @@ def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[st
     start, end = run.get("video_start_s"), run.get("sim_time_s")
     path = directory / VIDEO_FILE
     if not path.exists():
-        return '<p class="soft">No video was recorded.</p>'
+        return "" if run.get("world") == "scripted" else '<p class="soft">No video was recorded.</p>'
     start = float(start) if isinstance(start, (int, float)) else 0.0
     end = float(end) if isinstance(end, (int, float)) else float("inf")
     moments = key_moments(stages, spans_of(read_trace(directory / TRACE_FILE)), start, end)

@@ -92,6 +92,8 @@ class Run:
         params: for the task's `build`.
         limits: what the guard enforces.
         settings: numbers of skills that this run sets otherwise than the tree does.
+        before_tick: called before each tick; may wait, and a simulated world waits too.  An error of it ends the run
+            in the safe stop.
 
     Attributes:
         context: shared by the skills.
@@ -114,6 +116,7 @@ class Run:
         params: Mapping[str, Any] | None = None,
         limits: Limits = DEFAULT,
         settings: Settings | None = None,
+        before_tick: Callable[[], None] | None = None,
     ) -> None:
         if not rate_hz > 0:
             raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
@@ -132,6 +135,7 @@ class Run:
         self._ticked = float("-inf")
         self._began = time.perf_counter()  # the last tick, by the wall clock
         self._tell = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
+        self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self.interrupted = False
@@ -152,6 +156,11 @@ class Run:
         if not isinstance(error, (OSError, CaretreeError)):
             self.context.report(error)
         self.request_stop(reason, said(error), "display" if reason == Reason.DISPLAY_LOST else "recorder")
+
+    @property
+    def stopping(self) -> bool:
+        """Whether the safe stop has been asked for."""
+        return self._stop is not None
 
     def hangs(self) -> bool:
         """Whether the last tick began so long ago that it will hardly end by itself."""
@@ -192,6 +201,7 @@ class Run:
         """Tick until the tree is done; the failure that stops it from outside, if one does."""
         started = self.context.now()
         while True:
+            self._before_tick()
             stop = self._stop or self.guard.check()
             if stop is None and (stuck := self.context.lease.stuck()) is not None:
                 stop = Failure(Reason.MOTION_BLOCKED, "it does not stop", stuck.name)
@@ -339,6 +349,7 @@ class Run:
             if self.context.lease.stuck() is not None:
                 self.guard.stop()  # releasing the person matters more than whose turn it is
                 self.context.lease.clear()
+            self._before_tick()
             self._tick(safe)
             if safe.status != Status.RUNNING:
                 return safe.status == Status.SUCCESS

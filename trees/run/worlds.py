@@ -25,7 +25,6 @@ def make_world(
     person: str | None = None,
     model: str | None = None,
     kind: str = EASY,
-    view: bool = False,
 ) -> tuple[World, Senses | None]:
     """The world called `name`, made as hard as `kind` says, and its senses where these are scripted.
 
@@ -33,7 +32,7 @@ def make_world(
         CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
     """
     if name == "scripted":
-        asked = {"--gown": gown, "--person": person, "--model": model, "--view": view}
+        asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model}
         asked["--world-kind"] = WorldKind.named(kind).difficulties
         given = [flag for flag, value in asked.items() if value]
         if given:
@@ -47,7 +46,7 @@ def make_world(
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind}
     options = {key: value for key, value in options.items() if value is not None}
-    return BulletWorld(seed=seed, view=view, **options), None
+    return BulletWorld(seed=seed, **options), None
 
 
 def prepare_stage(world: World, task: Task, stage: str | None) -> None:

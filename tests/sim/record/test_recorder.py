@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from caretree.sim.errors import RecordError
 from caretree.sim.record.record import RunResult, StageResult, is_finished, read_finished_run, read_run
-from caretree.sim.record.recorder import Recorder
+from caretree.sim.record.recorder import PICTURE_GAP_MAX, Recorder
 from caretree.sim.record.spool import open_spool
 from caretree.sim.record.truth import TruthFrame, TruthStatic
-from caretree.sim.record.video import VideoWriter
+from caretree.sim.record.video import VideoWriter, read_pictures
 
 RESULT = RunResult(
     outcome="failure",
@@ -304,3 +304,33 @@ def test_missing_record_is_one_sentence(tmp_path):
         read_run(tmp_path / "nowhere")
     with pytest.raises(RecordError, match="outcome is 'won'"):
         RunResult(outcome="won", reason="", sim_time_s=0.0)  # type: ignore[arg-type] - the mistake under test
+
+
+def test_pictures_are_drawn_beside_the_run_and_all_are_in_the_video_at_the_end(tmp_path):
+    recorder = Recorder(tmp_path / "run", task="dressing", seed=0, world="bullet")
+    for k in range(4):  # so far apart that none may be left out
+        recorder.film(k * PICTURE_GAP_MAX, lambda k=k: np.full((48, 64, 3), 60 * k, np.uint8))
+    recorder.finish(RunResult(outcome="success", reason="", sim_time_s=2.0))
+    shown = read_pictures(tmp_path / "run" / "video.mp4", [k * PICTURE_GAP_MAX for k in range(4)])
+    np.testing.assert_allclose([picture.mean() for picture in shown], [0, 60, 120, 180], atol=6)
+
+
+def _film_on(recorder):
+    for k in range(1, 9):
+        recorder.film(k * PICTURE_GAP_MAX, lambda: np.zeros((4, 4, 3), np.uint8))
+
+
+def test_a_picture_that_cannot_be_added_is_told_with_the_next(tmp_path):
+    recorder = Recorder(tmp_path / "run", task="dressing", seed=0, world="bullet")
+    recorder.film(0.0, lambda: np.zeros((3, 3, 3), np.uint8))
+    with pytest.raises(RecordError, match="even width and height"):
+        _film_on(recorder)
+    recorder.close()
+
+
+def test_a_drawing_that_fails_is_one_sentence(tmp_path):
+    recorder = Recorder(tmp_path / "run", task="dressing", seed=0, world="bullet")
+    recorder.film(0.0, lambda: np.zeros(1) / [][0])
+    with pytest.raises(RecordError, match="cannot be drawn: list index out of range"):
+        recorder.finish(RunResult(outcome="success", reason="", sim_time_s=2.0))
+    assert read_run(tmp_path / "run")["outcome"] == "success"

@@ -11,7 +11,9 @@ from caretree.sim.evaluate.unharmed_rows import ROWS
 from caretree.sim.record.folder_claim import FolderClaim
 from caretree.sim.record.record import RunResult
 from caretree.sim.record.recorder import Recorder
+from caretree.sim.world import Frame
 from caretree.trees.cli import main
+from caretree.trees.report.looks import LookLog, Witness
 from caretree.trees.report.page import FRAMES_MAX, key_moments, write_report
 from caretree.trees.report.timeline import Span
 
@@ -160,7 +162,14 @@ def test_record_without_truth_or_video(tmp_path):
     parsed(page)
     assert "safe stop" in page
     assert "holds no truth.npz" in page
-    assert "No video was recorded" in page
+    assert "Key frames" not in page, "a scripted world has no video, and nobody misses it"
+    assert "Forces, hands" not in page
+
+
+def test_a_bullet_run_without_its_video_says_so(tmp_path):
+    recorder = Recorder(tmp_path, task="dressing", seed=0, world="bullet")
+    recorder.finish(RunResult(outcome="safe_stop", reason="The operator stopped it.", sim_time_s=1.0))
+    assert "No video was recorded" in write_report(tmp_path).read_text()
 
 
 def test_run_cut_short(make_record, tmp_path):
@@ -216,3 +225,55 @@ def test_a_page_can_be_drawn_again(tmp_path, make_record, capsys):
     assert "run.json is damaged: could not convert" in capsys.readouterr().err
     assert main(["report", str(tmp_path / "nowhere")]) == 2
     assert "is not a folder with a run record" in capsys.readouterr().err
+
+
+def test_the_decisive_failure_comes_first_with_what_was_seen(make_record, tmp_path):
+    reason = "The camera does not show what was looked for. [right arm/look] no binding"
+    result = RunResult(outcome="failure", reason=reason, sim_time_s=7.28)
+    directory = make_record(tmp_path / "run", result=result, pictures=True)
+    events = [
+        {"t": 1.0, "kind": "node", "node": "all", "status": "RUNNING"},
+        {"t": 1.0, "kind": "node", "node": "all/right arm/look", "status": "RUNNING"},
+    ]
+    failed = {"kind": "node", "status": "FAILURE", "reason": "NOTHING_SEEN", "detail": "no <binding>"}
+    events += [{"t": 2.0, "node": "all/right arm/look", **failed}, {"t": 3.0, "node": "all/at once", **failed}]
+    witness = Witness()
+    log = LookLog(directory, witness)
+    with (directory / "trace.jsonl").open("w") as trace:
+        for event in events:
+            if event["t"] == 2.0:
+                witness.note("sleeve_opening", picture(1.5), LookupError("what was <looked> for is not there"))
+            log.event(event)
+            trace.write(json.dumps(event) + "\n")
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert page.index("What went wrong") < page.index("Is the person dressed?")
+    assert "<b>right arm/look</b> failed at 2.0 s: The camera does not show what was looked for." in page
+    assert "the head camera, and what perception made of it" in page
+    assert "what was &lt;looked&gt; for is not there" in page
+    assert "the room at that moment" in page
+    assert re.search(r"<td>3\.0 s</td>.*at once", page), "failures of the first tick are told too"
+    assert "The tree, and what each node came to last (3 nodes)" in page
+
+
+def picture(t):
+    return Frame(
+        camera="head",
+        stamp=t,
+        rgb=np.zeros((30, 40, 3), np.uint8),
+        depth=np.ones((30, 40), np.float32),
+        intrinsics=(40.0, 40.0, 20.0, 15.0),
+        pose_camera_in_map=np.eye(4),
+    )
+
+
+def test_faults_are_on_the_time_axis(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    plain = write_report(directory).read_text()
+    run = json.loads((directory / "run.json").read_text())
+    faults = [{"fault": "grip_slip@pull:step", "t": 3.0}, {"fault": "never"}, "nonsense"]
+    (directory / "run.json").write_text(json.dumps(run | {"faults": faults}))
+    page = write_report(directory).read_text()
+    images = [re.findall(r'alt="(.*?)" src="(data:image/png[^"]*)', each) for each in (plain, page)]
+    assert [name for name, _ in images[0]] == ["stages and skills over time", "curves over time"]
+    assert all(before != after for (_, before), (_, after) in zip(*images, strict=True))

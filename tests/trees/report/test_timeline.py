@@ -11,7 +11,7 @@ def event(t: float, node: str, status: str, **more: object) -> dict[str, object]
     return {"t": t, "kind": "node", "node": node, "status": status, **more}
 
 
-def test_leaves_that_take_time_become_spans():
+def test_leaves_that_take_time_or_fail_at_once_become_spans():
     spans = spans_of(
         [
             event(0.0, "root", "RUNNING"),
@@ -19,7 +19,9 @@ def test_leaves_that_take_time_become_spans():
             event(0.0, "root/A/look", "SUCCESS"),
             event(0.0, "root/A/pull", "RUNNING"),
             {"t": 0.5, "kind": "command", "what": "twist"},
-            event(2.0, "root/A/pull", "FAILURE", reason="SLEEVE_CAUGHT"),
+            event(2.0, "root/A/pull", "FAILURE", reason="SLEEVE_CAUGHT", detail="at the elbow"),
+            event(2.0, "root/A/asks", "FAILURE"),
+            event(2.0, "root/A/right arm/lift", "FAILURE", reason="NOTHING_SEEN"),
             event(2.0, "root/A/pull#2", "RUNNING"),
             event(3.0, "root/A/pull#2", "INVALID"),
             event(3.0, "root/B", "RUNNING"),
@@ -27,11 +29,27 @@ def test_leaves_that_take_time_become_spans():
         ]
     )
     assert spans == [
-        Span(path="root/A/pull", t_start=0.0, t_end=2.0, status="FAILURE", reason="SLEEVE_CAUGHT"),
-        Span(path="root/A/pull#2", t_start=2.0, t_end=3.0, status="INVALID"),
-        Span(path="root/B", t_start=3.0, t_end=5.0, status="RUNNING"),
+        Span(
+            path="root/A/pull",
+            t_start=0.0,
+            t_end=2.0,
+            status="FAILURE",
+            reason="SLEEVE_CAUGHT",
+            detail="at the elbow",
+            label="pull",
+        ),
+        Span(
+            path="root/A/right arm/lift",
+            t_start=2.0,
+            t_end=2.0,
+            status="FAILURE",
+            reason="NOTHING_SEEN",
+            label="right arm/lift",
+        ),
+        Span(path="root/A/pull#2", t_start=2.0, t_end=3.0, status="INVALID", label="pull"),
+        Span(path="root/B", t_start=3.0, t_end=5.0, status="RUNNING", label="B"),
     ]
-    assert [span.name for span in spans] == ["pull", "pull", "B"]
+    assert [span.name for span in spans] == ["pull", "right arm/lift", "pull", "B"]
 
 
 def test_trace_cut_short_is_read_up_to_the_cut(tmp_path):
