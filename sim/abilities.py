@@ -6,7 +6,7 @@ does not have it, or does without.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from .record.recorder import Recorder
     from .render.camera import Renderer
+    from .stopwatch import Stopwatch
     from .world import Side
 
 
@@ -37,11 +38,11 @@ class HasKinematics(Protocol):
 
 @runtime_checkable
 class HasTiming(Protocol):
-    """A world that keeps account of its wall time."""
+    """A world that keeps account of its time."""
 
     @property
-    def timing(self) -> Mapping[str, float]:
-        """Wall time by activity [s], among them `cameras`, `physics` and `record`."""
+    def stopwatch(self) -> Stopwatch:
+        """Of its activities, among them `cameras`, `physics` and `record`."""
         ...
 
 

@@ -47,7 +47,17 @@ with silence():
     from pybullet_utils.bullet_client import BulletClient
 
 
+class _Client(BulletClient):
+    """Keeps each function of its server once it has been made: PyBullet's own client makes it anew for every call."""
+
+    def __getattr__(self, name: str) -> Any:
+        value = super().__getattr__(name)
+        if name != "disconnect":  # to ask for that one marks the client as closed
+            vars(self)[name] = value
+        return value
+
+
 def direct_client() -> Any:
     """A new physics server in this process, without a window."""
     with silence():
-        return BulletClient(pybullet.DIRECT)
+        return _Client(pybullet.DIRECT)

@@ -14,6 +14,7 @@ ALLOWED_SIM = {
     "errors",
     "command_line",
     "quantity",
+    "stopwatch",
     "segments",
     "robot",
     "scripted",

@@ -28,6 +28,7 @@ FRICTION_CLOTH = 0.6  # rubber pads on cotton
 FRICTION_SKIN = 0.6  # rubber pads on vinyl skin
 SMOOTHING = 0.3  # share of a new load reading, taken every 10 ms
 CATCH = 0.020  # an arm whose axis is this near to the grip is centred by the closing fingers [m]
+TOUCH = 0.003  # fingers at most this much further apart than an arm is wide touch it [m]
 ARM_SLIP = 0.03  # an arm that has moved this far in the grip is lost [m]
 _SAMPLES = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4.0  # barycentric, (15, 3)
 
@@ -116,8 +117,10 @@ class Grip:
         """Take the arm if its axis runs between the closing fingers and they touch it; tells whether it did."""
         if self.kind != "nothing" or not self._armed:
             return False
+        if opening > 2 * self.person.spec.arm_radii.max() + TOUCH:
+            return False
         found = self._arm_between(pose_hand_in_map)
-        if found is None or opening > 2 * found[3] + 0.003:
+        if found is None or opening > 2 * found[3] + TOUCH:
             return False
         arm, part, point, radius = found
         link = self.person.links[SIDES[arm]][part]
@@ -193,6 +196,8 @@ class Grip:
         best: tuple[float, tuple[int, int, np.ndarray, float]] | None = None
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
+                if 2 * radii[arm, part] >= self._open_before:
+                    continue
                 a, b = arms[arm, part], arms[arm, part + 1]
                 f = float(np.clip((origin - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0))
                 point = a + f * (b - a)
@@ -200,7 +205,7 @@ class Grip:
                 axis = (b - a) / np.linalg.norm(b - a)
                 # across the fingers the arm must lie within their stroke, along the approach within the pads' depth
                 fits = abs(local[1]) <= CATCH and abs(local[2]) <= 0.03 and abs(axis @ turn[:, 1]) < 0.5
-                if fits and 2 * radii[arm, part] < self._open_before:
+                if fits:
                     distance = float(np.linalg.norm(local))
                     if best is None or distance < best[0]:
                         best = (distance, (arm, part, point, float(radii[arm, part])))

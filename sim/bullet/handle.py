@@ -110,6 +110,9 @@ def _turns(matrix: np.ndarray) -> tuple[float, float, float]:
 def _nearest(angles: tuple[float, float, float], last: np.ndarray) -> tuple[float, ...]:
     """The turn of `angles` (3,) about z, y, x without a jump from `last`: the motors would spin the cloth round."""
     z, y, x = angles
+    was_z, was_y, was_x = last.tolist()
+    if max(abs(z - was_z), abs(y - was_y), abs(x - was_x)) < math.pi / 2:
+        return angles  # at almost every step: any other way to the same turn is further off
     best, least = angles, math.inf
     for way in (angles, (z + math.pi, math.pi - y, x + math.pi)):
         whole = tuple(

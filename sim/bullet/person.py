@@ -69,6 +69,7 @@ class Person:
         for upper, part in product((self.links[side][0] for side in SIDES), trunk):
             client.setCollisionFilterPair(self.body, part, upper, -1, 0)
         self._dry, self._ends, self._end_stiffness = (np.ravel(values) for values in _resistance(spec))
+        self._torso_front = torso_front(spec, bed_top, bed_xy)
         self._swing, self._braced = 0.0, False
         self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
         self.resist()
@@ -142,7 +143,7 @@ class Person:
 
     def torso_front(self) -> np.ndarray:
         """(m, 6) points on the front of the trunk with outward normals, chest to waist, map frame [m]."""
-        return torso_front(self.spec, self.bed_top, self.bed_xy)
+        return self._torso_front.copy()
 
     def radii(self) -> np.ndarray:
         """(2, 3) capsule radii of upper arm, forearm, hand, left then right [m]."""

@@ -11,8 +11,6 @@ Nothing outside `sim` may read `truth_frame`: skills see only `observe` and `loo
 
 from __future__ import annotations
 
-import time as wall
-from collections import defaultdict
 from collections.abc import Callable
 from typing import Any
 
@@ -23,7 +21,7 @@ from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
 from ..render.camera import Renderer
-from ..robot.body import RobotBody
+from ..robot.body import JointReading, RobotBody
 from ..robot.capsules import RobotCapsules
 from ..robot.kinematics import default_kinematics
 from ..scene.initial_state import InitialState
@@ -31,6 +29,7 @@ from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..sensors.sensor_errors import SensorErrors
+from ..stopwatch import Stopwatch, timed
 from ..world import SIDES, Command, Frame, GripperOpening, Observation, Side, World, WorldError
 from ..world_kind import EASY, WorldKind
 from .backdrop import Backdrop
@@ -70,7 +69,8 @@ class BulletWorld(World):
     Attributes:
         scene: what was drawn; truth, not for skills.
         kinematics: the robot's own model, which the planner and the guard may use.
-        timing: wall time by activity [s].
+        stopwatch: of the activities `bullet` (the two engines' own steps), `physics` (what is computed around them),
+            `cameras` and `record`.
         initial_states: names of the states in which a run may begin.
 
     Raises:
@@ -97,7 +97,7 @@ class BulletWorld(World):
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.kinematics = default_kinematics()
-        self.timing: dict[str, float] = defaultdict(float)
+        self.stopwatch = Stopwatch()
         self._noise = np.random.default_rng([seed, 2])
         self._errors = SensorErrors(seed, self.scene.kind)
         self._thinking = ThinkingTime(seed, self.scene.kind)
@@ -112,6 +112,7 @@ class BulletWorld(World):
         self._contact = Contact(capsules, self._person, ROBOT_STEPS * TIME_STEP, TIME_STEP)
         self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
+        self._reading = self._robot.read()
         self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
         self._grips = [
@@ -222,16 +223,15 @@ class BulletWorld(World):
             pose_hand_in_map=hands,
         )
 
+    @timed("cameras")
     def look(self, camera: str) -> Frame:
         """What a camera sees now, or saw a moment ago, with the sensor's noise.
 
         Raises:
             SensorLost: there is no such camera.
         """
-        begin = wall.perf_counter()
         frame = self._cameras.look(camera, self.clock.now())
         self._thinking.saw()
-        self.timing["cameras"] += wall.perf_counter() - begin
         return frame
 
     # -- commands ------------------------------------------------------------------------------------------
@@ -267,19 +267,16 @@ class BulletWorld(World):
 
     # -- time ----------------------------------------------------------------------------------------------
 
+    @timed("physics")
     def _advance_to(self, time: float) -> None:
-        begin = wall.perf_counter()
-        recorded = self.timing["record"]
         time = max(time, self.time.time + self._thinking.spend())
         while self.time.time < time - 1e-9:
             self._cameras.pass_time(self.time.time)
             self._step()
             if self._watchers.due(self.time.time):
-                recording = wall.perf_counter()
-                self._watchers.look(self.time.time)
-                self._contact.forget_peak()
-                self.timing["record"] += wall.perf_counter() - recording
-        self.timing["physics"] += wall.perf_counter() - begin - (self.timing["record"] - recorded)
+                with self.stopwatch.of("record"):
+                    self._watchers.look(self.time.time)
+                    self._contact.forget_peak()
 
     def _step(self) -> None:
         if self._steps % ROBOT_STEPS == 0:
@@ -287,7 +284,7 @@ class BulletWorld(World):
         elif not self._asleep:
             self._meet()
         if self._steps % CONTROL_STEPS == 0:
-            self._update_grips()
+            self._update_grips(self._reading)  # of this instant: every control step begins with one of the robot
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -303,8 +300,9 @@ class BulletWorld(World):
                 self._robot.apply_hand_force(side, grip.load)
         self._contact.push_robot(self._robot)
         self._robot.update(self.time.time)
-        self._robot_client.stepSimulation()
-        reading = self._robot.read()
+        with self.stopwatch.of("bullet"):
+            self._robot_client.stepSimulation()
+        self._reading = reading = self._robot.read()
         self._contact.watch(self.time.time + ROBOT_STEPS * TIME_STEP, reading)
         self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
 
@@ -322,7 +320,8 @@ class BulletWorld(World):
         self._move_person()
         self._apply_effects()
         self._contact.push_arms()
-        self._client.stepSimulation()
+        with self.stopwatch.of("bullet"):
+            self._client.stepSimulation()
         for n in np.flatnonzero(held):
             if self._grips[n].kind == "arm":
                 self._handles[n].feel()
@@ -338,9 +337,8 @@ class BulletWorld(World):
                 holding[0].release()
                 self._patch.release_t = None
 
-    def _update_grips(self) -> None:
+    def _update_grips(self, reading: JointReading) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
-        reading = self._robot.read()
         squeeze = self._contact.squeeze(self._hands)
         if any(grip.kind != "nothing" for grip in self._grips):
             vertices = self._cloth.vertices()

@@ -72,6 +72,7 @@ class RunResult:
         stages: in the order of the task.
         sim_time_s: world clock at the end [s].
         timing: name of a part -> wall time spent in it [s].
+        processor_timing: name of a part -> processor time spent in it [s].
         trace_hash: of the trace, when the runner keeps its own; else the recorder's.
         stopped_from_outside: by the operator, a signal, or the loss of record or display: it says nothing of the task.
     """
@@ -81,6 +82,7 @@ class RunResult:
     stages: tuple[StageResult, ...] = ()
     sim_time_s: float
     timing: Mapping[str, float] = field(default_factory=dict)
+    processor_timing: Mapping[str, float] = field(default_factory=dict)
     trace_hash: str | None = None
     stopped_from_outside: bool = False
 
@@ -98,6 +100,7 @@ class RunResult:
             "stages": [asdict(stage) for stage in self.stages],
             "sim_time_s": round(float(self.sim_time_s), 6),
             "timing": {part: round(float(seconds), 3) for part, seconds in self.timing.items()},
+            "processor_timing": {part: round(float(seconds), 3) for part, seconds in self.processor_timing.items()},
         }
 
 

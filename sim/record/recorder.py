@@ -89,7 +89,7 @@ class Recorder:
             "parameters": dict(parameters or {}),
             "versions": versions(),
         }
-        self._started = time.perf_counter()
+        self._started = time.perf_counter(), time.process_time()
         self._hash = hashlib.sha256()
         self._spool: Spool | None = None
         self._video: VideoWriter | None = None
@@ -244,18 +244,20 @@ class Recorder:
             raise self._problem
 
     def _finish(self, result: RunResult) -> None:
-        began = time.perf_counter()
+        began = time.perf_counter(), time.process_time()
         if self._spool is not None and self._spool.frames:
             with suppress(RecordError), self._noted():
                 write_npz(self._spool.folder, self.directory / TRUTH_FILE)
                 shutil.rmtree(self._spool.folder)
-        now = time.perf_counter()
+        ended = time.perf_counter(), time.process_time()
         self._run.update(
             result.fields(),
-            wall_time_s=round(now - self._started, 3),
+            wall_time_s=round(ended[0] - self._started[0], 3),
+            processor_time_s=round(ended[1] - self._started[1], 3),
             trace_hash=result.trace_hash or self._hash.hexdigest(),
         )
-        self._run["timing"]["record"] = round(self._run["timing"].get("record", 0.0) + now - began, 3)
+        for name, now, before in zip(("timing", "processor_timing"), ended, began, strict=True):
+            self._run[name]["record"] = round(self._run[name].get("record", 0.0) + now - before, 3)
         self._run["peak_memory_mb"] = peak_memory()
         if self._video is not None:
             self._run["video_start_s"] = self._video.t_start

@@ -204,7 +204,7 @@ class RobotBody:
     def _torque_limits(self, arms: np.ndarray) -> np.ndarray:
         """(2, 7) what each motor may do in a posture (2, 7), beside carrying the arm [N m]."""
         levers = [
-            np.linalg.norm(self.kinematics.jacobian_hand_in_map(side, q, np.zeros(3))[:3], axis=0)
+            np.linalg.norm(self.kinematics.jacobian_hand_in_base(side, q)[:3], axis=0)
             for side, q in zip(SIDES, arms, strict=True)
         ]
         return np.minimum(_MAX_TORQUE, _HAND_FORCE * np.array(levers) + _MOTION_TORQUE)

@@ -118,6 +118,7 @@ class RobotCapsules:
         self.names = tuple(capsule.name for capsule in self.capsules)
         self.radii = np.array([capsule.radius for capsule in self.capsules])
         self._kinematics, model_ = kinematics, kinematics.model
+        self._asked, self._ends = b"", np.zeros((0, 2, 3))  # for one posture the guard and the skills ask in turn
         frames = [model_.frames[model_.getFrameId(capsule.link)] for capsule in self.capsules]
         self._joints = [frame.parentJoint for frame in frames]
         self._local = np.stack(
@@ -144,9 +145,12 @@ class RobotCapsules:
         """
         robot = self._kinematics
         q = robot.configuration(pose_base_in_map, arm_positions, head_pan, gripper_opening)
-        pin.forwardKinematics(robot.model, robot.data, q)
-        places = np.array([place.homogeneous for place in robot.data.oMi.tolist()])[self._joints]
-        return self._local @ places[:, :3, :3].transpose(0, 2, 1) + places[:, None, :3, 3]
+        if (asked := q.tobytes()) != self._asked:
+            pin.forwardKinematics(robot.model, robot.data, q)
+            places = np.array([place.homogeneous for place in robot.data.oMi.tolist()])[self._joints]
+            self._ends = self._local @ places[:, :3, :3].transpose(0, 2, 1) + places[:, None, :3, 3]
+            self._asked = asked
+        return self._ends.copy()
 
     def rows(self, ends: np.ndarray) -> np.ndarray:
         """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""

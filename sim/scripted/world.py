@@ -207,7 +207,7 @@ class ScriptedWorld(World):
         """Fraction of the speed that is left at `time` after a stop."""
         if self._stopping_time <= 0.0:
             return 0.0
-        return float(np.clip(1.0 - (time - self._coast_start) / self._stopping_time, 0.0, 1.0))
+        return min(max(1.0 - (time - self._coast_start) / self._stopping_time, 0.0), 1.0)
 
     def _end_coasting(self, arm: int) -> None:
         """A new command takes an arm over (-1: the base)."""
@@ -229,8 +229,19 @@ class ScriptedWorld(World):
 
     def _advance_to(self, time: float) -> None:
         while self.time.time < time - 1e-9:
+            if self._rests():
+                self._dq = np.zeros((2, 7))
+                break
             self._step(min(STEP, time - self.time.time))
         self.time.time = max(self.time.time, time)  # without the rounding of the sum
+
+    def _rests(self) -> bool:
+        """Whether nothing moves until the next command, however much time passes."""
+        now = self.time.time
+        if self._motions or self._twists or now < self._base_until or self._slowing(now) > 0.0:
+            return False
+        goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
+        return bool((self._opening == goal).all())
 
     def _step(self, dt: float) -> None:
         now = self.time.time + dt

@@ -6,6 +6,7 @@ on past the fingertip, in lengths of the hand; below 0 past the shoulder to the 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,7 +106,9 @@ class ArmPath:
         else:
             low, high = near - tuning.search_window, near + tuning.search_window
         coordinates = np.linspace(low, high, int((high - low) / tuning.search_step) + 1)
-        points = np.array([self.point(float(coordinate)) for coordinate in coordinates])
+        segments = np.clip(np.floor(coordinates), 0, 2).astype(int)
+        along = (coordinates - segments) * self.lengths[segments]
+        points = self.points[segments] + along[:, None] * self._directions[segments]  # as `point` does
         return float(coordinates[int(np.argmin(np.linalg.norm(points - point_in_map, axis=1)))])
 
     def moved(self, coordinate: float, distance: float) -> float:
@@ -141,4 +144,4 @@ class ArmPath:
 
 def _segment(coordinate: float) -> int:
     """Index of the segment that a coordinate belongs to: 0 upper arm, 1 forearm, 2 hand."""
-    return int(np.clip(np.floor(coordinate), 0, 2))
+    return min(max(math.floor(coordinate), 0), 2)

@@ -57,6 +57,8 @@ class LinkClearance:
     def __init__(self, names: tuple[str, ...], radii: np.ndarray, *, tuning: ClearanceTuning = CLEARANCE) -> None:
         self.names, self.radii, self.tuning = names, radii, tuning
         self._kinds = [link_kind(name) for name in names]
+        self._asked: tuple[tuple[str, ...], dict[Side, str]] = ((), {})  # what `_gaps` was made for
+        self._gaps = self._least(*self._asked)
 
     def room(
         self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str]
@@ -72,7 +74,9 @@ class LinkClearance:
             (r, m) room [m] and (r, m, 3) directions from the person to the link.
         """
         gaps, away = zone.gaps(ends_in_map, self.radii)
-        return gaps - self._least(zone.names, held), away
+        if (asked := (zone.names, dict(held))) != self._asked:
+            self._asked, self._gaps = asked, self._least(*asked)
+        return gaps - self._gaps, away
 
     def _least(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
         """(r, m) least gaps [m]."""

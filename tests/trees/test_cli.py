@@ -151,20 +151,24 @@ def build(context):
 def test_a_world_that_keeps_time_says_where_it_went(tmp_path):
     (tmp_path / "timed.py").write_text("""
 from caretree.sim.scripted.world import ScriptedWorld
+from caretree.sim.stopwatch import Stopwatch
 from caretree.trees.tasks.wave import build
 
 
 class Timed(ScriptedWorld):
-    timing = {"cameras": -3.0, "physics": 2.0, "record": 0.5}
+    stopwatch = Stopwatch()
+    stopwatch.wall.update(cameras=-3.0, physics=2.0, record=0.5)
+    stopwatch.processor.update(cameras=-2.0, physics=1.0, record=0.5)
 
 
 def scripted(seed):
     return Timed(seed=seed), None
 """)
     assert main(["run", "timed.py", "--world", "scripted", "--out", "r"]) == 0
-    timing = json.loads((tmp_path / "r/run.json").read_text())["timing"]
-    assert set(timing) == {"tree", "cameras", "physics", "record"}
-    assert timing["tree"] > 3.0
+    run = json.loads((tmp_path / "r/run.json").read_text())
+    assert set(run["timing"]) == set(run["processor_timing"]) == {"tree", "cameras", "physics", "record"}
+    assert run["timing"]["tree"] > 3.0
+    assert 2.0 < run["processor_timing"]["tree"] < 2.0 + run["processor_time_s"]
 
 
 def test_a_terminal_without_accents_does_not_end_a_run(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -22,6 +23,10 @@ from ..run.task import JUDGED
 
 TRIAL_FILE = "trial.json"
 ENDING = 60.0  # [s] of wall time for a child to make its person safe and to write its record, before it is killed
+# Runs side by side share the processor: libraries that start a thread for each core would only be in each other's way.
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1"
+)
 CARETREE = (sys.executable, "-m", "caretree.trees.cli")
 
 
@@ -159,7 +164,9 @@ def run_trial(
     log = directory.with_name(f"{directory.name}.log")
     with log.open("wb") as output:
         # a session of its own: the terminal's Ctrl-C reaches only us, and an interrupted run does not count as failed
-        child = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+        child = subprocess.Popen(
+            command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True, env=os.environ | ONE_THREAD
+        )
         status = _wait(child, patience, stop)
     last = _last_line(log)
     if status is not None and (why := _stopped(directory)):

@@ -174,10 +174,16 @@ def _run(
             inner.attach_recorder(recorder, run.lost)
         signals.run = run
         result = run.run()
-        of_world = inner.timing if isinstance(inner, HasTiming) else {}
+        if isinstance(inner, HasTiming):
+            of_world = inner.stopwatch
+            result = replace(
+                result,
+                timing=_timing(result.timing, of_world.wall),
+                processor_timing=_timing(result.processor_timing, of_world.processor),
+            )
         if isinstance(world, FaultyWorld):
             recorder.note(faults=[{"fault": str(spec), "t": time} for spec, time in world.begun])
-        problem = _finish(recorder, replace(result, timing=_timing(result.timing, of_world)))
+        problem = _finish(recorder, result)
     finally:
         recorder.close()
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
@@ -240,7 +246,7 @@ def _tell_faults(world: FaultyWorld) -> None:
 
 
 def _timing(of_run: Mapping[str, float], of_world: Mapping[str, float]) -> Mapping[str, float]:
-    """Where the wall time went [s]: the world's own account, where it keeps one, in place of the runner's rough one.
+    """Where the time went [s]: the world's own account, where it keeps one, in place of the runner's rough one.
 
     Cameras are drawn while the tree is ticked, and frames are recorded while the world advances.
     """

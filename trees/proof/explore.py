@@ -3,12 +3,16 @@
 Each leaf succeeds, fails in each way that makes a difference to anybody above and in one that nobody reacts to, or,
 under a timeout, never ends.  A situation that was met before is not followed again, so the work grows with
 the number of situations, not with the number of ways through the tree.
+
+Where every node of the tree resumes what is running, a leaf lets one tick go by before it ends, and the other ways on
+begin from what the tree was between these two ticks.  Any other tree is followed from its start each time.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -29,6 +33,11 @@ OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20
 ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
+
+
+# Nodes that go on with the child that runs and do nothing else in a tick, and so may be ticked once more.
+RESUMING = (FailSafe, RecoverBy, Retry, Stage, Timeout)
+REMEMBERING = (py_trees.composites.Selector, py_trees.composites.Sequence)
 
 
 class _Known(Exception):  # noqa: N818 ends an execution, no defect
@@ -74,13 +83,41 @@ class Stub(Behaviour):
         if missing:
             raise _Missing(f"{self.name} reads {missing[0]!r}, which has not been written")
         outcome = self._explorer.choose(self)
-        if outcome is None:
+        if outcome is None or outcome == "later":
             return Status.RUNNING
         if outcome is True:
             self._explorer.board |= set(self.writes)
             return Status.SUCCESS
         self.failure = Failure(outcome, "", self.name)
         return Status.FAILURE
+
+
+@dataclass(frozen=True)
+class _Point:
+    """An execution between two ticks.
+
+    Attributes:
+        inner: attributes of each node with children.
+        leaves: status and failure of each leaf.
+        board: keys written so far.
+        time: of the clock [s].
+        way: leaves and outcomes so far.
+    """
+
+    inner: list[dict[str, Any]]
+    leaves: list[tuple[Status, Failure | None]]
+    board: frozenset[str]
+    time: float
+    way: tuple[tuple[Stub, Any], ...]
+
+
+@dataclass(frozen=True)
+class _Branch:
+    """A way to follow: `choices` from `point` on, whatever comes then; `trail` are the situations up to there."""
+
+    point: _Point
+    choices: list[int]
+    trail: tuple[int, ...]
 
 
 class Explorer:
@@ -113,16 +150,22 @@ class Explorer:
             if isinstance(node, (Retry, RecoverBy)):
                 node.attempts = min(node.attempts, ATTEMPTS)
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
+        self._inner = [node for node in self._nodes if node not in self._options]
+        self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
+        self._resumes = all(_resumes(node) for node in self._inner)
         self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
-        self._seen: set[Any] = set()
-        self._prefix: list[int] = []
-        self._taken: list[int] = []
-        self._trail: list[Any] = []  # situations of the present execution, those of the prefix first
-        self._met: set[Any] = set()  # the same ones
+        self._numbers: dict[Any, int] = {}  # of every situation
+        self._seen: set[int] = set()
+        self._given: list[int] = []  # choices to begin with
+        self._taken: list[int] = []  # choices made since the point where this execution began
+        self._trail: tuple[int, ...] = ()  # situations of the present execution, those before its point first
+        self._met: set[int] = set()  # the same ones
         self._way: list[tuple[Stub, Any]] = []
-        self._stack: list[tuple[list[int], list[Any]]] = [([], [])]  # choices to begin with, and their situations
+        self._asked: Stub | None = None  # the leaf that lets a tick go by
         self._hung = False  # some leaf chose in this tick never to end
+        self._point = self._here()
+        self._stack = [_Branch(self._point, [], ())]
 
     @property
     def situations(self) -> int:
@@ -134,37 +177,47 @@ class Explorer:
         while self._stack:
             if self.executions >= self._limit or len(self.findings) >= FINDINGS_MAX:
                 return
-            self._prefix, self._trail = self._stack.pop()
             self.executions += 1
-            self._execute()
+            self._execute(self._stack.pop())
         self.complete = True
 
     def choose(self, leaf: Stub) -> Any:
-        """The outcome of `leaf` in this execution: True, a Reason, or None for never."""
+        """The outcome of `leaf` in this execution: True, a Reason, None for never, or `later` to be asked again."""
         options = self._options[leaf]
-        depth = len(self._taken)
-        if depth < len(self._prefix):  # an execution followed this way before and knows its situations
-            choice = self._prefix[depth]
+        if len(self._taken) < len(self._given):  # an execution followed this way before and knows its situations
+            choice = self._given[len(self._taken)]
+        elif self._asked is not leaf and self._meet(leaf) == "later":
+            return "later"
         else:
-            situation = self._situation(leaf)
-            if situation in self._met:
-                raise _Round(f"the tree goes round for ever at {leaf.name}")
-            self._met.add(situation)
-            self._trail = [*self._trail, situation]
-            if situation in self._seen:
-                raise _Known
-            self._seen.add(situation)
-            choice = 0
-            self._stack += [([*self._taken, other], self._trail) for other in range(1, len(options))]
+            self._asked, choice = None, 0
+            ways = [[*self._taken, other] for other in range(1, len(options))]
+            self._stack += [_Branch(self._point, way, self._trail) for way in ways]
         self._taken.append(choice)
         self._way.append((leaf, options[choice]))
         self._hung |= options[choice] is None
         return options[choice]
 
-    def _execute(self) -> None:
-        self._reset()
+    def _meet(self, leaf: Stub) -> Literal["now", "later"]:
+        """Note the situation in which `leaf` has to choose; when it shall do so."""
+        situation = self._numbers.setdefault(self._situation(leaf), len(self._numbers))
+        if situation in self._met:
+            raise _Round(f"the tree goes round for ever at {leaf.name}")
+        self._met.add(situation)
+        self._trail = (*self._trail, situation)
+        if situation in self._seen:
+            raise _Known
+        self._seen.add(situation)
+        if not self._resumes:
+            return "now"
+        self._asked = leaf
+        return "later"
+
+    def _execute(self, branch: _Branch) -> None:
+        self._go_to(branch)
         try:
             for _ in range(TICKS_MAX):
+                if self._asked is not None:
+                    self._point, self._taken, self._given = self._here(), [], []
                 for _ in self._root.tick():
                     pass
                 if self._root.status != Status.RUNNING:
@@ -179,7 +232,7 @@ class Explorer:
 
     def _pass_time(self) -> None:
         """When a leaf hangs, the next timeout is what happens next."""
-        running = [node.ends for node in self._nodes if isinstance(node, Timeout) and node.status == Status.RUNNING]
+        running = [node.ends for node in self._timeouts if node.status == Status.RUNNING]
         if self._hung and running:
             self._clock.time = max(self._clock.time, min(running))
         self._hung = False
@@ -196,27 +249,38 @@ class Explorer:
         more = "... " if len(self._way) > 6 else ""
         self.findings.append(f"{what}, after {more}{', '.join(steps) or 'nothing'}")
 
-    def _reset(self) -> None:
+    def _here(self) -> _Point:
+        return _Point(
+            inner=[dict(vars(node)) for node in self._inner],
+            leaves=[(leaf.status, leaf.failure) for leaf in self._options],
+            board=frozenset(self.board),
+            time=self._clock.time,
+            way=tuple(self._way),
+        )
+
+    def _go_to(self, branch: _Branch) -> None:
+        point = self._point = branch.point
+        for node, attributes in zip(self._inner, point.inner, strict=True):
+            vars(node).update(attributes)
+        for leaf, (status, failure) in zip(self._options, point.leaves, strict=True):
+            leaf.status, leaf.failure = status, failure
         self.board.clear()
-        self._met = set(self._trail)
-        self._taken, self._way, self._hung = [], [], False
-        self._clock.time = 0.0
-        for node in self._nodes:
-            node.status = Status.INVALID
-            if isinstance(node, py_trees.composites.Composite):
-                node.current_child = None
+        self.board |= point.board
+        self._clock.time, self._way = point.time, list(point.way)
+        self._trail, self._met = branch.trail, set(branch.trail)
+        self._given, self._taken, self._asked, self._hung = branch.choices, [], None, False
 
     def _situation(self, leaf: Stub) -> Any:
         """All that decides what can happen from here on."""
         active = {leaf, *(above for above, _ in _ancestors(leaf))}
         moved = any(each.commands and each not in self._in_safe for each, _ in self._way)
-        return leaf.id, self._read & self.board, moved, self._state(self._root, active)
+        return leaf, self._read & self.board, moved, self._state(self._root, active)
 
     def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
         if node not in active and node.status != Status.RUNNING:
-            return node.status
-        state: list[Any] = [node.status]
+            return node.status.value
+        state: list[Any] = [node.status.value]
         if isinstance(node, (Retry, RecoverBy)):
             state.append(node.tried)
         if isinstance(node, FailSafe) or (isinstance(node, RecoverBy) and node.recovering is not None):
@@ -224,7 +288,7 @@ class Explorer:
         remembers = isinstance(node, Wrapper) or getattr(node, "memory", False) is True
         if remembers and isinstance(node, py_trees.composites.Composite):
             child = node.current_child
-            return (*state, child and child.id, child and self._state(child, active))
+            return (*state, child, child and self._state(child, active))
         return (*state, *(self._state(child, active) for child in node.children))
 
     def _outcomes(self, stub: Stub) -> list[Any]:
@@ -277,6 +341,10 @@ def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:
     while child.parent is not None:
         yield child.parent, child
         child = child.parent
+
+
+def _resumes(node: Behaviour) -> bool:
+    return type(node) in RESUMING or (type(node) in REMEMBERING and getattr(node, "memory", False) is True)
 
 
 def _said(outcome: Any) -> str:

@@ -29,6 +29,7 @@ from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
 from ...sim.fence import fenced, said
 from ...sim.record.record import RunResult
+from ...sim.stopwatch import Stopwatch, timed
 from ...sim.world import SIDES, GripperOpening, World, WorldError
 from ...skills.core.context import Context
 from ...skills.core.reasons import Failure, Reason
@@ -99,6 +100,7 @@ class Run:
         context: shared by the skills.
         root: the tree.
         trace: what happened.
+        stopwatch: of `tree` (ticks) and `world` (the time between them).
         interrupted: somebody pressed Ctrl-C meanwhile; the run then ended in the safe stop, and who started it may
             want to end too.
     """
@@ -139,7 +141,7 @@ class Run:
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self.interrupted = False
-        self._timing = {"tree": 0.0, "world": 0.0}
+        self.stopwatch = Stopwatch()
         if isinstance(world, FaultyWorld):
             self._check_fault_nodes(world)
             self.context.observers.append(world.on_phase)
@@ -214,19 +216,19 @@ class Run:
                 return None
             self._pass_time()
 
+    @timed("tree")
     def _tick(self, node: Behaviour) -> None:
-        began = self._began = time.perf_counter()
+        self._began = time.perf_counter()
         self._ticked = self.context.now()
         self.context.lease.advance()
         for visited in node.tick():
             self.trace.visit(visited)
             self._progress(visited)
         self._sweep()
-        self._timing["tree"] += time.perf_counter() - began
 
+    @timed("world")
     def _pass_time(self) -> None:
         """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
-        began = time.perf_counter()
         now, due = self.context.now(), self._ticked + self._period
         if now >= due:
             return
@@ -236,7 +238,6 @@ class Run:
                 break
         else:
             raise WorldError("the world's clock stands still")
-        self._timing["world"] += time.perf_counter() - began
 
     def _progress(self, node: Behaviour) -> None:
         if not isinstance(node, (Skill, Stage)):
@@ -307,7 +308,8 @@ class Run:
             reason=reason,
             stages=stages,
             sim_time_s=self.context.now(),
-            timing=self._timing,
+            timing=self.stopwatch.wall,
+            processor_timing=self.stopwatch.processor,
             trace_hash=self.trace.digest(),
             stopped_from_outside=failure is not None and failure.reason in FROM_OUTSIDE,
         )

@@ -123,8 +123,10 @@ class Trace:
 
     def sweep(self) -> None:
         """Note every node that changed without being visited (stopped from outside)."""
-        for node in self.paths:
-            self.visit(node)
+        last = self._last
+        for node in self.paths:  # all of them at every tick, so what has not changed is passed over here
+            if last.get(node, Status.INVALID) is not node.status:
+                self.visit(node)
 
     def command(self, command: Command) -> None:
         """Note a command that was really sent."""

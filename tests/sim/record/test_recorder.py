@@ -79,6 +79,7 @@ def test_finished_record_holds_what_design_asks_for(tmp_path):
         "stages",
         "sim_time_s",
         "wall_time_s",
+        "processor_time_s",
         "parameters",
         "versions",
         "trace_hash",

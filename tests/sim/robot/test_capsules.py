@@ -54,3 +54,13 @@ def test_capsules_go_along_with_the_base(robot):
     turned = here @ np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0))) + (*BASE[:2], 0.0)
     assert there == pytest.approx(turned, abs=1e-9)
     assert robot.rows(there).shape == (len(robot.names), 7)
+
+
+def test_asking_twice_for_one_posture_gives_two_arrays():
+    capsules = RobotCapsules(default_kinematics())
+    base, arms = np.array((0.3, -0.2, 0.5)), np.full((2, 7), 0.1)
+    first = capsules.ends(base, arms)
+    kept = first.copy()
+    first += 1.0
+    assert (capsules.ends(base, arms) == kept).all()
+    assert (capsules.ends(base, arms + 0.1) != kept).any()

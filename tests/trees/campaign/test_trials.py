@@ -67,6 +67,14 @@ def plan(directory, seeds=(0, 1, 2), **more) -> Plan:
     return Plan(task="dressing", seeds=seeds, directory=directory, **more)
 
 
+def test_each_run_takes_one_thread(fake_caretree, monkeypatch):
+    script = fake_caretree.parent / "child.py"
+    script.write_text("import os, sys; sys.exit(os.environ['OMP_NUM_THREADS'] + os.environ['NUMBA_NUM_THREADS'])")
+    monkeypatch.setenv("OMP_NUM_THREADS", "8")
+    (trial,) = run_trials(plan(fake_caretree, seeds=(0,)), lambda text: None)
+    assert trial.reason.endswith(": 11")
+
+
 def test_table_counts_as_the_paper_does(fake_caretree):
     told: list[str] = []
     trials = run_trials(plan(fake_caretree, jobs=2), told.append)

@@ -1,0 +1,58 @@
+"""Where the time of a run went: wall and processor time by part."""
+
+from __future__ import annotations
+
+import functools
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+Method = TypeVar("Method", bound=Callable[..., Any])
+
+
+class Stopwatch:
+    """Keeps account by part; what a part does inside another counts for the inner one alone.
+
+    Attributes:
+        wall: part -> wall time [s].
+        processor: part -> processor time of this process, all its threads together [s].
+    """
+
+    def __init__(self) -> None:
+        self.wall: dict[str, float] = defaultdict(float)
+        self.processor: dict[str, float] = defaultdict(float)
+        self._part: str | None = None
+        self._since = (0.0, 0.0)
+
+    @contextmanager
+    def of(self, part: str) -> Iterator[None]:
+        """Count for `part` what is done meanwhile."""
+        before = self._switch(part)
+        try:
+            yield
+        finally:
+            self._switch(before)
+
+    def _switch(self, part: str | None) -> str | None:
+        before, (wall, processor) = self._part, self._since
+        self._part, self._since = part, (time.perf_counter(), time.process_time())
+        if before is not None:
+            self.wall[before] += self._since[0] - wall
+            self.processor[before] += self._since[1] - processor
+        return before
+
+
+def timed(part: str) -> Callable[[Method], Method]:
+    """Counts a method for `part` on the stopwatch of its object, the attribute `stopwatch`."""
+
+    def wrap(method: Method) -> Method:
+        @functools.wraps(method)
+        def counted(self: Any, *args: Any, **kwargs: Any) -> Any:
+            with self.stopwatch.of(part):
+                return method(self, *args, **kwargs)
+
+        return counted  # type: ignore[return-value]
+
+    return wrap
