@@ -74,6 +74,8 @@ def drop_output() -> None:
 
 
 def _complain(text: str) -> None:
+    """One line, whatever the user's own words in it hold."""
+    text = "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in text)
     with contextlib.suppress(OSError):  # the terminal may have gone
         print(text, file=sys.stderr, flush=True)
 

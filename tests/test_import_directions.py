@@ -32,6 +32,7 @@ OUTSIDE_THE_TREE = {
     "trees/watch/playback.py",
     "trees/campaign/trial.py",
     "trees/campaign/trials.py",
+    "trees/campaign/on_cluster.py",
     "trees/commands/evaluate.py",
     "trees/run/worlds.py",
     "trees/campaign/trials_table.py",

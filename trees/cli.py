@@ -111,6 +111,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         metavar="FAULT",
         help=f"only this one; may be repeated; there are {FAULTS}",
     )
+    inject.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 

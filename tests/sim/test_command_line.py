@@ -91,3 +91,11 @@ def test_a_command_keeps_its_own_exit_status_and_a_programming_error_its_traceba
     with pytest.raises(ZeroDivisionError):
         answered("tool", lambda: 1 // 0)
     assert capsys.readouterr().err == ""
+
+
+def test_a_sentence_stays_one_line_whatever_the_user_wrote(capsys):
+    def refuse():
+        raise CaretreeError("no task 'a\nb\u202e\x1b[31m'")
+
+    assert answered("caretree", refuse) == 2
+    assert capsys.readouterr().err == "caretree: no task 'a\\nb\\u202e\\x1b[31m'\n"

@@ -25,6 +25,7 @@ from ...skills.core.skill import Skill
 from ..nodes.decorators import FailSafe, RecoverBy
 from ..run.runner import OPEN, Run
 from ..run.task import Task
+from ..run.worlds import prepare_stage
 
 FaultKey = tuple[str, str, str]  # node, phase, fault
 MakeWorld = Callable[[], tuple[World, Senses | None]]
@@ -42,6 +43,8 @@ class Row:
         outcome: of the run, or `not_reached`.
         reason: one sentence.
         unsafe: what was still wrong afterwards; empty when nothing was.
+        time_to_safe: world time from the first fault to the end of the run, which stands still [s]; None where the
+            fault did not begin.
     """
 
     node: str
@@ -50,6 +53,7 @@ class Row:
     outcome: str
     reason: str = ""
     unsafe: str = ""
+    time_to_safe: float | None = None
 
     @property
     def key(self) -> FaultKey:
@@ -74,14 +78,24 @@ class Campaign:
         make_world: a fresh world, and senses if they are scripted, for every run.
         seed: of every run.
         faults: which ones.
+        stage: run this stage alone, or a span of them; None for the whole task.
 
     Attributes:
         nominal: outcome without any fault.
         nodes: skills in the order of the tree.
     """
 
-    def __init__(self, task: Task, make_world: MakeWorld, *, seed: int = 0, faults: tuple[str, ...] = FAULTS) -> None:
+    def __init__(
+        self,
+        task: Task,
+        make_world: MakeWorld,
+        *,
+        seed: int = 0,
+        faults: tuple[str, ...] = FAULTS,
+        stage: str | None = None,
+    ) -> None:
         self._task = task
+        self._stage = stage
         self._make_world = make_world
         self._seed = seed
         self._faults = faults
@@ -141,6 +155,7 @@ class Campaign:
                 outcome=result.outcome,
                 reason=result.reason,
                 unsafe=unsafe_after(run, result.outcome),
+                time_to_safe=round(result.sim_time_s - world.begun[0][1], 2),
             )
         finally:
             world.close()
@@ -153,7 +168,9 @@ class Campaign:
 
     def _prepare(self, faults: tuple[FaultSpec, ...]) -> Run:
         inner, senses = self._make_world()
-        return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, senses=senses)
+        prepare_stage(inner, self._task, self._stage)
+        parameters = self._task.parameters(self._stage)
+        return Run(self._task, FaultyWorld(inner, faults), seed=self._seed, senses=senses, params=parameters)
 
 
 def _finished(run: Run) -> RunResult:

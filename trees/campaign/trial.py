@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -20,6 +21,8 @@ from ...sim.record.folder_claim import FolderClaim, FolderTakenError
 from ...sim.record.record import is_finished, read_run
 from ...sim.record.spool import disk_error
 from ..run.task import JUDGED
+from .child import PARENT
+from .running import Running
 
 TRIAL_FILE = "trial.json"
 ENDING = 60.0  # [s] of wall time for a child to make its person safe and to write its record, before it is killed
@@ -27,11 +30,17 @@ ENDING = 60.0  # [s] of wall time for a child to make its person safe and to wri
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1"
 )
-CARETREE = (sys.executable, "-m", "caretree.trees.cli")
+CARETREE = (sys.executable, "-m", "caretree.trees.campaign.child")
+STALE = "other-"  # begins the names of folders for trials of other sources, versions or arguments
+DEFECTS = ("SIGSEGV", "SIGABRT", "SIGBUS", "SIGFPE", "SIGILL", "SIGSYS", "SIGTRAP")  # the run's own doing
 
 
 class InterruptedTrialError(Exception):
     """The trial was stopped before it was over; it counts for nothing and runs again next time."""
+
+
+class TakenTrialError(Exception):
+    """Another campaign runs this trial now."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +49,7 @@ class Trial:
 
     Attributes:
         seed: of the run.
+        key: of the campaign it was run for (`campaign_key`).
         outcome: `success`, `failure` or `safe_stop` as the tree said; `crash` or `timeout` if it said nothing.
         reason: one sentence.
         dressed: what the evaluator found in the geometry; None where there is none or the task dresses nobody.
@@ -52,6 +62,7 @@ class Trial:
     """
 
     seed: int
+    key: str = ""
     outcome: str
     reason: str
     dressed: bool | None = None
@@ -94,7 +105,8 @@ def read_trial(directory: Path) -> Trial | None:
         return None
 
 
-def _keep(directory: Path, trial: Trial) -> Trial:
+def _keep(directory: Path, trial: Trial, key: str) -> Trial:
+    trial = replace(trial, key=key)
     part = directory / f"{TRIAL_FILE}.part"
     try:
         part.write_text(json.dumps(asdict(trial), indent=1) + "\n", encoding="utf-8")
@@ -138,7 +150,14 @@ def judge_run(directory: Path, seed: int) -> Trial:
 
 
 def run_trial(
-    task: str, seed: int, directory: Path, arguments: tuple[str, ...], *, patience: float, stop: threading.Event
+    task: str,
+    seed: int,
+    directory: Path,
+    arguments: tuple[str, ...],
+    *,
+    patience: float,
+    stop: threading.Event,
+    key: str = "",
 ) -> Trial:
     """Run one seed in a process of its own, or finish judging a run that is already there.
 
@@ -149,51 +168,101 @@ def run_trial(
         arguments: further arguments of `caretree run`.
         patience: wall time after which a run counts as stuck [s].
         stop: ends the run when set.
+        key: of the campaign.
 
     Raises:
-        CaretreeError: the child says that its input is bad, it was stopped from outside (by a signal, or a full disk),
-            or another campaign runs this trial.
-        InterruptedTrialError: `stop` was set.
+        CaretreeError: the child says that its input is bad, or the disk is full.
+        InterruptedTrialError: `stop` was set, or somebody stopped or killed the run.
+        TakenTrialError: another campaign runs this trial.
     """
+    running = Running(directory, key)
     try:
-        return _keep(directory, judge_run(directory, seed))
-    except RecordError:
-        _clear(directory)
+        if not running.mine:
+            raise TakenTrialError
+        if (finished := read_trial(directory)) is not None and finished.key == key:
+            return finished  # by another campaign, a moment ago
+        return _run(task, seed, directory, arguments, patience, stop, running, key)
+    finally:
+        running.release()
+
+
+def _run(
+    task: str,
+    seed: int,
+    directory: Path,
+    arguments: tuple[str, ...],
+    patience: float,
+    stop: threading.Event,
+    running: Running,
+    key: str,
+) -> Trial:
+    begun = directory.with_name(f"{directory.name}.key")  # whose record it is, until it has been judged
+    try:
+        if begun.read_text(encoding="utf-8") == key and not (directory / TRIAL_FILE).exists():
+            return _keep(directory, judge_run(directory, seed), key)
+    except (OSError, ValueError, RecordError):
+        pass
+    put_aside(directory)
     directory.mkdir(parents=True)
+    begun.write_text(key, encoding="utf-8")
     command = [*CARETREE, "run", task, "--seed", str(seed), "--out", str(directory), *arguments]
     log = directory.with_name(f"{directory.name}.log")
     with log.open("wb") as output:
         # a session of its own: the terminal's Ctrl-C reaches only us, and an interrupted run does not count as failed
         child = subprocess.Popen(
-            command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True, env=os.environ | ONE_THREAD
+            command,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            env=os.environ | ONE_THREAD | {PARENT: str(os.getpid())},
         )
-        status = _wait(child, patience, stop)
+        status = _wait(child, patience, stop, running)
     last = _last_line(log)
-    if status is not None and (why := _stopped(directory)):
+    why = _stopped(directory)
+    if status == BAD_INPUT and why:
         raise CaretreeError(f"the run in {directory} was stopped: {why}")
     if status == BAD_INPUT:
         raise CaretreeError(last or f"`caretree run {task}` refused its input without a word; see {log}")
+    if status is not None and (killed := why or _killed(status)):
+        raise InterruptedTrialError(f"seed {seed} was stopped and counts for nothing: {killed}")
     try:
-        return _keep(directory, judge_run(directory, seed))
+        return _keep(directory, judge_run(directory, seed), key)
     except RecordError:
         if status is None:
-            return _keep(directory, Trial(seed=seed, outcome="timeout", reason=f"no end within {patience:g} s"))
-        return _keep(directory, Trial(seed=seed, outcome="crash", reason=f"exit status {status}: {last}"))
+            return _keep(directory, Trial(seed=seed, outcome="timeout", reason=f"no end within {patience:g} s"), key)
+        return _keep(directory, Trial(seed=seed, outcome="crash", reason=f"exit status {status}: {last}"), key)
 
 
-def _clear(directory: Path) -> None:
-    """Remove what an earlier run left, unless it still goes on.
+def _killed(status: int) -> str:
+    """The signal by which somebody ended the child; empty where it ended by its own doing."""
+    name = signal.Signals(-status).name if status < 0 else ""
+    return "" if name in DEFECTS else name
+
+
+def put_aside(directory: Path) -> None:
+    """Remove what an earlier run left, unless it still goes on; a finished trial of another key is kept elsewhere.
 
     Raises:
         FolderTakenError: it does.
     """
+    finished = False
     try:
         FolderClaim(directory).release()
-    except FolderTakenError:
-        if not _stopped(directory):
+    except FolderTakenError as taken:
+        try:
+            finished = is_finished(read_run(directory))
+        except RecordError:
+            raise taken from None  # at its very beginning
+        if not finished:
             raise
     except RecordError:  # damaged: the more reason to begin anew
         pass
+    old = read_trial(directory)
+    if old is not None or (finished and not _stopped(directory)):
+        aside = directory.parents[1] / f"{STALE}{(old and old.key) or 'earlier'}" / directory.parent.name
+        aside.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(aside / directory.name, ignore_errors=True)
+        directory.rename(aside / directory.name)
     shutil.rmtree(directory, ignore_errors=True)
 
 
@@ -206,7 +275,7 @@ def _stopped(directory: Path) -> str:
     return str(run.get("reason")) if run.get("stopped_from_outside") else ""
 
 
-def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event) -> int | None:
+def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event, running: Running) -> int | None:
     """Exit status of the child, or None when it was ended for taking too long."""
     waited = 0.0
     try:
@@ -215,6 +284,7 @@ def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event
                 return child.wait(timeout=0.2)
             except subprocess.TimeoutExpired:
                 waited += 0.2
+            running.beat()
             if stop.is_set():
                 raise InterruptedTrialError
         return None

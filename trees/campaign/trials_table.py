@@ -12,11 +12,15 @@ OVERALL = "overall"
 STAGE = "stage-"
 
 
-def collect(directory: Path) -> dict[str, list[Trial]]:
-    """Every finished trial of a campaign, by kind (`overall`, `stage-dress` ...), in order of the seeds."""
+def collect(directory: Path, key: str) -> dict[str, list[Trial]]:
+    """Every finished trial of one key in a folder, by kind (`overall`, `stage-dress` ...), in order of the seeds."""
     kinds = [directory / OVERALL, *sorted(directory.glob(f"{STAGE}*"))]
     found = {
-        kind.name: [trial for folder in sorted(kind.glob("seed-*")) if (trial := read_trial(folder)) is not None]
+        kind.name: [
+            trial
+            for folder in sorted(kind.glob("seed-*"))
+            if (trial := read_trial(folder)) is not None and trial.key == key
+        ]
         for kind in kinds
     }
     return {kind: trials for kind, trials in found.items() if trials}

@@ -15,7 +15,9 @@ from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
 from ...sim.record.spool import disk_error
 from ...sim.world_kind import WorldKind
+from ..campaign.heat_map import write_heat_map
 from ..campaign.inject import SIGNS, Campaign, FaultKey, Row, table
+from ..campaign.key import campaign_key
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.worlds import make_world
@@ -35,7 +37,8 @@ def main(options: argparse.Namespace) -> int:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
     kind = WorldKind.named(options.world_kind)
     world = "-".join((options.world, *kind.difficulties))
-    usual = Path("runs") / f"inject-{Path(options.task).stem}-{world}-seed{options.seed}"
+    name = "-".join((Path(options.task).stem, *([options.stage] if options.stage else []), world))
+    usual = Path("runs") / f"inject-{name}-seed{options.seed}"
     path = Path(options.out or usual) / ROWS
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -57,17 +60,19 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         lambda: make_world(options.world, task, seed=options.seed, kind=options.world_kind),
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
+        stage=options.stage,
     )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
-    rows = [row for row in read_rows(path) if row.key in set(wanted)]
+    key = campaign_key(task, (options.world, options.world_kind, str(options.seed), str(options.stage)))
+    rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
     try:
         with path.open("a", encoding="utf-8") as file:
             done = {row.key for row in rows}
             for row in campaign.rows([key for key in wanted if key not in done]):
-                file.write(json.dumps(row.as_dict()) + "\n")
+                file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
                 file.flush()
                 rows.append(row)
                 if row.outcome != "not_reached" or row.unsafe:
@@ -78,7 +83,9 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     except KeyboardInterrupt:
         print(f"interrupted; {len(rows)} of {len(wanted)} rows are kept in {path}, run it again to go on")
         return INTERRUPTED
-    print(table(sorted(rows, key=lambda row: wanted.index(row.key))))
+    rows.sort(key=lambda row: wanted.index(row.key))
+    print(table(rows))
+    print(write_heat_map(path.parent, f"{options.task}, faults, seed {options.seed}", rows))
     tried = [row for row in rows if row.outcome != "not_reached"]
     if len(tried) < len(rows):
         print(f"{len(rows) - len(tried)} of {len(rows)} were not reached: nothing is said of them")
@@ -99,16 +106,21 @@ def drawn_rows(plan: list[FaultKey], count: int | None, seed: int) -> list[Fault
     return [plan[k] for k in sorted(chosen)]
 
 
-def read_rows(path: Path) -> list[Row]:
-    """Rows of an earlier, perhaps interrupted campaign; a line that is damaged is left out, and tried again."""
+def read_rows(path: Path, key: str) -> list[Row]:
+    """Rows of an earlier, perhaps interrupted campaign; one that is damaged or of another key is tried again."""
     if not path.exists():
         return []
     rows = []
     for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
         try:
-            row = Row(**json.loads(line))
-            if row.outcome in SIGNS and all(isinstance(text, str) for text in row.as_dict().values()):
+            stored = json.loads(line)
+            if stored.pop("key", None) != key:
+                continue
+            row = Row(**stored)
+            texts = {key: value for key, value in row.as_dict().items() if key != "time_to_safe"}
+            timed = row.time_to_safe is None or type(row.time_to_safe) in (int, float)
+            if row.outcome in SIGNS and timed and all(isinstance(text, str) for text in texts.values()):
                 rows.append(row)
-        except (ValueError, TypeError, RecursionError):
+        except (ValueError, TypeError, AttributeError, RecursionError):
             continue
     return rows

@@ -7,8 +7,12 @@ from pathlib import Path
 
 from ...sim.command_line import INTERRUPTED, SEEDS
 from ...sim.errors import CaretreeError
+from ..campaign.key import campaign_key
+from ..campaign.rows_file import write_parquet
 from ..campaign.trials import TABLE, Plan, run_trials
+from ..campaign.trials_table import collect
 from ..run.stop_signals import StopSignals
+from ..run.task import load_task
 
 TRIALS_MAX = 100_000  # a run takes a second at least
 PASSED_ON = ("world", "world-kind", "gown", "person", "model", "tuning")  # to every `caretree run`
@@ -28,7 +32,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="J", help="runs at the same time (1)")
+    parser.add_argument(
+        "--jobs", type=int, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
+    )
+    parser.add_argument("--address", metavar="ray://...", help="run them on a Ray cluster; `local` starts one here")
+    parser.add_argument("--parquet", action="store_true", help="write trials.parquet too; needs pyarrow")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the campaign (runs/trials-TASK)")
     for name in PASSED_ON:
         parser.add_argument(f"--{name}", metavar=name.upper(), help="handed to every `caretree run`")
@@ -82,7 +90,7 @@ def parse_seeds(count: int | None, seeds: str | None) -> tuple[int, ...]:
 
 
 def main(args: argparse.Namespace) -> int:
-    """Run the campaign and print its table; 0 when every trial came to an end, however it ended.
+    """Run the campaign and print its table; 0 when every trial came to an end, however it ended, else 1.
 
     Raises:
         CaretreeError: bad input, or the disk is full.
@@ -94,17 +102,24 @@ def main(args: argparse.Namespace) -> int:
     arguments += [part for text in args.set for part in ("--set", text)]
     plan = Plan(
         task=args.task,
+        key=campaign_key(load_task(args.task), arguments),
         seeds=parse_seeds(args.n, args.seeds),
         directory=directory,
         stage=args.stage,
         arguments=tuple(arguments),
         jobs=args.jobs,
+        address=args.address,
     )
     try:
         with StopSignals():
-            run_trials(plan, lambda line: print(line, flush=True))
+            trials = run_trials(plan, lambda line: print(line, flush=True))
     except KeyboardInterrupt:
         print(f"interrupted: finished trials are kept in {directory}; the same command goes on", flush=True)
         return INTERRUPTED
     print(f"\n{(directory / TABLE).read_text(encoding='utf-8')}\n{directory / TABLE}")
+    if args.parquet:
+        print(write_parquet(directory, collect(directory, plan.key)))
+    if len(trials) < len(plan.seeds):
+        print(f"{len(plan.seeds) - len(trials)} trials were stopped or killed: the same command runs them again")
+        return 1
     return 0

@@ -36,6 +36,7 @@ class Limits:
         stop_patience: a motion that does not stop within this time is stuck [s].
         safe_branch: the fail-safe branch may take this long before the runner stops everything itself [s].
         run: no run lasts longer [s].
+        tick: one tick lasts no longer, by the wall clock [s].
     """
 
     hand_speed: float = 0.15
@@ -62,6 +63,7 @@ class Limits:
     stop_patience: float = 5.0
     safe_branch: float = 60.0
     run: float = 1800.0
+    tick: float = 120.0
 
     def __post_init__(self) -> None:
         """Reject limits that contradict each other."""
@@ -114,6 +116,7 @@ SOURCES: dict[str, str] = {
     "stop_patience": "choice: longer than the slowest controlled stop of the arm",
     "safe_branch": "choice: release, back off and a 5 s lowering of each arm, three times over",
     "run": "choice: six times the longest run expected",
+    "tick": "choice: six times the longest plan, for a machine that has much else to do",
 }
 
 DEFAULT = Limits()

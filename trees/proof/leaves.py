@@ -9,6 +9,7 @@ from ...skills.core.context import Context
 from ...skills.core.reasons import SkillFailure
 from ...skills.core.skill import Skill
 from ..nodes.condition import Condition
+from ..run.time_limit import LOADING, TimeLimit, TookTooLongError
 
 
 def leaf_findings(root: Behaviour, context: Context, paths: dict[Behaviour, str]) -> list[str]:
@@ -38,9 +39,12 @@ def _of_skill(skill: Skill, context: Context) -> str:
 def _asked(condition: Condition, context: Context) -> str:
     """A condition moves nothing: it can be asked.  What it answers is not the question, but whether it does."""
     try:
-        bool(condition.test(context, **condition.bindings))
+        with TimeLimit(LOADING):
+            bool(condition.test(context, **condition.bindings))
     except (SkillFailure, CaretreeError):  # it may need what an earlier skill has seen or written
         return ""
+    except TookTooLongError as error:
+        return f"asked on the scripted world, {error}"
     except Exception as error:
         return f"asked on the scripted world, it makes an error: {type(error).__name__}: {error}"
     return ""

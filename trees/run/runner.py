@@ -40,6 +40,7 @@ from ..guard.limits import DEFAULT, Limits
 from ..nodes.decorators import FailSafe, Stage
 from ..nodes.failures import failure_of
 from .task import Task
+from .time_limit import TimeLimit, TookTooLongError
 from .trace import Trace
 
 RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
@@ -136,6 +137,7 @@ class Run:
         self._period = 1.0 / rate_hz
         self._ticked = float("-inf")
         self._began = time.perf_counter()  # the last tick, by the wall clock
+        self._limit = TimeLimit(limits.tick, self._last_resort)
         self._tell = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._told: dict[Behaviour, Status] = {}
@@ -176,6 +178,10 @@ class Run:
 
     def run(self) -> RunResult:
         """Tick to the end and make safe."""
+        with self._limit:
+            return self._run()
+
+    def _run(self) -> RunResult:
         failure: Failure | None = None
         try:
             failure = self._tick_to_end()
@@ -185,12 +191,12 @@ class Run:
             failure = self._stop
         except CaretreeError as error:
             failure = Failure(Reason.INTERNAL_ERROR, str(error), "runner")
-        except (Exception, SystemExit) as error:  # py_trees leaves ancestors running after an exception in a node
+        except TookTooLongError as error:
+            self.context.report(error)
+            failure = Failure(Reason.TIMEOUT, str(error), error.node or "runner")
+        except BaseException as error:  # py_trees leaves ancestors running after an exception in a node
             self.context.report(error)
             failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", "runner")
-        except BaseException:
-            self._last_resort()
-            raise
         try:
             return self._end(failure)
         except BaseException:  # interrupted once more
@@ -220,11 +226,24 @@ class Run:
     def _tick(self, node: Behaviour) -> None:
         self._began = time.perf_counter()
         self._ticked = self.context.now()
-        self.context.lease.advance()
+        self._limit.start()
+        self._advance_lease()
+        self._limit.start()
         for visited in node.tick():
             self.trace.visit(visited)
             self._progress(visited)
+        self._limit.pause()
         self._sweep()
+
+    def _advance_lease(self) -> None:
+        """Carry what is stopping further; a skill whose `cancel` does not come back is not asked again."""
+        try:
+            self.context.lease.advance()
+        except TookTooLongError as error:
+            self.context.report(error)
+            self.context.lease.clear()
+            self.guard.stop()
+            self.request_stop(Reason.TIMEOUT, str(error), error.node or "runner")
 
     @timed("world")
     def _pass_time(self) -> None:
@@ -317,15 +336,18 @@ class Run:
     def _halt(self, node: Behaviour) -> None:
         """End every node below `node`, leaves first, even where an exception left the statuses inconsistent."""
         for each in node.iterate():
+            self._limit.start()
             try:
                 if isinstance(each, Skill):
                     each.terminate(Status.INVALID)
                     each.status = Status.INVALID
                 elif each.status != Status.INVALID:
                     each.stop(Status.INVALID)
-            except Exception as error:
+            except (Exception, TookTooLongError) as error:
                 self.context.report(error)
                 each.status = Status.INVALID
+                self.context.lease.release(each)
+        self._limit.pause()
         self._sweep()
 
     def _run_safe_branches(self) -> None:
@@ -337,7 +359,7 @@ class Run:
             except KeyboardInterrupt:  # the operator insists: leave the rest to the last resort
                 self.interrupted = True
                 return
-            except Exception as error:
+            except BaseException as error:
                 self.context.report(error)
                 node.made_safe = False
             finally:
@@ -369,7 +391,7 @@ class Run:
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
             self._ticked, self._began = self.context.now(), time.perf_counter()
-            self._try(self.context.lease.advance)
+            self._try(self._advance_lease)
             self._try(self.guard.stop)
             if release:
                 for side in SIDES:
@@ -388,12 +410,15 @@ class Run:
         return calm > 0
 
     def _try(self, action: Callable[[], Any], default: Any = None) -> Any:
+        self._limit.start()
         try:
             return action()
-        except (Exception, KeyboardInterrupt) as error:
+        except (Exception, KeyboardInterrupt, TookTooLongError) as error:
             self.interrupted |= isinstance(error, KeyboardInterrupt)
             self.context.report(error)
             return default
+        finally:
+            self._limit.pause()
 
 
 def _nearest(name: str, names: list[str]) -> str:

@@ -41,7 +41,9 @@ from ..btcpp.vocabulary import Vocabulary
 from ..tasks import task_names
 from .shape import ShapeError, check_shape
 from .stages import TaskStage, span_of
+from .time_limit import LOADING, TimeLimit, TookTooLongError
 
+FROM_ITS_CODE = (Exception, SystemExit, GeneratorExit, TookTooLongError)  # what a task's own code may raise
 JUDGED = ("dressing",)  # tasks after which somebody should be dressed
 
 
@@ -104,8 +106,9 @@ class Task:
         if self.script is None:
             return ScriptedWorld(seed=seed), None
         try:
-            world, senses = self.script(seed)
-        except (Exception, SystemExit) as error:
+            with TimeLimit(LOADING):
+                world, senses = self.script(seed)
+        except FROM_ITS_CODE as error:
             raise TaskError(_located(self.file, error)) from error
         if senses is not None and not isinstance(senses, Senses):
             raise TaskError(f"{self.file}:1: scripted() gave {type(senses).__name__} as senses, which is no Senses")
@@ -123,12 +126,13 @@ class Task:
         except TypeError as error:
             raise TaskError(f"{self._line()}: task {self.name!r}: build(context, ...) {error}") from error
         try:
-            if self.senses is not None:
-                context.offer_senses(self.senses(context))
-            root = self.function(context, **params)
+            with TimeLimit(LOADING):
+                if self.senses is not None:
+                    context.offer_senses(self.senses(context))
+                root = self.function(context, **params)
         except (SettingError, XmlError):
             raise  # a mistake on the command line, or one that says its own line
-        except (Exception, SystemExit) as error:
+        except FROM_ITS_CODE as error:
             raise TaskError(_located(self.file, error)) from error
         if not isinstance(root, Behaviour):
             raise TaskError(f"{self._line()}: build() returned {type(root).__name__}, but a tree's root is asked for")
@@ -174,7 +178,7 @@ def _named_module(name: str) -> tuple[ModuleType, Path]:
     file = _shown(Path(spec.origin)) if spec is not None and spec.origin else Path(f"{name}.py")
     try:
         return importlib.import_module(module_name), file
-    except (Exception, SystemExit) as error:
+    except FROM_ITS_CODE as error:
         raise TaskError(_located(file, error)) from error
 
 
@@ -211,8 +215,9 @@ def _module_at(path: Path) -> ModuleType:
         if folder not in sys.path:
             sys.path.append(folder)  # a task may keep its skills in a file beside it
         sys.modules[module.__name__] = module  # dataclasses look their module up there
-        exec(code, module.__dict__)  # running the user's own file is the point
-    except (Exception, SystemExit) as error:
+        with TimeLimit(LOADING):
+            exec(code, module.__dict__)  # running the user's own file is the point
+    except FROM_ITS_CODE as error:
         raise TaskError(_located(path, error)) from error
     return module
 
@@ -232,7 +237,7 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
     )
 
 
-def _located(file: Path, error: Exception | SystemExit) -> str:
+def _located(file: Path, error: BaseException) -> str:
     """One sentence for an error of a task file, with the last line of that file it passed through."""
     if isinstance(error, SyntaxError) and error.filename and Path(error.filename).name == file.name:
         return f"{file}:{error.lineno or 1}: {error.msg}"
@@ -241,7 +246,7 @@ def _located(file: Path, error: Exception | SystemExit) -> str:
         for frame in traceback.extract_tb(error.__traceback__)
         if Path(frame.filename).name == file.name and frame.lineno
     ]
-    text = str(error) if isinstance(error, CaretreeError) else f"{type(error).__name__}: {error}"
+    text = str(error) if isinstance(error, (CaretreeError, TookTooLongError)) else f"{type(error).__name__}: {error}"
     if isinstance(error, ImportError) and "relative import" in text:
         text = "a task file imports by full names: `from caretree.skills...`, not `from ...skills...`"
     return f"{file}:{lines[-1] if lines else 1}: {text}"

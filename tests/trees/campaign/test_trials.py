@@ -4,11 +4,14 @@ import argparse
 import json
 import sys
 import threading
+from types import SimpleNamespace
 
 import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.record.folder_claim import FolderClaim, FolderTakenError
 from caretree.trees.campaign import trial as trial_module
+from caretree.trees.campaign import trials as trials_module
+from caretree.trees.campaign.running import Running
 from caretree.trees.campaign.trial import InterruptedTrialError, judge_run, read_trial, run_trial
 from caretree.trees.campaign.trials import Plan, run_trials
 from caretree.trees.campaign.trials_table import table
@@ -37,6 +40,10 @@ if seed == 8:  # its person is put down first
     signal.signal(signal.SIGTERM, end)
     (out.parent.parent / "ready.txt").touch()
     signal.pause()
+if seed == 6:  # somebody kills it, once
+    import os, signal
+    if (out.parent.parent / "started.txt").read_text().count("6") == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
 if seed == 9:
     print("caretree: gown 'x' is unknown, but small is asked for")
     sys.exit(2)
@@ -244,3 +251,56 @@ def test_a_trial_that_another_campaign_runs_is_left_alone(fake_caretree):
     assert (campaign.folder(0) / "spool").exists()
     theirs.release()
     run_trials(campaign, lambda line: None)
+
+
+def test_a_run_that_is_killed_loses_its_own_trial_only_and_runs_again(fake_caretree):
+    told: list[str] = []
+    trials = run_trials(plan(fake_caretree, seeds=(6, 0)), told.append)
+    assert [trial.seed for trial in trials] == [0]
+    assert "seed 6 was stopped and counts for nothing: SIGKILL" in told
+    assert [trial.seed for trial in run_trials(plan(fake_caretree, seeds=(6, 0)), told.append)] == [6, 0]
+    assert (fake_caretree / "started.txt").read_text().split() == ["6", "0", "6"]
+
+
+def test_trials_of_other_sources_are_put_aside_and_run_again(fake_caretree):
+    told: list[str] = []
+    run_trials(plan(fake_caretree, seeds=(0, 3), key="old"), told.append)
+    run_trials(plan(fake_caretree, seeds=(0,), key="new"), told.append)
+    assert "1 trials are of other sources or versions: they are put aside and run again" in told
+    assert read_trial(fake_caretree / "other-old/overall/seed-0000").key == "old"
+    stored = json.loads((fake_caretree / "trials.json").read_text())
+    assert [trial["seed"] for trial in stored["trials"]["overall"]] == [0], "seed 3 is of yesterday"
+    assert (fake_caretree / "started.txt").read_text().split() == ["0", "3", "0"]
+
+
+def test_a_folder_is_nobodys_when_its_first_run_is_refused(fake_caretree):
+    with pytest.raises(CaretreeError, match="gown"):
+        run_trials(plan(fake_caretree, seeds=(9,)), lambda line: None)
+    assert not (fake_caretree / "trials.json").exists()
+    run_trials(plan(fake_caretree, seeds=(0,), arguments=("--gown", "small")), lambda line: None)
+
+
+def test_two_campaigns_share_a_folder(fake_caretree, monkeypatch):
+    """The other one runs seed 0 and finishes it while this one waits."""
+    both = plan(fake_caretree, seeds=(0, 1))
+    (fake_caretree / "overall").mkdir(parents=True)
+    theirs = Running(both.folder(0), "")
+
+    def finish(seconds):
+        both.folder(0).mkdir()
+        found = dict(seed=0, outcome="success", reason="by the other", problems=[])
+        (both.folder(0) / "trial.json").write_text(json.dumps(found))
+        theirs.release()
+
+    monkeypatch.setattr(trials_module, "time", SimpleNamespace(sleep=finish))  # not subprocess's
+    trials = run_trials(both, lambda line: None)
+    assert [(trial.seed, trial.reason) for trial in trials] == [(0, "by the other"), (1, "The sleeve is caught.")]
+    assert (fake_caretree / "started.txt").read_text().split() == ["1"]
+
+
+def test_a_folder_in_which_other_sources_are_at_work_is_refused(fake_caretree):
+    run_trials(plan(fake_caretree, seeds=(0,), key="old"), lambda line: None)
+    theirs = Running(plan(fake_caretree).folder(5), "old")
+    with pytest.raises(CaretreeError, match=r"another campaign works in .* runs seed-0005 there, of other sources"):
+        run_trials(plan(fake_caretree, seeds=(0,), key="new"), lambda line: None)
+    theirs.release()
