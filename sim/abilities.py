@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from .record.recorder import Recorder
     from .render.camera import Renderer
+    from .scene.objects import RoomObject
     from .stopwatch import Stopwatch
     from .world import Side
 
@@ -105,5 +106,26 @@ class SupportsInitialStates(Protocol):
 
         Raises:
             WorldError: there is no such state, or the run has begun.
+        """
+        ...
+
+
+@runtime_checkable
+class SupportsObjects(Protocol):
+    """A world that a task can furnish before the run: `scene(world, seed)` of a task is given one."""
+
+    def add(self, item: RoomObject) -> None:
+        """Put an object into the room.
+
+        Raises:
+            CaretreeError: there is one of that name, it cannot be loaded, or the run has begun.
+        """
+        ...
+
+    def remove_gown(self) -> None:
+        """Take the gown away, for tasks that need none: a run then costs a fraction.
+
+        Raises:
+            CaretreeError: the run has begun.
         """
         ...

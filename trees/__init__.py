@@ -20,11 +20,13 @@ if TYPE_CHECKING:
     from .nodes.decorators import Stage as Stage
     from .nodes.decorators import Timeout as Timeout
     from .nodes.decorators import timed_stage as timed_stage
+    from .run.parameters import Parameter as Parameter
     from .run.stages import TaskStage as TaskStage
 
 _HOME = {
     "Condition": ".nodes.condition",
     "FailSafe": ".nodes.decorators",
+    "Parameter": ".run.parameters",
     "RecoverBy": ".nodes.decorators",
     "Retry": ".nodes.decorators",
     "Stage": ".nodes.decorators",

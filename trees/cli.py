@@ -86,10 +86,11 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         "--set",
         action="append",
         default=[],
-        metavar="SKILL.NUMBER=VALUE",
-        help="a number of every leaf of that skill, see `caretree skills SKILL`; may be repeated",
+        metavar="NAME=VALUE",
+        help="a parameter of the task, see `caretree check TASK`, or SKILL.NUMBER=VALUE: a number of every leaf of "
+        "that skill, see `caretree skills SKILL`; may be repeated",
     )
-    run.add_argument("--tuning", metavar="FILE", help="YAML file of such numbers: skill, number, value")
+    run.add_argument("--tuning", metavar="FILE", help="YAML file of both: parameter, value; skill, number, value")
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--port", type=port, metavar="N", help="of the view (default: the first free one from 8080 on)")

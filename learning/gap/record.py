@@ -16,8 +16,8 @@ import yaml
 from ...sim.effects.cloth.gown_patch import gown_effects, with_air
 from ...sim.effects.cloth.proxy_bodies import spread_vertices
 from ...sim.effects.model_file import EffectModel
+from ...sim.obj_file import write_obj
 from ...sim.scene.gown import GownMesh
-from .cloth.obj import write_obj
 from .errors import GapError
 from .table import write_table
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ..render.appearance import draw_appearance, gown_colours
@@ -44,15 +46,28 @@ class Backdrop:
         lengths = np.tile(scene.person.arm_lengths, (2, 1))
         self.diorama = Diorama(look, furniture, person.trunk, person.radii(), lengths)
 
-    def update(self, vertices: np.ndarray, arms: np.ndarray, configuration: np.ndarray) -> Renderer:
+    def add(self, name: str, vertices: np.ndarray, faces: np.ndarray, colour: object) -> None:
+        """Show an object: vertices (V, 3) in the map [m], triangles (F, 3), red, green and blue."""
+        self.renderer.add_rigid(f"object_{name}", vertices, faces, colour)
+
+    def update(
+        self,
+        vertices: np.ndarray,
+        arms: np.ndarray,
+        configuration: np.ndarray,
+        objects: Mapping[str, np.ndarray] | None = None,
+    ) -> Renderer:
         """Move everything to where it is; returns the renderer, ready to draw.
 
         Args:
             vertices: (V, 3) of the gown [m].
             arms: (2, 4, 3) of the person [m].
             configuration: (nq,) of the robot.
+            objects: name -> (V, 3) of what a task has added [m].
         """
         self.renderer.move_cloth(vertices)
+        for name, moved in (objects or {}).items():
+            self.renderer.move_vertices(f"object_{name}", moved)
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
                 self.renderer.set_pose(f"arm{arm}{part}", along(arms[arm, part], arms[arm, part + 1]))

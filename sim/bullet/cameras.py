@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -24,12 +24,14 @@ class Exposure:
         vertices: (V, 3) of the gown [m].
         arms: (2, 4, 3) of the person [m].
         reading: the robot's joints and base as they are.
+        objects: name -> (V, 3) of what a task has added [m].
     """
 
     time: float
     vertices: np.ndarray
     arms: np.ndarray
     reading: JointReading
+    objects: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 class Cameras:
@@ -77,7 +79,7 @@ class Cameras:
         configuration = self._kinematics.configuration(
             reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
         )
-        renderer = self._backdrop.update(seen.vertices, seen.arms, configuration)
+        renderer = self._backdrop.update(seen.vertices, seen.arms, configuration, seen.objects)
         pose = self._errors.pose_camera(camera, self._pose(camera, reading))
         rgb, depth = renderer.photograph(camera, pose, self._noise)
         assert rgb.shape[:2] == CAMERA_VIEWS[camera][0][::-1]

@@ -20,7 +20,7 @@ class UnstableClothError(CaretreeError):
 
 
 class Cloth:
-    """One gown in a soft world.
+    """One gown, or another cloth, in a soft world.
 
     Args:
         world: where it moves.
@@ -39,7 +39,7 @@ class Cloth:
         stiffness = spec.elastic * world.time_step**2 / (spec.mass / len(mesh.vertices))
         if stiffness > STABILITY_MAX:
             raise UnstableClothError(
-                f"gown '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
+                f"cloth '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
                 f"{STABILITY_MAX} is stable: lower the stiffness or the time step"
             )
         self.world, self.mesh = world, mesh
@@ -65,8 +65,13 @@ class Cloth:
         client.resetBaseVelocity(self.body, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
 
     def vertices(self) -> np.ndarray:
-        """(V, 3) positions in the map frame [m]."""
-        return self.world.vertices(self.body)
+        """(V, 3) positions in the map frame [m]; none of a cloth that was removed."""
+        return self.world.vertices(self.body) if self.body >= 0 else np.zeros((0, 3))
+
+    def remove(self) -> None:
+        """Take it out of the world."""
+        self.world.client.removeBody(self.body)
+        self.body = -1
 
     def pin(self, ids: Iterable[int], body: int = -1, link: int = -1) -> list[int]:
         """Hold vertices to a link, or to the world, where they are now; returns the constraints."""

@@ -2,13 +2,15 @@
 
 Cloth: every triangle that reaches into the volume between the open fingertips is taken when they close, all
 layers that are there, and it slips out when the load passes the friction of the pads.  An arm: taken when its
-axis runs between the fingers.  The robot learns of neither except through its own sensors.
+axis runs between the fingers.  A rigid object: taken where it keeps them apart.  The robot learns of none of them
+except through its own sensors.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +20,9 @@ from .cloth import Cloth
 from .handle import Handle
 from .person import Person
 from .units import ROOM
+
+if TYPE_CHECKING:
+    from .objects import RoomObjects
 
 PAD_HALF_WIDTH = 0.011  # Robotiq 2F-85 pads are 22 mm wide [m]
 PAD_DEPTH = (-0.038, 0.004)  # from the palm side of the pads to just past the fingertips [m]
@@ -85,7 +90,8 @@ class Grip:
     """One gripper's hold.
 
     Attributes:
-        kind: `nothing`, `cloth` or `arm`.
+        kind: `nothing`, `cloth`, `arm` or `object`.
+        cloth: that it holds, or held last; the gown at first.
         layers: of the cloth held.
         part: index in `PERSON_PARTS` of the arm part held, or None.
         arm: which arm is held: -1 none, 0 left, 1 right.
@@ -103,7 +109,7 @@ class Grip:
         self._held: tuple[int, ...] = ()
         self._cloth_load = np.zeros(3)
         self._constraint: int | None = None
-        self._arm_link = -1
+        self._arm_link = self._body = -1
         self._arm_local = np.zeros(3)
         self._open_before = 0.085
         self._armed = True
@@ -145,6 +151,43 @@ class Grip:
         self._arm_link, self._arm_local, self._arm_offset = link, np.array(local), offset
         return True
 
+    def catch_object(self, objects: RoomObjects, pose_hand_in_map: np.ndarray, opening: float, force: float) -> bool:
+        """Take a rigid object that is as thick as the fingers now stand apart; tells whether it did."""
+        if self.kind != "nothing" or not self._armed:
+            return False
+        found = objects.between(pose_hand_in_map, self._open_before)
+        if found is None or opening > found[1] + 0.003:
+            return False
+        body, self.thickness = found
+        self.handle.reset(pose_hand_in_map)
+        place = self.client.getLinkState(self.handle.body, self.handle.link, computeForwardKinematics=1)
+        at = self.client.getBasePositionAndOrientation(body)
+        local = self.client.multiplyTransforms(*self.client.invertTransform(*at), place[4], place[5])
+        self._constraint = self.client.createConstraint(
+            self.handle.body,
+            self.handle.link,
+            body,
+            -1,
+            self.client.JOINT_FIXED,
+            (0, 0, 0),
+            (0, 0, 0),
+            local[0],
+            (0, 0, 0, 1),
+            local[1],
+        )
+        self.client.changeConstraint(self._constraint, maxForce=ROOM.force(2 * FRICTION_SKIN * force))
+        self.kind, self._armed = "object", False
+        self._body, self._arm_local = body, np.array(local[0])
+        return True
+
+    def take_any_cloth(self, cloths: Iterable[Cloth], pose_hand_in_map: np.ndarray) -> None:
+        """The fingers have closed: hold what they have of the first cloth that is between them."""
+        for cloth in cloths if self._armed else ():
+            self._armed, self.cloth = True, cloth
+            self.take_cloth(cloth.vertices(), pose_hand_in_map)
+            if self.kind == "cloth":
+                return
+
     def take_cloth(self, vertices: np.ndarray, pose_hand_in_map: np.ndarray) -> None:
         """The fingers have closed: hold what was between them when they began to."""
         if self.kind != "nothing" or not self._armed:
@@ -171,7 +214,7 @@ class Grip:
     @property
     def load(self) -> np.ndarray:
         """(3,) force of what is held on the hand, map frame [N]."""
-        if self.kind == "arm":
+        if self.kind in ("arm", "object"):
             return self.handle.load
         return self._cloth_load.copy() if self.kind == "cloth" else np.zeros(3)
 
@@ -187,6 +230,11 @@ class Grip:
             pose = self.client.getLinkState(self.handle.body, self.handle.link)
             wanted = self.client.multiplyTransforms(pose[0], pose[1], self._arm_offset.tolist(), (0, 0, 0, 1))[0]
             if np.linalg.norm(np.subtract(held, wanted)) > ARM_SLIP:
+                self.release()
+        elif self.kind == "object":
+            at = self.client.getBasePositionAndOrientation(self._body)
+            held = self.client.multiplyTransforms(*at, self._arm_local.tolist(), (0, 0, 0, 1))[0]
+            if np.linalg.norm(np.subtract(held, self.handle.position())) > ARM_SLIP:
                 self.release()
 
     def _arm_between(self, pose_hand_in_map: np.ndarray) -> tuple[int, int, np.ndarray, float] | None:

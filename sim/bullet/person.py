@@ -49,7 +49,7 @@ class Person:
         self.bed_top, self.bed_xy = bed_top, bed_xy
         self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
         self.trunk = trunk_capsules(spec, bed_top, bed_xy)
-        trunk = [self._add_capsule(a, b, radius) for a, b, radius in self.trunk.values()]
+        self.trunk_bodies = {name: self._add_capsule(*capsule) for name, capsule in self.trunk.items()}
         self.body = self._load()
         names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
         self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
@@ -66,7 +66,7 @@ class Person:
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
             client.changeDynamics(self.body, link, jointDamping=0.0)
         # upper arm and trunk overlap at the shoulder, where contact could not part them: pushed, the arm would explode
-        for upper, part in product((self.links[side][0] for side in SIDES), trunk):
+        for upper, part in product((self.links[side][0] for side in SIDES), self.trunk_bodies.values()):
             client.setCollisionFilterPair(self.body, part, upper, -1, 0)
         self._dry, self._ends, self._end_stiffness = (np.ravel(values) for values in _resistance(spec))
         self._torso_front = torso_front(spec, bed_top, bed_xy)

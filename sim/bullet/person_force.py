@@ -40,12 +40,18 @@ class ForceBalance:
             held: (3,) force that hands and hook exert on the cloth [N].
             arm_loads: index of a part -> (3,) force that a hand exerts on it directly [N].
         """
+        if not len(vertices):
+            return self._direct(np.zeros(len(PERSON_PARTS)), arm_loads)
         if not self._centres or time > self._centres[-1][0]:
             self._centres = [*self._centres[-2:], (time, vertices.mean(axis=0))]
         rest = self.mass * (self._acceleration() + (0.0, 0.0, GRAVITY)) - held
         counts, on_bed = self._touching(vertices)
         total = counts.sum() + on_bed
         force = np.linalg.norm(rest) * counts / total if total else np.zeros(len(PERSON_PARTS))
+        return self._direct(force, arm_loads)
+
+    @staticmethod
+    def _direct(force: np.ndarray, arm_loads: dict[int, np.ndarray]) -> np.ndarray:
         for part, load in arm_loads.items():
             force[part] += np.linalg.norm(load)
         return force

@@ -12,6 +12,7 @@ Nothing outside `sim` may read `truth_frame`: skills see only `observe` and `loo
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,9 @@ from ..render.camera import Renderer
 from ..robot.body import JointReading, RobotBody
 from ..robot.capsules import RobotCapsules
 from ..robot.kinematics import default_kinematics
+from ..scene.gown import without_cloth
 from ..scene.initial_state import InitialState
+from ..scene.objects import RoomObject
 from ..scene.person_spec import trunk_capsules
 from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
 from ..scripted.clock import SteppedClock
@@ -34,13 +37,14 @@ from ..world import SIDES, Command, Frame, GripperOpening, Observation, Side, Wo
 from ..world_kind import EASY, WorldKind
 from .backdrop import Backdrop
 from .cameras import Cameras, Exposure
-from .cloth import load_gown
+from .cloth import Cloth, load_gown
 from .contact import Contact
 from .furniture import add_furniture
 from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
+from .objects import RoomObjects
 from .person import Person
 from .soft_world import SoftWorld
 from .thinking_time import ThinkingTime
@@ -108,8 +112,9 @@ class BulletWorld(World):
         self._client: Any = self._soft.client
         self._build()
         self._arms = self._person.arms()
-        capsules = RobotCapsules(self.kinematics)
-        self._contact = Contact(capsules, self._person, ROBOT_STEPS * TIME_STEP, TIME_STEP)
+        self._objects = RoomObjects(self._soft, self._person, BED_TOP)
+        self._capsules = RobotCapsules(self.kinematics)
+        self._contact = Contact(self._capsules, self._person, ROBOT_STEPS * TIME_STEP, TIME_STEP)
         self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
         self._reading = self._robot.read()
@@ -121,7 +126,7 @@ class BulletWorld(World):
         self._force_limit = np.full(2, 30.0)
         self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
         self._cameras = Cameras(self._expose, self._backdrop, self.kinematics, self._errors, self._noise)
-        self._truth = TruthSource(self.scene, capsules, self._person, self._hook, self._grips, self._contact)
+        self._truth = self._truth_source()
         self._watchers = Watchers(self.truth_frame, self._draw, self._backdrop.diorama, self._cameras.last)
         self._settle(SETTLE)
 
@@ -155,6 +160,41 @@ class BulletWorld(World):
             self._robot_client, np.array(pose_base_in_map), kinematics=self.kinematics, time=self.time.time, **posture
         )
 
+    def _truth_source(self) -> TruthSource:
+        return TruthSource(
+            self.scene, self._capsules, self._person, self._hook, self._grips, self._contact, self._objects
+        )
+
+    def add(self, item: RoomObject) -> None:
+        """Put an object into the room.
+
+        Raises:
+            WorldError: the run has begun.
+            ObjectError: there is one of that name, or it cannot be loaded.
+        """
+        if self._steps:
+            raise WorldError(f"object {item.name!r} comes too late: the run has begun")
+        self._objects.add(item)
+        self._backdrop.add(item.name, *self._objects.look(item.name))
+
+    def remove_gown(self) -> None:
+        """Take the gown away.
+
+        Raises:
+            WorldError: the run has begun.
+        """
+        if self._steps:
+            raise WorldError("the gown can only be taken away before the run begins")
+        self._hook.release()
+        if self._patch is not None:
+            self._patch.detach()
+            self._patch = None
+        self._cloth.remove()
+        self._vertices = self._cloth.vertices()
+        self.scene = replace(self.scene, mesh=without_cloth(self.scene.mesh))
+        self._truth = self._truth_source()
+        self._backdrop.renderer.remove_cloth()
+
     def set_initial_state(self, name: str) -> None:
         """Begin the run with the gown somewhere else than on its hook.
 
@@ -162,6 +202,8 @@ class BulletWorld(World):
             WorldError: there is no such state, or the run has begun.
         """
         state = InitialState.named(name)
+        if self._cloth.body < 0:
+            raise WorldError(f"no run begins with {name!r}: the task has taken the gown away")
         if self._steps:
             raise WorldError("an initial state can only be set before the run begins")
         if state == InitialState.GOWN_ON_HOOK:
@@ -207,7 +249,7 @@ class BulletWorld(World):
         wrench = self._errors.wrench(wrench, self._hands, hands)
         force = np.maximum(reading.gripper_force, self._contact.squeeze(self._hands))
         for n, grip in enumerate(self._grips):
-            if grip.kind == "arm":
+            if grip.kind in ("arm", "object"):
                 force[n] = self._force_limit[n]
         return Observation(
             time=now,
@@ -247,7 +289,7 @@ class BulletWorld(World):
         grip = self._grips[n]
         self._force_limit[n] = command.force_limit
         grip.on_command(command.opening, float(self._robot.read().gripper_opening[n]))
-        if grip.kind == "arm" and command.opening > grip.thickness + 0.004:
+        if grip.kind in ("arm", "object") and command.opening > grip.thickness + 0.004:
             grip.release()
         return self._robot.command(self._blocked(command, grip))
 
@@ -261,7 +303,7 @@ class BulletWorld(World):
         self._robot_client.disconnect()
 
     def _blocked(self, command: GripperOpening, grip: Grip) -> GripperOpening:
-        if grip.kind != "arm" or command.opening >= grip.thickness:
+        if grip.kind not in ("arm", "object") or command.opening >= grip.thickness:
             return command
         return GripperOpening(side=command.side, opening=grip.thickness, force_limit=command.force_limit)
 
@@ -285,6 +327,9 @@ class BulletWorld(World):
             self._meet()
         if self._steps % CONTROL_STEPS == 0:
             self._update_grips(self._reading)  # of this instant: every control step begins with one of the robot
+            if not self._asleep:
+                held = {grip.cloth.body for grip in self._grips if grip.kind == "cloth"}
+                self._objects.watch(CONTROL_STEPS * TIME_STEP, held)
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -317,13 +362,14 @@ class BulletWorld(World):
         for n in np.flatnonzero(held):
             self._handles[n].follow(self._hands[n])
         self._hook.before_step()
+        self._objects.before_step()
         self._move_person()
         self._apply_effects()
         self._contact.push_arms()
         with self.stopwatch.of("bullet"):
             self._client.stepSimulation()
         for n in np.flatnonzero(held):
-            if self._grips[n].kind == "arm":
+            if self._grips[n].kind in ("arm", "object"):
                 self._handles[n].feel()
 
     def _apply_effects(self) -> None:
@@ -343,28 +389,38 @@ class BulletWorld(World):
         if any(grip.kind != "nothing" for grip in self._grips):
             vertices = self._cloth.vertices()
             for grip, limit in zip(self._grips, self._force_limit, strict=True):
-                grip.watch(vertices, float(limit))
-            self._hook.watch(CONTROL_STEPS * TIME_STEP, any(grip.kind == "cloth" for grip in self._grips), vertices)
+                grip.watch(vertices if grip.cloth is self._cloth else grip.cloth.vertices(), float(limit))
+            held = {grip.cloth.body for grip in self._grips if grip.kind == "cloth"}
+            self._hook.watch(CONTROL_STEPS * TIME_STEP, self._cloth.body in held, vertices)
         for n, grip in enumerate(self._grips):
             opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
             if grip.kind == "cloth" and opening > REOPENED:
                 grip.release()
-            elif grip.kind == "nothing" and grip.catch_arm(self._hands[n], opening, force):
+            elif grip.kind == "nothing" and self._catches(grip, self._hands[n], opening, force):
                 self._robot.command(GripperOpening(side=SIDES[n], opening=grip.thickness, force_limit=force))
                 self._wake()
             elif squeeze[n] > force and self._robot.servo.gripper_opening[n] < opening:  # the fingers stall
                 self._robot.command(GripperOpening(side=SIDES[n], opening=opening, force_limit=force))
             elif grip.kind == "nothing" and opening < CLOSED:
-                grip.take_cloth(self._cloth.vertices(), self._hands[n])
+                grip.take_any_cloth(self._cloths, self._hands[n])
                 if grip.kind == "cloth":
                     self._wake()
+
+    def _catches(self, grip: Grip, hand: np.ndarray, opening: float, force: float) -> bool:
+        """Whether closing fingers now meet an arm or an object."""
+        return grip.catch_arm(hand, opening, force) or grip.catch_object(self._objects, hand, opening, force)
+
+    @property
+    def _cloths(self) -> list[Cloth]:
+        return [cloth for cloth in (self._cloth, *self._objects.cloths.values()) if cloth.body >= 0]
 
     def _rest(self) -> None:
         """Let a gown and arms that lie still and that nobody holds or touches rest, as rigid bodies sleep."""
         if self._asleep or self._steps % int(SLEEP_TIME / TIME_STEP):
             return
         vertices, arms = self._cloth.vertices(), self._person.arms()
-        moved = max(float(np.abs(vertices - self._vertices).max()), float(np.abs(arms - self._arms).max()))
+        moved = max(float(np.abs(arms - self._arms).max()), self._objects.moved())
+        moved = max(moved, float(np.abs(vertices - self._vertices).max(initial=0.0)))
         self._vertices, self._arms = vertices, arms
         busy = self._moving_person or self._contact.on_arms or any(grip.kind != "nothing" for grip in self._grips)
         self._asleep = not busy and moved < SLEEP_MOVE and self._steps > 0
@@ -397,11 +453,13 @@ class BulletWorld(World):
         return self._truth.frame(self.time.time, self._vertices_now(), self._robot)
 
     def _draw(self) -> Renderer:
-        return self._backdrop.update(self._vertices_now(), self._person.arms(), self._robot.configuration())
+        vertices, arms, drawn = self._vertices_now(), self._person.arms(), self._objects.drawn()
+        return self._backdrop.update(vertices, arms, self._robot.configuration(), drawn)
 
     def _expose(self) -> Exposure:
         arms, reading = self._person.arms(), self._robot.read()
-        return Exposure(time=self.time.time, vertices=self._vertices_now(), arms=arms, reading=reading)
+        vertices, drawn = self._vertices_now(), self._objects.drawn()
+        return Exposure(time=self.time.time, vertices=vertices, arms=arms, reading=reading, objects=drawn)
 
     def _vertices_now(self) -> np.ndarray:
         return self._vertices if self._asleep else self._cloth.vertices()

@@ -3,14 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from ..scene.person_spec import ARM_SEGMENTS
 from ..segments import segment_distances
 from ..world import SIDES
-from .truth_file import Truth
 from .unharmed_rows import UnharmedRows
+
+
+class ArmMotion(Protocol):
+    """Where the person's arms were: (T,) [s], (T, 2, 4, 3) [m], (2, 3) [m]."""
+
+    @property
+    def t(self) -> np.ndarray:
+        """World clock."""
+        ...
+
+    @property
+    def arms(self) -> np.ndarray:
+        """Shoulder, elbow, wrist, fingertip of the left and the right arm."""
+        ...
+
+    @property
+    def arm_radii(self) -> np.ndarray:
+        """Of upper arm, forearm and hand."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +66,7 @@ class Clearance:
         return float(gap[frame, link, part]), frame, self.links[link], self.parts[chosen[part]]
 
 
-def clearance(truth: Truth, rows: UnharmedRows) -> Clearance:
+def clearance(truth: ArmMotion, rows: UnharmedRows) -> Clearance:
     """Every link against head, neck, trunk, legs and the arms where they are, frame by frame."""
     arms, body, robot = (array.astype(np.float64) for array in (truth.arms, rows.person_capsules, rows.robot_capsules))
     count = len(truth.t)

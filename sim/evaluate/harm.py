@@ -6,7 +6,7 @@ import numpy as np
 
 from ..world import SIDES
 from . import limits
-from .clearance import clearance
+from .clearance import ArmMotion, clearance
 from .coverage import layers
 from .face import face_covered
 from .findings import Findings
@@ -23,20 +23,21 @@ def find_harm(truth: Truth, rows: UnharmedRows, outside_out: float) -> Findings:
         outside_out: part of the covered torso with the outside of the gown out.
     """
     found = Findings()
-    _look_at_wrists(truth, rows, found)
-    _look_at_robot(truth, rows, found)
+    look_at_wrists(truth, rows, found)
+    look_at_robot(truth, rows, found)
     _look_at_face(truth, rows, found)
     _look_at_gown(truth, rows, outside_out, found)
-    _look_at_forces(truth, rows, found)
+    look_at_forces(truth, rows, found)
     return found
 
 
-def wrists_above_bed(truth: Truth, rows: UnharmedRows) -> np.ndarray:
+def wrists_above_bed(truth: ArmMotion, rows: UnharmedRows) -> np.ndarray:
     """(T, 2) height of the left and right wrist above the mattress [m]."""
     return truth.arms[:, :, 2, 2].astype(np.float64) - rows.bed_top
 
 
-def _look_at_wrists(truth: Truth, rows: UnharmedRows, found: Findings) -> None:
+def look_at_wrists(truth: ArmMotion, rows: UnharmedRows, found: Findings) -> None:
+    """Do both arms lie in the end?"""
     held = truth.t >= truth.t[-1] - limits.HOLD
     for side, high in zip(SIDES, wrists_above_bed(truth, rows)[held].max(axis=0), strict=True):
         found.numbers[f"wrist_{side}_above_bed_m"] = float(high)
@@ -47,7 +48,8 @@ def _look_at_wrists(truth: Truth, rows: UnharmedRows, found: Findings) -> None:
             )
 
 
-def _look_at_robot(truth: Truth, rows: UnharmedRows, found: Findings) -> None:
+def look_at_robot(truth: ArmMotion, rows: UnharmedRows, found: Findings) -> None:
+    """Is a link of the robot inside the person at any time?"""
     near = clearance(truth, rows)
     for name, parts, allowed in (
         ("robot_depth_head_m", near.head, limits.ROBOT_DEPTH_HEAD_MAX),
@@ -104,7 +106,8 @@ def _look_at_gown(truth: Truth, rows: UnharmedRows, outside_out: float, found: F
         )
 
 
-def _look_at_forces(truth: Truth, rows: UnharmedRows, found: Findings) -> None:
+def look_at_forces(truth: ArmMotion, rows: UnharmedRows, found: Findings) -> None:
+    """Is a part of the body pressed harder than it may be at any time?"""
     force = np.nan_to_num(rows.person_force.astype(np.float64), nan=0.0, posinf=np.inf)  # NaN: not measured
     for k, part in enumerate(rows.person_parts):
         name = f"force_{part}_n"

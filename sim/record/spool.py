@@ -7,6 +7,7 @@ short by a crash is ignored.  `write_npz` turns a spool into truth.npz a few fra
 from __future__ import annotations
 
 import errno
+import json
 import zipfile
 from pathlib import Path
 
@@ -61,11 +62,17 @@ class Spool:
             raise RecordError(f"torso_front has {points} points, but the first frame has {first}")
         row = np.zeros((), dtype=row_type)
         for name in row_type.names or ():
-            row[name] = getattr(frame, name)
+            row[name] = frame.value(name)
         rest = memoryview(row.tobytes())
         try:
             if self._row_type is None:
-                np.savez(self.folder / "static.npz", torso_points=np.int64(points), **self.static.arrays())  # pyright: ignore[reportArgumentType] the stub knows no ** of arrays
+                shapes = {name: np.shape(state) for name, state in frame.objects.items()}
+                np.savez(  # pyright: ignore[reportArgumentType] the stub knows no ** of arrays
+                    self.folder / "static.npz",
+                    torso_points=np.int64(points),
+                    object_shapes=np.array(json.dumps(shapes)),
+                    **self.static.arrays(),  # pyright: ignore[reportArgumentType]
+                )
                 self._row_type = row_type
             while rest:
                 rest = rest[self._file.write(rest) :]
@@ -92,6 +99,7 @@ def open_spool(folder: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
             torso_points=int(static.pop("torso_points")),
             parts=len(static["person_parts"]),
             links=len(static["robot_capsule_names"]),
+            objects=json.loads(str(static.pop("object_shapes", "{}"))),
         )
         rows = (folder / "frames.bin").stat().st_size // row_type.itemsize
         if rows == 0:

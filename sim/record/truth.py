@@ -6,13 +6,14 @@ Skills, trees and perception never import this module; the world writes it, the 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..errors import RecordError
 
 LOOPS = ("armhole_left", "cuff_left", "armhole_right", "cuff_right")
+OBJECT = "object_"  # begins the names of what a task has added
 TORSO_POINTS_MIN = 100  # DESIGN.md: m >= 100
 
 
@@ -49,6 +50,7 @@ class TruthStatic:
         bed_top: height of the mattress under the person [m].
         face: (6,) a point between mouth and nose and the outward normal there [m].
         neckline: (n,) int, vertices of the gown's neckline from end to end.
+        object_faces: name -> (F, 3) int, triangles of each sheet that a task has added.
 
     Raises:
         RecordError: a shape, an index or a loop name is wrong.
@@ -65,6 +67,7 @@ class TruthStatic:
     bed_top: float
     face: np.ndarray
     neckline: np.ndarray
+    object_faces: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Reject a mesh that later frames could not be read against."""
@@ -97,6 +100,7 @@ class TruthStatic:
             "bed_top": np.asarray(self.bed_top, dtype=np.float64),
             "face": np.asarray(self.face, dtype=np.float32),
             "neckline": np.asarray(self.neckline, dtype=np.int32),
+            **{f"{OBJECT}{name}_faces": np.asarray(faces, np.int32) for name, faces in self.object_faces.items()},
         }
 
 
@@ -115,6 +119,8 @@ class TruthFrame:
         person_force: (k,) force on each body part, by cloth and by the robot [N].
         robot_capsules: (r, 7) axis ends and radius of every link above the base [m].
         holds_arm: (2,) int, which arm each hand holds: -1 none, 0 left, 1 right.
+        objects: name -> (7,) position [m] and quaternion x, y, z, w of each rigid object that a task has added, (V, 3)
+            vertices of each sheet [m].
     """
 
     t: float
@@ -127,6 +133,11 @@ class TruthFrame:
     person_force: np.ndarray
     robot_capsules: np.ndarray
     holds_arm: np.ndarray
+    objects: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    def value(self, name: str) -> np.ndarray | float:
+        """The array of this name in `row_type`."""
+        return self.objects[name[len(OBJECT) :]] if name.startswith(OBJECT) else getattr(self, name)
 
     def row_type(self, static: TruthStatic) -> np.dtype:
         """The packed type of one frame on disk, after checking this frame against `static`.
@@ -148,11 +159,14 @@ class TruthFrame:
         _check_shape("person_force", self.person_force, (parts,))
         _check_shape("robot_capsules", self.robot_capsules, (links, 7))
         _check_shape("holds_arm", self.holds_arm, (2,))
-        return frame_type(vertices=vertices, torso_points=points, parts=parts, links=links)
+        objects = {name: np.shape(state) for name, state in self.objects.items()}
+        return frame_type(vertices=vertices, torso_points=points, parts=parts, links=links, objects=objects)
 
 
-def frame_type(*, vertices: int, torso_points: int, parts: int, links: int) -> np.dtype:
-    """Packed type of one frame with `vertices` V, `torso_points` m, `parts` k and `links` r."""
+def frame_type(
+    *, vertices: int, torso_points: int, parts: int, links: int, objects: Mapping[str, tuple[int, ...]] | None = None
+) -> np.dtype:
+    """Packed type of one frame: `vertices` V, `torso_points` m, `parts` k, `links` r, shapes of `objects` by name."""
     return np.dtype(
         [
             ("t", "<f8"),
@@ -165,5 +179,6 @@ def frame_type(*, vertices: int, torso_points: int, parts: int, links: int) -> n
             ("person_force", "<f4", (parts,)),
             ("robot_capsules", "<f4", (links, 7)),
             ("holds_arm", "i1", (2,)),
+            *((f"{OBJECT}{name}", "<f4", shape) for name, shape in (objects or {}).items()),
         ]
     )

@@ -13,7 +13,7 @@ sleeves do not: they resist as shells, and their seams are four layers thick.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -222,3 +222,18 @@ def edge_counts(faces: np.ndarray) -> Counter[tuple[int, int]]:
     """How many faces share each undirected edge (1: a border)."""
     pairs = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     return Counter((int(a), int(b)) for a, b in pairs)
+
+
+def without_cloth(mesh: GownMesh) -> GownMesh:
+    """The mesh of no gown at all: nothing but the names of its landmarks."""
+    none = np.zeros(0, dtype=int)
+    return replace(
+        mesh,
+        vertices=np.zeros((0, 3)),
+        faces=np.zeros((0, 3), dtype=int),
+        labels=none,
+        loops=dict.fromkeys(mesh.loops, none),
+        collar=none,
+        front=none,
+        stays=np.zeros((0, 3), dtype=int),
+    )

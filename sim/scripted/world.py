@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..scene.objects import ObjectError, RoomObject
 from ..world import (
     ARM_JOINTS,
     CAMERAS,
@@ -86,6 +87,8 @@ class ScriptedWorld(World):
         between_fingers: side -> thickness of what the fingers meet when they close [m]; 0 for nothing.
         person_offset: (3,) how far the person has moved [m]; tests and estimators may read it.
         sent: every command, in order.
+        objects: what a task has added, by name; here they only stand in the record of it.
+        has_gown: whether a task has left the gown in the room.
     """
 
     def __init__(
@@ -106,6 +109,8 @@ class ScriptedWorld(World):
         self.between_fingers: dict[Side, float] = {"left": 0.0, "right": 0.0}
         self.person_offset = np.zeros(3)
         self.sent: list[Command] = []
+        self.objects: dict[str, RoomObject] = {}
+        self.has_gown = True
         self._rng = np.random.default_rng(seed)
         self._frames = frames or self._flat_frame
         self._q = np.zeros((2, 7)) if arm_positions is None else np.array(arm_positions, float).reshape(2, 7)
@@ -121,6 +126,18 @@ class ScriptedWorld(World):
         self._opening = np.full(2, STROKE)
         self._opening_goal = np.full(2, STROKE)
         self._force_limit = np.zeros(2)
+
+    # -- what a task brings along ------------------------------------------------------------------------
+
+    def add(self, item: RoomObject) -> None:
+        """Remember an object; raises ObjectError for a name that is taken."""
+        if item.name in self.objects:
+            raise ObjectError(f"there is an object {item.name!r} already")
+        self.objects[item.name] = item
+
+    def remove_gown(self) -> None:
+        """Remember that there is no gown."""
+        self.has_gown = False
 
     # -- senses ------------------------------------------------------------------------------------------
 

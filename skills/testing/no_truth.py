@@ -28,6 +28,7 @@ MODULES = (  # of caretree, with what is below them
     "skills",
     "trees.guard",
     "trees.nodes",
+    "trees.run.parameters",
     "trees.run.stages",
     "trees.tasks",
 )

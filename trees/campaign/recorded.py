@@ -28,6 +28,7 @@ class Recorded:
         rate_hz: ticks a second.
         inject: faults, as on the command line.
         tuning: skill -> number -> value.
+        build: parameter of the task -> value.
         versions: of packages, by name.
     """
 
@@ -42,6 +43,7 @@ class Recorded:
     rate_hz: float = 15.0
     inject: tuple[str, ...] = ()
     tuning: Mapping[str, Mapping[str, Any]]
+    build: Mapping[str, Any]
     versions: Mapping[str, str]
 
 
@@ -63,6 +65,7 @@ def recorded(directory: Path) -> Recorded:
         rate_hz=_value(file, given, "rate_hz", float, _is_rate, 15.0),
         inject=_value(file, given, "inject", tuple, _is_texts, ()),
         tuning=_value(file, given, "tuning", dict, _is_tuning, {}),
+        build=_value(file, given, "build", dict, _is_mapping, {}),
         versions=_value(file, run, "versions", dict, _is_mapping, {}),
         **optional,
     )

@@ -61,7 +61,7 @@ def replay(directory: Path) -> Replay:
             seed=given.seed,
             rate_hz=given.rate_hz,
             senses=senses,
-            params=loaded.parameters(given.stage),
+            params=loaded.values(given.build) | loaded.parameters(given.stage),
             settings=Settings(given.tuning),
         )
         prepare_stage(inner, loaded, given.stage)

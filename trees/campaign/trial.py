@@ -20,6 +20,7 @@ from ...sim.evaluate.verdict import evaluate
 from ...sim.record.folder_claim import FolderClaim, FolderTakenError
 from ...sim.record.record import is_finished, read_run
 from ...sim.record.spool import disk_error
+from ..run.judging import kept
 from ..run.task import JUDGED
 from .child import PARENT
 from .running import Running
@@ -54,6 +55,7 @@ class Trial:
         reason: one sentence.
         dressed: what the evaluator found in the geometry; None where there is none or the task dresses nobody.
         unharmed: the same, dressed or not; None where the record does not tell.
+        reached: what the task's own judge found in the truth; None where it has none.
         problems: of the evaluator.
         numbers: of the evaluator.
         stages: stage name -> status, as the tree said, in order.
@@ -67,6 +69,7 @@ class Trial:
     reason: str
     dressed: bool | None = None
     unharmed: bool | None = None
+    reached: bool | None = None
     problems: tuple[str, ...] = ()
     numbers: Mapping[str, float] = field(default_factory=dict)
     stages: Mapping[str, str] = field(default_factory=dict)
@@ -75,8 +78,13 @@ class Trial:
 
     @property
     def succeeded(self) -> bool:
-        """Dressed by the geometry, or by the tree's word where there is no geometry."""
-        return self.outcome == "success" if self.dressed is None else self.dressed
+        """By the truth, or by the tree's word where nothing was judged."""
+        return self.outcome == "success" if self.judged is None else self.judged
+
+    @property
+    def judged(self) -> bool | None:
+        """What the truth says: of the task's own judge, else whether the person is dressed; None where it is silent."""
+        return self.dressed if self.reached is None else self.reached
 
     def sentence(self, *, whole: bool = True) -> str:
         """How it went in one line; one stage alone cannot be dressed, so `whole=False` leaves the verdict out."""
@@ -85,6 +93,10 @@ class Trial:
             harm = {None: "", True: ", unharmed", False: ", HARMED"}[self.unharmed]
             word = "dressed" if self.dressed else "not dressed"
             told = word + harm + ("" if self._believed() else f" (tree: {told})")
+        elif whole and self.reached is not None:
+            told = ("goal reached" if self.reached else "goal not reached") + (
+                "" if self._believed() else f" (tree: {told})"
+            )
         why = self.reason if self.outcome != "success" else "; ".join(self.problems[:2]) if whole else ""
         took = ""
         if self.sim_time_s is not None and self.wall_time_s is not None:
@@ -93,7 +105,7 @@ class Trial:
 
     def _believed(self) -> bool:
         """Whether the tree said what the evaluator found."""
-        return self.dressed == (self.outcome == "success")
+        return self.judged == (self.outcome == "success")
 
 
 def read_trial(directory: Path) -> Trial | None:
@@ -134,6 +146,9 @@ def judge_run(directory: Path, seed: int) -> Trial:
         sim_time_s=run.get("sim_time_s"),
         wall_time_s=run.get("wall_time_s"),
     )
+    if (judgement := kept(run)) is not None:
+        numbers = dict(judgement.numbers)
+        return replace(told, reached=judgement.success, problems=judgement.problems, numbers=numbers)
     if run.get("world") != "bullet" or Path(str(run.get("task"))).stem not in JUDGED:  # no truth, or nobody to dress
         return told
     try:

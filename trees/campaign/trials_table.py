@@ -62,9 +62,11 @@ def whole_runs(trials: dict[str, list[Trial]]) -> dict[str, SuccessRate]:
         counts["unharmed"] = sum(bool(trial.unharmed) for trial in whole)
     elif any(trial.dressed is not None for trial in whole):
         counts["dressed"] = sum(bool(trial.dressed) for trial in whole)
+    elif any(trial.reached is not None for trial in whole):
+        counts["goal reached"] = sum(bool(trial.reached) for trial in whole)
     counts["claimed"] = sum(trial.outcome == "success" for trial in whole)
-    if any(trial.dressed is not None for trial in whole):
-        counts["wrongly claimed"] = sum(trial.outcome == "success" and trial.dressed is False for trial in whole)
+    if any(trial.judged is not None for trial in whole):
+        counts["wrongly claimed"] = sum(trial.outcome == "success" and trial.judged is False for trial in whole)
     return {name: SuccessRate(successes=count, trials=len(whole)) for name, count in counts.items()}
 
 
@@ -85,8 +87,8 @@ def table(trials: dict[str, list[Trial]]) -> str:
         for line in (head, *body)
     ]
     whole = trials.get(OVERALL, [])
-    wrong = [trial.seed for trial in whole if trial.dressed not in (None, trial.outcome == "success")]
-    judged = any(trial.dressed is not None for trial in whole)
+    wrong = [trial.seed for trial in whole if trial.judged not in (None, trial.outcome == "success")]
+    judged = any(trial.judged is not None for trial in whole)
     source = "by the evaluator, from the geometry alone" if judged else "as the tree says too"
     if whole:
         lines += ["", "whole runs", *(f"  {name}: {rate}" for name, rate in whole_runs(trials).items())]

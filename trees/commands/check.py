@@ -24,6 +24,8 @@ def main(options: argparse.Namespace) -> int:
         rehearsal = rehearse(task)
         report.findings += rehearsal.findings
         report.notes += rehearsal.notes
+    for parameter in task.declared.values():
+        print(f"parameter: {parameter.line()}")
     for finding in report.findings:
         print(f"fault: {finding}")
     for note in report.notes:

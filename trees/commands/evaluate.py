@@ -1,4 +1,7 @@
-"""`caretree evaluate DIR`: is the person dressed, and unharmed?  Decided from the recorded geometry alone."""
+"""`caretree evaluate DIR`: did the run reach its goal?  Decided from the recorded truth alone.
+
+A task's own judge is asked where the task has one; else whether the person is dressed, and unharmed.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,18 @@ import argparse
 import json
 from pathlib import Path
 
+from ...sim.record.record import read_run
+from ..run.task import Task, TaskError, load_task
+
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the command line; `main` runs it."""
     parser = subparsers.add_parser(
         "evaluate",
-        help="say from the record alone whether the person is dressed and unharmed",
-        description="Decide from DIR/truth.npz alone whether the person is dressed and, where the record tells, "
-        "unharmed.  Exit status 0: both, 1: not, 2: the record cannot be read.",
+        help="say from the record alone whether the run reached its goal",
+        description="Decide from DIR/truth.npz alone what the task's own judge decides, or, where it has none, whether "
+        "the person is dressed and, where the record tells, unharmed.  Exit status 0: yes, 1: no, 2: the record "
+        "cannot be read.",
     )
     parser.add_argument("directory", type=Path, metavar="DIR")
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
@@ -21,13 +28,28 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def main(args: argparse.Namespace) -> int:
-    """Print the verdict; 0 dressed and not harmed, 1 not.
+    """Print the verdict; 0 goal reached (dressed and not harmed), 1 not.
 
     Raises:
-        RecordError: the record cannot be read.
+        CaretreeError: the record cannot be read, or the task's own judge fails.
     """
     from ...sim.evaluate.verdict import evaluate
 
+    task = _with_judge(args.directory)
+    if task is not None:
+        judgement = task.judged(args.directory)
+        print(json.dumps(judgement.as_dict(), indent=1) if args.json else judgement)
+        return 0 if judgement.success else 1
     verdict = evaluate(args.directory)
     print(json.dumps(verdict.as_dict(), indent=1) if args.json else verdict)
     return 0 if verdict.dressed else 1
+
+
+def _with_judge(directory: Path) -> Task | None:
+    """The task of the record, if it is here and has a judge of its own."""
+    name = str(read_run(directory).get("task"))
+    try:
+        task = load_task(name)
+    except TaskError:  # a record from elsewhere
+        return None
+    return task if task.judge is not None else None

@@ -13,6 +13,7 @@ from ...perception.senses import Senses
 from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.command_line import drop_output
 from ...sim.errors import CaretreeError, DisplayError, RecordError
+from ...sim.evaluate.run_record import Judgement
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.fence import fenced, said
 from ...sim.record.folder_claim import FolderClaim, claim_free
@@ -20,14 +21,14 @@ from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
 from ...sim.world import World
 from ...sim.world_kind import WorldKind
-from ...skills.core.settings import Settings
 from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
+from ..run.judging import judge_and_keep
 from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
-from ..run.tuning import read_settings
+from ..run.tuning import Given, read_given
 from ..run.worlds import make_world, prepare_stage
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def show(progress: Progress) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Run the task; 0 when it succeeded, else 1.
+    """Run the task; 0 when it succeeded, for its own judge too if it has one, else 1.
 
     Raises:
         CaretreeError: the input is bad, or some of the record could not be written.
@@ -63,7 +64,8 @@ def main(options: argparse.Namespace) -> int:
     if not options.unchecked:
         _refuse_faulty(task, options.stage)
     faults = [parse_fault(text) for text in options.inject]
-    settings = read_settings(options.set, options.tuning)
+    given = read_given(options.set, options.tuning)
+    given = replace(given, parameters=task.values(given.parameters))
     parameters = {
         "world_kind": WorldKind.named(options.world_kind).name,
         "gown": options.gown,
@@ -72,7 +74,8 @@ def main(options: argparse.Namespace) -> int:
         "inject": options.inject,
         "rate_hz": RATE_HZ,
         "stage": options.stage,
-        "tuning": settings.values,
+        "tuning": given.settings.values,
+        "build": given.parameters,
     }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
     view = _view(options)
@@ -94,7 +97,7 @@ def main(options: argparse.Namespace) -> int:
                 kind=options.world_kind,
             )
             try:
-                return _run(options, task, inner, senses, faults, settings, parameters, claim, signals, view)
+                return _run(options, task, inner, senses, faults, given, parameters, claim, signals, view)
             finally:
                 inner.close()
     finally:
@@ -140,7 +143,7 @@ def _run(
     inner: World,
     senses: Senses | None,
     faults: list[FaultSpec],
-    settings: Settings,
+    given: Given,
     parameters: dict[str, Any],
     claim: FolderClaim,
     signals: StopSignals,
@@ -156,8 +159,8 @@ def _run(
         recorder=events,
         on_progress=events.progress,
         senses=senses,
-        params=task.parameters(options.stage),
-        settings=settings,
+        params=given.parameters | task.parameters(options.stage),
+        settings=given.settings,
         before_tick=view.before_tick if view else None,
     )
     witness = Witness()
@@ -186,6 +189,7 @@ def _run(
         problem = _finish(recorder, result)
     finally:
         recorder.close()
+    judgement, misjudged = _judged(task, directory)
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
     if isinstance(world, FaultyWorld):
         _tell_faults(world)
@@ -193,12 +197,23 @@ def _run(
         fenced(view.finish, lambda error: print(f"the view failed: {said(error)}"))(result.reason)
         print(f"look at it again: caretree view {directory}")
     print(f"{result.outcome.replace('_', ' ')}: {result.reason}")
+    if judgement is not None:
+        print(f"judged from the truth: {judgement}")
     for path in written:
         if path is not None and path.exists():
             print(path)
-    if problem is not None:
-        raise problem
-    return 0 if result.outcome == "success" else 1
+    for error in (problem, misjudged):
+        if error is not None:
+            raise error
+    return 0 if result.outcome == "success" and (judgement is None or judgement.success) else 1
+
+
+def _judged(task: Task, directory: Path) -> tuple[Judgement | None, CaretreeError | None]:
+    """What the task's own judge says, if it has one; its own error is told after the outcome."""
+    try:
+        return judge_and_keep(task, directory), None
+    except CaretreeError as error:
+        return None, error
 
 
 def _finish(recorder: Recorder, result: RunResult) -> RecordError | None:

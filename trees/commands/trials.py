@@ -51,8 +51,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--set",
         action="append",
         default=[],
-        metavar="SKILL.NUMBER=VALUE",
-        help="a number in every run; may be repeated",
+        metavar="NAME=VALUE",
+        help="a parameter of the task, or SKILL.NUMBER=VALUE, in every run; may be repeated",
     )
     parser.set_defaults(main=main)
 

@@ -12,11 +12,13 @@ from typing import Any
 
 from ...sim.errors import CaretreeError
 from ...sim.evaluate import limits
+from ...sim.evaluate.run_record import Judgement
 from ...sim.evaluate.series import read_series
 from ...sim.evaluate.verdict import Verdict, evaluate
 from ...sim.record.record import REPORT_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, is_finished, read_run
 from ...sim.record.spool import disk_error
 from ...sim.record.video import read_pictures
+from ..run.judging import kept
 from ..run.task import JUDGED
 from . import figures as report_figures
 from .looks import Look, drawn, read_looks
@@ -168,10 +170,23 @@ def _facts(run: Mapping[str, Any]) -> str:
 
 
 def _verdict(directory: Path, run: Mapping[str, Any]) -> str:
-    """The project's own evaluator, from the geometry alone; other tasks than dressing do not ask it."""
+    """The task's own judge, or the project's evaluator, from the truth alone; other tasks ask nobody."""
+    if (judgement := kept(run)) is not None:
+        return _own(judgement)
     if Path(str(run.get("task"))).stem not in JUDGED:
         return '<p class="soft">Not asked of this task; <code>caretree evaluate DIR</code> asks it of any record.</p>'
     return _judged(evaluate(directory))
+
+
+def _own(judgement: Judgement) -> str:
+    """What the task's own judge says."""
+    kind, word = ("good", "goal reached") if judgement.success else ("bad", "goal not reached")
+    says = "Decided by the task's own judge from the recorded truth, whatever the tree says of itself."
+    problems = "".join(f"<li>{_text(problem)}</li>" for problem in judgement.problems)
+    rows = [(_text(name.replace("_", " ")), f"{value:.3g}") for name, value in judgement.numbers.items()]
+    table = _table(("number", "value"), rows, numeric=(1,)) if rows else ""
+    badge = f'<p><span class="badge {kind}">{word}</span> <span class="soft">{_text(says)}</span></p>'
+    return badge + (f"<ul>{problems}</ul>" if problems else "") + table
 
 
 def _judged(verdict: Verdict) -> str:

@@ -7,7 +7,11 @@ A module may also have
 - `STAGES`, a dictionary of `TaskStage` by name and in order: `--stage` then runs some of them alone, and `build` is
   given their names as `stages`;
 - `senses(context) -> Senses`: what sees, unless the run was given others; called before `build`;
+- `scene(world, seed)`, which furnishes the room before the run: `world.add(Box(...))`, `world.remove_gown()`;
+- `judge(record) -> Judgement`, which decides from the truth of a run whether it reached its goal;
 - `CONDITIONS`, the functions that its conditions ask, so that a tree in XML can name them.
+
+Arguments of `build` that are declared as parameters (`parameters.py`) are set with `--set NAME=VALUE`.
 
 A user's own file works the same: `caretree run path/to/task.py`; so does a tree in XML, `path/to/task.xml`.
 """
@@ -28,7 +32,9 @@ from typing import Any, cast
 from py_trees.behaviour import Behaviour
 
 from ...perception.senses import Senses
+from ...sim.abilities import SupportsObjects
 from ...sim.errors import CaretreeError
+from ...sim.evaluate.run_record import Judgement, RunRecord
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import World
 from ...skills.core.context import Context
@@ -39,6 +45,7 @@ from ..btcpp.document import XmlError
 from ..btcpp.files import TreeFiles
 from ..btcpp.vocabulary import Vocabulary
 from ..tasks import task_names
+from .parameters import BuildParameter, ParameterError, all_values, parameters_of
 from .shape import ShapeError, check_shape
 from .stages import TaskStage, span_of
 from .time_limit import LOADING, TimeLimit, TookTooLongError
@@ -63,6 +70,9 @@ class Task:
         stages: by name and in order, if its module names any.
         senses: `senses(context)` of its module, if it has one.
         module: that it is written in, which has its own skills and conditions.
+        scene: `scene(world, seed)` of its module, if it has one.
+        judge: `judge(record)` of its module, if it has one.
+        declared: parameters of `function`, by name.
     """
 
     name: str
@@ -72,6 +82,52 @@ class Task:
     stages: Mapping[str, TaskStage] = field(default_factory=dict)
     senses: Callable[[Context], Senses] | None = None
     module: ModuleType | None = None
+    scene: Callable[[SupportsObjects, int], None] | None = None
+    judge: Callable[[RunRecord], Judgement] | None = None
+    declared: Mapping[str, BuildParameter] = field(default_factory=dict)
+
+    def values(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The value of each parameter of the task: the given one, or its default.
+
+        Raises:
+            ParameterError: the task has no such parameter, or a value will not do.
+        """
+        return all_values(self.declared, given, self.name)
+
+    def furnish(self, world: World, seed: int) -> None:
+        """Let the task put its objects into a world that has not begun.
+
+        Raises:
+            TaskError: its scene fails, or this world takes no objects.
+        """
+        if self.scene is None:
+            return
+        if not isinstance(world, SupportsObjects):
+            raise TaskError(f"task {self.name!r} brings a scene along, but {type(world).__name__} takes no objects")
+        try:
+            with TimeLimit(LOADING):
+                self.scene(world, seed)
+        except FROM_ITS_CODE as error:
+            raise TaskError(_located(self.file, error)) from error
+
+    def judged(self, directory: Path) -> Judgement:
+        """What the task's own judge says of the record in `directory`.
+
+        Raises:
+            RecordError: the record lacks its truth.
+            TaskError: there is no judge, its code fails, or it returns something else.
+        """
+        if self.judge is None:
+            raise TaskError(f"{self.file}:1: task {self.name!r} has no judge(record)")
+        record = RunRecord(directory)
+        try:
+            with TimeLimit(LOADING):
+                found = self.judge(record)
+        except FROM_ITS_CODE as error:
+            raise TaskError(_located(self.file, error)) from error
+        if not isinstance(found, Judgement):
+            raise TaskError(f"{self.file}:1: judge() returned {type(found).__name__}, but a Judgement is asked for")
+        return found
 
     def parameters(self, stage: str | None) -> dict[str, Any]:
         """What `build` is given to run a stage or a span of them alone; nothing for the whole task (None).
@@ -104,12 +160,14 @@ class Task:
             TaskError: the file's own code fails, or its senses lack some that skills may ask for.
         """
         if self.script is None:
-            return ScriptedWorld(seed=seed), None
-        try:
-            with TimeLimit(LOADING):
-                world, senses = self.script(seed)
-        except FROM_ITS_CODE as error:
-            raise TaskError(_located(self.file, error)) from error
+            world, senses = ScriptedWorld(seed=seed), None
+        else:
+            try:
+                with TimeLimit(LOADING):
+                    world, senses = self.script(seed)
+            except FROM_ITS_CODE as error:
+                raise TaskError(_located(self.file, error)) from error
+        self.furnish(world, seed)
         if senses is not None and not isinstance(senses, Senses):
             raise TaskError(f"{self.file}:1: scripted() gave {type(senses).__name__} as senses, which is no Senses")
         return world, senses
@@ -143,8 +201,7 @@ class Task:
         return root
 
     def _line(self) -> str:
-        code = getattr(self.function, "__code__", None)
-        return f"{self.file}:{code.co_firstlineno if code else 1}"
+        return f"{self.file}:{_first_line(self.function)}"
 
 
 def load_task(name: str) -> Task:
@@ -194,8 +251,8 @@ def _load_xml(path: Path) -> Task:
         return Builder(files, vocabulary, context).build()
 
     first = modules[0] if modules else None
-    script, senses = getattr(first, "scripted", None), getattr(first, "senses", None)
-    return Task(path.stem, build, path, script, senses=senses, module=first)
+    script, senses, scene, judge = (getattr(first, name, None) for name in ("scripted", "senses", "scene", "judge"))
+    return Task(path.stem, build, path, script, senses=senses, module=first, scene=scene, judge=judge)
 
 
 def _load_file(path: Path) -> Task:
@@ -232,9 +289,43 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
     ):
         raise TaskError(f"{file}:1: STAGES is a dictionary of TaskStage by names of letters, digits and underscores")
     function = cast(Callable[..., Behaviour], build)
+    for brought, arguments in (("scene", ("world", "seed")), ("judge", ("record",)), ("scripted", ("seed",))):
+        _check_callable(module, brought, arguments, file)
+    try:
+        declared = parameters_of(function)
+    except ParameterError as error:
+        raise TaskError(f"{file}:{_first_line(function)}: {error}") from error
     return Task(
-        name, function, file, getattr(module, "scripted", None), stages, getattr(module, "senses", None), module
+        name,
+        function,
+        file,
+        getattr(module, "scripted", None),
+        stages,
+        getattr(module, "senses", None),
+        module,
+        getattr(module, "scene", None),
+        getattr(module, "judge", None),
+        declared,
     )
+
+
+def _check_callable(module: ModuleType, name: str, arguments: tuple[str, ...], file: Path) -> None:
+    """Refuse a part of a task that cannot be called as it will be."""
+    found = getattr(module, name, None)
+    if found is None:
+        return
+    asked = f"{name}({', '.join(arguments)})"
+    if not callable(found):
+        raise TaskError(f"{file}:1: {name} is a {type(found).__name__}, but a function {asked} is asked for")
+    try:
+        inspect.signature(found).bind(*arguments)
+    except TypeError as error:
+        raise TaskError(f"{file}:{_first_line(found)}: {asked} is called, but: {error}") from error
+
+
+def _first_line(function: Callable[..., Any]) -> int:
+    code = getattr(function, "__code__", None)
+    return code.co_firstlineno if code else 1
 
 
 def _located(file: Path, error: BaseException) -> str:

@@ -1,8 +1,12 @@
-"""Numbers of skills from the command line, `--set SKILL.NUMBER=VALUE`, and from a tuning file."""
+"""Numbers of skills and parameters of the task, from the command line and from a tuning file.
+
+`--set SKILL.NUMBER=VALUE` sets a number of a skill, `--set NAME=VALUE` a parameter of the task; a file holds both.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,32 +17,51 @@ from ...sim.yaml_text import load_yaml
 from ...skills.core.settings import Settings
 
 
-def read_settings(assignments: Sequence[str], file: str | None = None) -> Settings:
-    """The numbers in `file`, with those of `assignments` in their place where both name one.
+@dataclass(frozen=True)
+class Given:
+    """What a run is given in numbers.
+
+    Attributes:
+        settings: of skills.
+        parameters: of the task, name -> value, as it was written.
+    """
+
+    settings: Settings = field(default_factory=Settings)
+    parameters: dict[str, Any] = field(default_factory=dict)
+
+
+def read_given(assignments: Sequence[str], file: str | None = None) -> Given:
+    """What `file` sets, with what `assignments` set in its place where both name one.
 
     Args:
-        assignments: `present_sleeve.max_load=3.5`; a value is written as in YAML: `3.5`, `true`, `[0.1, 0.2]`.
-        file: YAML: skill -> number -> value.
+        assignments: `present_sleeve.max_load=3.5`, `seconds=8`; a value is written as in YAML: `3.5`, `true`,
+            `[0.1, 0.2]`.
+        file: YAML: skill -> number -> value, and parameter -> value.
 
     Raises:
         CaretreeError: an assignment or the file does not have that form, or the file cannot be read.
     """
-    values = _from_file(Path(file)) if file else {}
+    values, parameters = _from_file(Path(file)) if file else ({}, {})
     for text in assignments:
         name, equals, value = text.partition("=")
         skill, dot, number = name.strip().partition(".")
-        if not (equals and dot and skill and number and value.strip()):
+        if not (equals and skill and bool(dot) == bool(number) and value.strip()):
             raise CaretreeError(
-                f"--set is {text!r}, but SKILL.NUMBER=VALUE is asked for, as present_sleeve.max_load=3.5"
+                f"--set is {text!r}, but SKILL.NUMBER=VALUE, as present_sleeve.max_load=3.5, or NAME=VALUE for a "
+                "parameter of the task is asked for"
             )
         try:
-            values.setdefault(skill, {})[number] = load_yaml(value)
+            read = load_yaml(value)
         except yaml.YAMLError:
             raise CaretreeError(f"--set {name}: {value!r} is no number, truth value or list of numbers") from None
-    return Settings(values)
+        if dot:
+            values.setdefault(skill, {})[number] = read
+        else:
+            parameters[skill] = read
+    return Given(Settings(values), parameters)
 
 
-def _from_file(path: Path) -> dict[str, dict[str, Any]]:
+def _from_file(path: Path) -> tuple[dict[str, dict[str, Any]], dict[str, Any]]:
     try:
         content = load_yaml(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -48,8 +71,11 @@ def _from_file(path: Path) -> dict[str, dict[str, Any]]:
         raise CaretreeError(f"{path}:{line}: {error.problem or 'no YAML'}") from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise CaretreeError(f"{path}:1: no YAML text") from error
-    if not isinstance(content, dict) or not all(isinstance(numbers, dict) for numbers in content.values()):
+    if not isinstance(content, dict) or any(isinstance(value, list) for value in content.values()):
         raise CaretreeError(
-            f"{path}:1: a tuning file maps skills to numbers to values: `present_sleeve: {{max_load: 3.5}}`"
+            f"{path}:1: a tuning file maps skills to numbers to values, `present_sleeve: {{max_load: 3.5}}`, and "
+            "parameters of the task to values"
         )
-    return {str(skill): {str(number): value for number, value in found.items()} for skill, found in content.items()}
+    skills = {str(skill): found for skill, found in content.items() if isinstance(found, dict)}
+    values = {skill: {str(number): value for number, value in found.items()} for skill, found in skills.items()}
+    return values, {str(name): value for name, value in content.items() if not isinstance(value, dict)}

@@ -26,7 +26,7 @@ def make_world(
     model: str | None = None,
     kind: str = EASY,
 ) -> tuple[World, Senses | None]:
-    """The world called `name`, made as hard as `kind` says, and its senses where these are scripted.
+    """The world called `name`, as hard as `kind` says and furnished by the task; its senses where these are scripted.
 
     Raises:
         CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
@@ -46,7 +46,13 @@ def make_world(
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind}
     options = {key: value for key, value in options.items() if value is not None}
-    return BulletWorld(seed=seed, **options), None
+    world = BulletWorld(seed=seed, **options)
+    try:
+        task.furnish(world, seed)
+    except CaretreeError:
+        world.close()
+        raise
+    return world, None
 
 
 def prepare_stage(world: World, task: Task, stage: str | None) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from py_trees.behaviour import Behaviour
 
 from ...sim.world import Side
@@ -13,6 +15,7 @@ from ...skills.move_joint import MoveJoint
 from ...skills.retreat import Retreat
 from ..nodes.composers import sequence
 from ..nodes.decorators import FailSafe, RecoverBy, Stage, Timeout
+from ..run.parameters import Parameter
 
 
 def fingers_apart(context: Context) -> bool:
@@ -23,7 +26,7 @@ def fingers_apart(context: Context) -> bool:
 CONDITIONS = (fingers_apart,)
 
 
-def build(context: Context, side: Side = "left") -> Behaviour:
+def build(context: Context, side: Annotated[Side, Parameter("hand of the robot that waves")] = "left") -> Behaviour:
     """Wave once with `side`; if a command is lost, wait and try again."""
     where = Key("wave_before")
     wave = sequence(

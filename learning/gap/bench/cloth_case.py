@@ -13,7 +13,7 @@ import yaml
 
 from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
-from ..cloth.obj import write_obj
+from ....sim.obj_file import write_obj
 from ..cloth.scene import ClothEpisode, read_scene
 from ..cloth.simulate import simulate
 from ..measurement import Episode, MeasurementSet

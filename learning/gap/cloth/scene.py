@@ -10,10 +10,10 @@ import numpy as np
 
 from ....sim.bullet.soft_world import GRAVITY, STABILITY_MAX
 from ....sim.effects.cloth.proxy_bodies import PROXY_MASS, proxy_count
+from ....sim.obj_file import read_obj
 from ..errors import GapError
 from ..measurement import Episode, MeasurementSet, require_columns
 from ..table import read_table
-from .obj import read_obj
 
 DEFAULTS = {
     "mass": 0.25,

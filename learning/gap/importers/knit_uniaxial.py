@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..cloth.obj import write_obj
+from ....sim.obj_file import write_obj
 from ..table import write_table
 from .setting import write_set
 

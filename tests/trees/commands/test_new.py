@@ -26,7 +26,7 @@ def test_a_new_task_holds_runs_and_passes_its_tests(capsys):
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "."], capture_output=True, text=True
     )
     assert tested.returncode == 0, tested.stdout
-    assert "4 passed" in tested.stdout
+    assert "8 passed" in tested.stdout
 
 
 def test_a_fault_at_any_skill_of_it_is_survived():

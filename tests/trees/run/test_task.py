@@ -230,3 +230,60 @@ def test_numbers_that_are_not_there_are_refused(tmp_path, monkeypatch, capsys, s
     assert run_tuned(tmp_path, monkeypatch, "--set", setting) == 2
     assert words in capsys.readouterr().err
     assert not (tmp_path / "record" / "run.json").exists()
+
+
+FURNISHED = (
+    GOOD
+    + """
+
+def scene(world, seed):
+    from caretree.sim.scene.objects import Box
+
+    world.add(Box(name="table", size=(0.4, 0.4, 0.7), position_in_map=(1.5, 1.0, 0.35)))
+    world.remove_gown()
+"""
+)
+
+
+def test_a_scene_furnishes_the_scripted_twin_too(tmp_path):
+    path = tmp_path / "greet.py"
+    path.write_text(FURNISHED)
+    world, _ = load_task(str(path)).scripted(0)
+    assert list(world.objects) == ["table"]
+    assert not world.has_gown
+
+
+@pytest.mark.parametrize(
+    ("added", "words"),
+    [
+        ("def scene(world):\n    pass\n", r"greet.py:\d+: scene\(world, seed\) is called, but"),
+        ("judge = 3\n", "judge is a int, but a function"),
+        ("def scene(world, seed):\n    world.add(3)\n", r"greet.py:\d+: AttributeError"),
+        ("def scene(world, seed):\n    1 / 0\n", r"greet.py:\d+: ZeroDivisionError"),
+    ],
+)
+def test_a_wrong_scene_or_judge_is_told_with_its_line(tmp_path, added, words):
+    path = tmp_path / "greet.py"
+    path.write_text(f"{GOOD}\n\n{added}")
+    with pytest.raises(TaskError, match=words):
+        load_task(str(path)).scripted(0)
+
+
+def test_what_a_judge_returns_is_checked(tmp_path, make_record):
+    path = tmp_path / "greet.py"
+    path.write_text(f"{GOOD}\n\ndef judge(record):\n    return True\n")
+    with pytest.raises(TaskError, match=r"judge\(\) returned bool, but a Judgement"):
+        load_task(str(path)).judged(make_record(tmp_path / "run"))
+
+
+def test_a_parameter_that_a_task_does_not_have_ends_with_status_2(tmp_path, capsys):
+    assert main(["run", "wave", "--world", "scripted", "--out", str(tmp_path / "r"), "--set", "arm=left"]) == 2
+    assert "no parameter 'arm'; it has side" in capsys.readouterr().err
+
+
+def test_a_parameter_is_set_and_recorded(tmp_path):
+    out = tmp_path / "r"
+    assert main(["run", "wave", "--world", "scripted", "--out", str(out), "--set", "side=right"]) == 0
+    assert json.loads((out / "run.json").read_text())["parameters"]["build"] == {"side": "right"}
+    assert "right_w1" in (out / "trace.jsonl").read_text()
+    assert main(["replay", str(out)]) == 0

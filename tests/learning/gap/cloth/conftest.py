@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import yaml
-from caretree.learning.gap.cloth.obj import write_obj
+from caretree.sim.obj_file import write_obj
 
 
 @pytest.fixture

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import yaml
 from caretree.learning.gap.cloth.scene import read_scene
-from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import load_set
+from caretree.sim.errors import CaretreeError
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,7 @@ from caretree.learning.gap.measurement import load_set
 def test_a_set_that_does_not_fit_is_refused(cloth_set, change, words):
     file = cloth_set / "measurement.yaml"
     file.write_text(yaml.safe_dump({**yaml.safe_load(file.read_text()), **change}))
-    with pytest.raises(GapError, match=words):
+    with pytest.raises(CaretreeError, match=words):
         read_scene(load_set(cloth_set))
 
 
@@ -43,7 +43,7 @@ def test_numbers_in_a_wrong_unit_are_refused(cloth_set, column, factor, words):
     header = (cloth_set / "e1.csv").read_text().splitlines()[0]
     table[:, column] *= factor
     np.savetxt(cloth_set / "e1.csv", table, delimiter=",", header=header, comments="")
-    with pytest.raises(GapError, match=words):
+    with pytest.raises(CaretreeError, match=words):
         read_scene(load_set(cloth_set))
 
 

@@ -1,4 +1,4 @@
-"""Read a triangle mesh from an OBJ file, strictly: PyBullet hangs on a bad one.
+"""Triangle meshes in OBJ files, read strictly: PyBullet hangs on a bad one.
 
 Triangles after a line `g stays` are springs alone, as a garment's seams and tapes: no air acts on them.
 """
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import GapError
+from .errors import CaretreeError
 
 MAX_VERTICES = 8192  # vertices a PyBullet soft body takes on every platform
 
@@ -18,10 +18,10 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Vertices (V, 3) [m], triangles (F, 3) and stays (S, 3); polygons are split into fans.
 
     Raises:
-        GapError: the file is missing, empty, too large or names vertices that do not exist.
+        CaretreeError: the file is missing, empty, too large or names vertices that do not exist.
     """
     if not path.is_file():
-        raise GapError(f"{path}: no such file")
+        raise CaretreeError(f"{path}: no such file")
     vertices: list[list[float]] = []
     faces: list[list[int]] = []
     stays: list[list[int]] = []
@@ -36,9 +36,9 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             elif parts[:1] == ["f"]:
                 group += _fan(parts[1:], len(vertices))
         except (ValueError, IndexError):
-            raise GapError(f"{path}: row {row} is '{line[:40]}', not a vertex or a face") from None
+            raise CaretreeError(f"{path}: row {row} is '{line[:40]}', not a vertex or a face") from None
     if not vertices or not faces:
-        raise GapError(f"{path}: the mesh is empty ({len(vertices)} vertices, {len(faces)} faces)")
+        raise CaretreeError(f"{path}: the mesh is empty ({len(vertices)} vertices, {len(faces)} faces)")
     v, f = np.array(vertices, dtype=float), np.array(faces, dtype=int)
     s = np.array(stays, dtype=int).reshape(-1, 3)
     _check_mesh(path, v, np.vstack([f, s]))
@@ -54,15 +54,15 @@ def _fan(corners: list[str], vertices: int) -> list[list[int]]:
 
 def _check_mesh(path: Path, v: np.ndarray, triangles: np.ndarray) -> None:
     if v.shape[1:] != (3,) or not np.isfinite(v).all():
-        raise GapError(f"{path}: vertices need three finite coordinates")
+        raise CaretreeError(f"{path}: vertices need three finite coordinates")
     if triangles.min() < 0 or triangles.max() >= len(v):
-        raise GapError(f"{path}: a face names vertex {int(triangles.max()) + 1}, there are {len(v)}")
+        raise CaretreeError(f"{path}: a face names vertex {int(triangles.max()) + 1}, there are {len(v)}")
     if len(v) > MAX_VERTICES:
-        raise GapError(f"{path}: {len(v)} vertices, at most {MAX_VERTICES} can be simulated")
+        raise CaretreeError(f"{path}: {len(v)} vertices, at most {MAX_VERTICES} can be simulated")
     if np.ptp(v, axis=0).max() > 20.0:
-        raise GapError(f"{path}: the mesh is {np.ptp(v, axis=0).max():.3g} long, it must be in metres")
+        raise CaretreeError(f"{path}: the mesh is {np.ptp(v, axis=0).max():.3g} long, it must be in metres")
     if len(np.unique(triangles)) != len(v):
-        raise GapError(f"{path}: {len(v) - len(np.unique(triangles))} vertices belong to no face, remove them")
+        raise CaretreeError(f"{path}: {len(v) - len(np.unique(triangles))} vertices belong to no face, remove them")
 
 
 def write_obj(path: Path, vertices: np.ndarray, faces: np.ndarray, stays: np.ndarray | None = None) -> None:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-from caretree.learning.gap.cloth.obj import read_obj, write_obj
-from caretree.learning.gap.errors import GapError
+from caretree.sim.errors import CaretreeError
+from caretree.sim.obj_file import read_obj, write_obj
 
 
 def test_a_bad_mesh_is_refused_before_pybullet_hangs_on_it(tmp_path):
@@ -11,7 +11,7 @@ def test_a_bad_mesh_is_refused_before_pybullet_hangs_on_it(tmp_path):
         ("v a b c\n", "row 1"),
     ):
         (tmp_path / "bad.obj").write_text(text)
-        with pytest.raises(GapError, match=words):
+        with pytest.raises(CaretreeError, match=words):
             read_obj(tmp_path / "bad.obj")
 
 
