@@ -27,7 +27,7 @@ def load_yaml(text: str) -> Any:
     except RecursionError:
         raise YamlProblem(problem="values lie too deep in each other") from None
     except ValueError as error:  # a date that is none, a number too long for Python
-        raise YamlProblem(problem=str(error)) from None
+        raise YamlProblem(problem=str(error).split(" (")[0].split(";")[0]) from None
 
 
 def _size(node: yaml.Node, known: dict[int, int | None]) -> int:

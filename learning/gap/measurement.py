@@ -20,7 +20,11 @@ SET_KEYS = (
     *("system", "episodes", "phases", "robot", "gravity", "mass", "diameter"),
     *("mesh", "physics", "pins", "capsules", "markers"),
 )
-ALIKE = 0.75  # of the letters: `masss` is meant as mass, `name` is not
+PHASE_KEYS = ("name", "t0", "t1", "start", "end")
+NOTE_KEYS = ("name", "source", "description", "notes", "license", "date", "author")  # read by people alone
+ALIKE = 0.5  # of the letters: `masss` is meant as mass
+LARGEST = 1e12  # of a number of a set, in SI
+SHOWN = 40  # characters of a value in a message
 ROLES = ("fit", "heldout", "repeat")
 
 
@@ -87,9 +91,11 @@ class MeasurementSet:
         value = (self if episode is None else episode).settings.get(key)
         if value is None:
             return None
-        if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value) or value <= 0:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < LARGEST:
             of = f" of {episode.file.name}" if episode else ""
-            raise GapError(f"{self.folder / 'measurement.yaml'}: {key}{of} is {value!r}, a positive number is needed")
+            raise GapError(
+                f"{self.folder / 'measurement.yaml'}: {key}{of} is {str(value)[:SHOWN]}, a positive number is needed"
+            )
         return float(value)
 
 
@@ -123,7 +129,7 @@ def load_set(folder: Path | str) -> MeasurementSet:
         raise GapError(f"{file}: `episodes` must list at least two entries with `file`")
     if len(listed) < 2:
         raise GapError(f"{file}: `episodes` lists one episode only, at least two are needed (one to fit, one held out)")
-    _refuse_misspelt(file, content, SET_KEYS)
+    _refuse_unknown(file, content, (*SET_KEYS, *NOTE_KEYS))
     shared = _phases(file, content.get("phases"))
     episodes = [_episode(file, entry, shared) for entry in listed]
     names = [e.name for e in episodes]
@@ -139,7 +145,7 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
         entry = {"file": entry}
     if not isinstance(entry, dict) or not isinstance(entry.get("file"), str):
         raise GapError(f"{file}: every episode needs `file`, this one is {entry!r}")
-    _refuse_misspelt(file, entry, EPISODE_KEYS)
+    _refuse_unknown(file, entry, EPISODE_KEYS, f" of episode {entry['file']}")
     role = entry.get("role", "")
     if role not in ("", None, *ROLES):
         raise GapError(f"{file}: role of {entry['file']} is {role!r}, it must be one of {', '.join(ROLES)}")
@@ -154,24 +160,27 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
     )
 
 
-def _refuse_misspelt(file: Path, given: dict[Any, Any], known: tuple[str, ...]) -> None:
-    """Notes of any name may stand in a set, but none that looks like a setting: `rolle` would hide held-out data.
+def _refuse_unknown(file: Path, given: dict[Any, Any], known: tuple[str, ...], of: str = "") -> None:
+    """Refuse a key that says nothing here: `rolle: heldout` would put held-out data into the fit.
 
     Raises:
-        GapError: one does.
+        GapError: there is one; the message names the nearest that there is, and all of them.
     """
     for key in given:
-        near = difflib.get_close_matches(str(key), known, n=1, cutoff=ALIKE) if key not in known else []
-        if near:
-            raise GapError(f"{file}: there is no setting {key!r}, did you mean {near[0]}?")
+        if key not in known:
+            near = difflib.get_close_matches(str(key).lower(), known, n=1, cutoff=ALIKE)
+            meant = f"did you mean {near[0]}? " if near else ""
+            raise GapError(f"{file}: there is no setting {key!r}{of}, {meant}(there are {', '.join(known)})")
 
 
 def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:
     if listed is None:
         return ()
-    if isinstance(listed, dict):
-        listed = [{"name": k, "t0": v[0], "t1": v[1]} for k, v in listed.items()]
     try:
+        if isinstance(listed, dict):
+            listed = [{"name": k, "t0": v[0], "t1": v[1]} for k, v in listed.items()]
+        for p in listed:
+            _refuse_unknown(file, dict(p), PHASE_KEYS, " of a phase")
         return tuple(
             Phase(
                 name=str(p["name"]),
@@ -180,7 +189,7 @@ def _phases(file: Path, listed: Any) -> tuple[Phase, ...]:
             )
             for p in listed
         )
-    except (TypeError, KeyError, ValueError, AttributeError, IndexError):
+    except (TypeError, KeyError, ValueError, AttributeError, IndexError, OverflowError):
         raise GapError(f"{file}: `phases` must list entries with name, t0 and t1 [s]") from None
 
 

@@ -1,7 +1,9 @@
 """Zero-phase low-pass filters and derivatives for logs, with a bandwidth the log itself decides.
 
-The bandwidth is the highest frequency at which the log still rises above its own noise plateau.  Both sides of
-the force balance go through the same filter, so that what it removes is removed from model and measurement alike.
+The bandwidth is the highest frequency at which the log still rises above its own noise plateau, but not far beyond
+what the motion's speed consists of: a sensor that filters its own noise has hardly a plateau, and what stands above it
+at a hundred times the motion's frequency is noise, which two derivatives would make louder than the motion.  Both sides
+of the force balance go through the same filter, so that what it removes is removed from model and measurement alike.
 """
 
 from __future__ import annotations
@@ -10,6 +12,11 @@ import numpy as np
 from numpy.fft import irfft, rfft, rfftfreq
 
 ORDER = 4  # of the Butterworth-like gain; squared once, phase zero
+SPEED_PART = 0.999  # of the energy of the speed lies below the motion's highest frequency
+REACH = (6.0, 8.0)  # bandwidth over that frequency: as wide where noise allows, and no wider
+OF_RATE = 0.01  # bandwidth over the sampling rate that a log may always have: sharp effects need it in slow motion
+NOISY = 0.05  # noise of the acceleration over the acceleration, from which on a log's own bandwidth is not widened
+FEWEST_PERIODS = 4  # of the bandwidth in a log, at least
 
 
 def lowpass(x: np.ndarray, dt: float, cutoff: float) -> np.ndarray:
@@ -61,7 +68,7 @@ def bandwidth(x: np.ndarray, dt: float, margin: float = 6.0) -> tuple[float, flo
         margin: smoothed power over plateau that still counts as signal.
 
     Returns:
-        (cutoff [Hz] between 1 % and 40 % of the sampling rate, noise standard deviation of `x`).
+        (cutoff [Hz] of at most 40 % of the sampling rate, noise standard deviation of `x`).
     """
     n = len(x)
     taper = np.hanning(n)
@@ -80,8 +87,15 @@ def bandwidth(x: np.ndarray, dt: float, margin: float = 6.0) -> tuple[float, flo
         if last and i - last > max(5, n // 50):
             break
         last, cutoff = i, f[i]
-    rate = 1.0 / dt
-    return float(np.clip(cutoff, 0.01 * rate, 0.4 * rate)), float(np.sqrt(max(plateau, 0.0)))
+    signal = np.where(f <= cutoff, np.maximum(power - plateau, 0.0), 0.0)
+    speed = np.cumsum(f**2 * signal)
+    if speed[-1] > 0.0:
+        highest = f[np.searchsorted(speed, SPEED_PART * speed[-1])]
+        # white noise of this plateau in the acceleration up to each frequency
+        quiet = np.cumsum(f**4) * plateau <= NOISY**2 * np.sum(f**4 * signal)
+        wide = max(cutoff, min(REACH[0] * highest, f[quiet][-1]))
+        cutoff = min(wide, max(REACH[1] * highest, OF_RATE / dt))
+    return float(np.clip(cutoff, FEWEST_PERIODS / (n * dt), 0.4 / dt)), float(np.sqrt(max(plateau, 0.0)))
 
 
 def resample(t: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

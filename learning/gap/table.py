@@ -37,9 +37,8 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     bad = np.argwhere(~np.isfinite(data))
     if len(bad):
         i, j = bad[0]
-        raise GapError(
-            f"{path}: column '{header[j]}', row {i + 2} is {rows[i][j].strip() or 'blank'}, a finite number is needed"
-        )
+        cell = rows[i][j].strip()[:40] or "blank"
+        raise GapError(f"{path}: column '{header[j]}', row {i + 2} is {cell}, a finite number is needed")
     back = np.flatnonzero(np.diff(data[:, 0]) <= 0)
     if len(back):
         raise GapError(
@@ -99,7 +98,7 @@ def _number(path: Path, column: str, row: int, cell: str) -> float:
     try:
         return float(cell) if cell.strip() else float("nan")
     except ValueError:
-        raise GapError(f"{path}: column '{column}', row {row} is '{cell}', a number is needed") from None
+        raise GapError(f"{path}: column '{column}', row {row} is '{cell[:40]}', a number is needed") from None
 
 
 def write_table(path: Path, columns: dict[str, np.ndarray]) -> None:

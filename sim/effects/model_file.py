@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,20 @@ from .joint.joint_registry import JOINT_EFFECTS
 from .joint.link_inertia import BODY_PARAMETERS, BODY_TERMS
 
 FORMAT = "caretree-model-1"
+KEYS = (
+    "format",
+    "system",
+    "robot",
+    "mass",
+    "mesh",
+    "physics",
+    "recalibration",
+    "effects",
+    "name",
+    "source",
+    "description",
+)
+ENTRY_KEYS = ("name", "target", "parameters")
 SYSTEMS = ("arm", "axis", "fall", "cloth")
 
 
@@ -73,6 +88,7 @@ def load_model(path: Path | str) -> EffectModel:
     if system not in SYSTEMS:
         raise EffectError(f"{path}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
     try:
+        _refuse_unknown(content, KEYS)
         effects, recalibration = (_entries(content, key) for key in ("effects", "recalibration"))
         for e in effects:
             check_effect(system, e)
@@ -87,6 +103,14 @@ def save_model(path: Path, content: dict[str, Any]) -> None:
     path.write_text(yaml.safe_dump({"format": FORMAT, **content}, sort_keys=False), encoding="utf-8")
 
 
+def _refuse_unknown(given: dict[Any, Any], known: tuple[str, ...]) -> None:
+    for key in given:
+        if key not in known:
+            near = difflib.get_close_matches(str(key).lower(), known, n=1, cutoff=0.5)
+            meant = f"did you mean {near[0]}? " if near else ""
+            raise EffectError(f"there is no key {key!r}, {meant}(there are {', '.join(known)})")
+
+
 def _entries(content: dict[str, Any], key: str) -> tuple[EffectEntry, ...]:
     found = content.get(key) or []
     if not isinstance(found, list):
@@ -97,9 +121,10 @@ def _entries(content: dict[str, Any], key: str) -> tuple[EffectEntry, ...]:
 def _entry(e: Any) -> EffectEntry:
     if not isinstance(e, dict) or not isinstance(e.get("name"), str) or not isinstance(e.get("parameters"), dict):
         raise EffectError(f"an effect needs name, target and parameters, this one is {e!r}")
+    _refuse_unknown(e, ENTRY_KEYS)
     try:
         values = {str(k): float(v) for k, v in e["parameters"].items()}
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise EffectError(f"effect {e['name']}: parameters must be numbers, they are {e['parameters']!r}") from None
     return EffectEntry(name=e["name"], target=str(e.get("target", "")), parameters=values)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -38,6 +39,7 @@ class ClothStudy(Study):
         super().__init__(measured, alpha)
         self.scene: ClothScene
         self._timed, self._most = False, 3
+        self._rejected = ""
         self.scene, self.episodes = read_scene(measured)
         for e, given in zip(self.episodes, measured.episodes, strict=True):
             if not np.ptp(e.markers, axis=0).any():
@@ -62,10 +64,23 @@ class ClothStudy(Study):
 
     @cached_property
     def found(self) -> ClothSearch:
-        """The search's result."""
+        """The search's result; the model as given where the held-out recordings are worse with what it found."""
         import sys
 
-        return search(self.sim, self.scene, self.fitted, lambda s: print(s, file=sys.stderr, flush=True))
+        return self._believed(
+            search(self.sim, self.scene, self.fitted, lambda s: print(s, file=sys.stderr, flush=True))
+        )
+
+    def _believed(self, found: ClothSearch) -> ClothSearch:
+        if not found.chosen:
+            return found
+        self.sim.ahead([(e, m.acting, m.physics) for e in self.heldout for m in (ClothModel(), found.fit.model)])
+        fitter = self._fitter(self.heldout)
+        before, after = (_mean2(fitter.residuals(m), self) for m in (ClothModel(), found.fit.model))
+        if after <= before:
+            return found
+        self._rejected = " and ".join(c.name for c in found.chosen)
+        return replace(found, chosen=(), fit=found.plain, after=found.before, rivals={})
 
     @property
     def _pairs(self) -> np.ndarray:
@@ -75,6 +90,8 @@ class ClothStudy(Study):
     def verdict(self) -> VerdictName:
         """One of the four."""
         f = self.found
+        if self._rejected:
+            return "unknown"
         if f.chosen and (self._load_left > REMAINDER or min(f.fit.model.physics.values(), default=1.0) <= NOTHING):
             return "unknown"  # the markers are followed by what the load, or sense, contradicts
         explained = max(_mean2(f.plain.residuals, self) - _mean2(f.fit.residuals, self), 0.0)
@@ -211,6 +228,8 @@ class ClothStudy(Study):
             (recalibration if c.recalibration else effects).append(finding)
         guess = ""
         if self.verdict == "unknown":
+            guess = f"{self._rejected} would explain the fitted recordings and make the held-out ones worse"
+        if self.verdict == "unknown" and not self._rejected:
             guess = _shape_of(f.fit.residuals, self.fitted, len(self.scene.markers))
         return self.verdict, tuple(effects), tuple(recalibration), guess
 

@@ -113,10 +113,17 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     number = max(NUMBER, worth * MATERIAL**2)
     price = partial(_price, drops=len(drops), number=number, mass=mass, diameter=diameter)
     rough = [worth * float(np.log(max(f.rss, 1e-12) / rows)) + price(f) for f in fits]
-    close = [f for f, score in zip(fits, rough, strict=True) if score - min(rough) < CLOSE]
+    # what is implausible beforehand may still fit as well, and has to be told as an equal
+    best_rough = rough.index(min(rough))
+    alike = worth * float(np.log(max(fits[best_rough].rss, 1e-12))) + SAME
+    near = [
+        score - min(rough) < CLOSE or (worth * float(np.log(max(f.rss, 1e-12))) < alike and len(f.names) == 1)
+        for f, score in zip(fits, rough, strict=True)
+    ]
+    close = [f for f, n in zip(fits, near, strict=True) if n]
     candidates = _under_likely_colours(drops, close, colours, worth, price)
     behind = max(c.score for c in candidates) - min(rough)
-    far = [(f, x) for f, x in zip(fits, rough, strict=True) if x - min(rough) >= CLOSE]
+    far = [(f, x) for f, x, n in zip(fits, rough, near, strict=True) if not n]
     candidates += [Candidate(fit=f, score=behind + x, misfit=behind + x - price(f)) for f, x in far]
     candidates.sort(key=lambda c: c.score)
     best = candidates[0].fit
@@ -198,7 +205,7 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
     return total
 
 
-def rivals(found: DropSearch, fit: DropFit) -> list[Candidate]:
+def rivals(found: DropSearch, fit: DropFit, most: int = MOST_RIVALS) -> list[Candidate]:
     """Other sets of up to two effects that fit as well, likeliest first; those that only add to the set are left out.
 
     What a set costs is not counted: the price says which explanation is likelier, not which the drops rule out.
@@ -208,12 +215,12 @@ def rivals(found: DropSearch, fit: DropFit) -> list[Candidate]:
     for c in found.candidates:
         if not c.effects or len(c.effects) > LARGEST or c.effects >= mine.effects:
             continue
-        if c.misfit - mine.misfit >= SAME or c.score - mine.score >= CLOSE:
+        if c.misfit - mine.misfit >= SAME:
             continue
         if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
             continue
         out.setdefault(c.effects, c)
-    return list(out.values())[:MOST_RIVALS]
+    return list(out.values())[:most]
 
 
 def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:
@@ -221,7 +228,7 @@ def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFi
     mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
     rest = mine.effects - {name}
     out = []
-    for c in rivals(found, fit):
+    for c in rivals(found, fit, most=len(found.candidates)):
         if not rest <= c.effects or name in c.effects or not c.effects - rest:
             continue
         still = "wind" in c.effects - rest and abs(c.fit.values["wind"]["speed"]) < DRAUGHT

@@ -33,6 +33,8 @@ CONFIDENCE = 0.8
 class FallStudy(Study):
     """A dropped body: every small set of effects by forward simulation."""
 
+    _rejected = ""  # what had been named before the held-out drops were seen to be worse with it
+
     @cached_property
     def drops(self) -> dict[str, Drop]:
         """All episodes."""
@@ -56,6 +58,18 @@ class FallStudy(Study):
 
     @cached_property
     def chosen(self) -> DropFit:
+        """The set that is believed: none where the held-out drops are worse with the best one."""
+        best, late = self._best, self._lateness(self._best)
+        if not best.names and late is None:
+            return best
+        before, after = (np.concatenate(f.residuals) for f in self._compared(best, late))
+        if _rms(after) <= _rms(before):
+            return best
+        self._rejected = " and ".join([*best.names, *(["delay"] if late else [])])
+        return self.found.refit((), self.found.given.mode)
+
+    @cached_property
+    def _best(self) -> DropFit:
         """The best set, without effects the bootstrap over drops does not keep.
 
         Where it leaves a force that repeats from drop to drop, or takes more than two effects, a set that fits nearly
@@ -120,17 +134,21 @@ class FallStudy(Study):
     @cached_property
     def late(self) -> tuple[float, float, float] | None:
         """A delay common to all drops: (seconds, low, high), where release instants agree better than by chance."""
-        instants = self.chosen.releases[:, 1]
-        if self.chosen.mode == "together" or len(instants) < 3:
+        chosen = self.chosen
+        return None if self._rejected else self._lateness(chosen)
+
+    def _lateness(self, fit: DropFit) -> tuple[float, float, float] | None:
+        instants = fit.releases[:, 1]
+        if fit.mode == "together" or len(instants) < 3:
             return None
         step = float(np.median(np.diff(self.fitted[0].t)))
-        own = self._errors(self.chosen)[len(self.chosen.theta) + len(instants) :]
+        own = self._errors(fit)[len(fit.theta) + len(instants) :]
         mean = float(instants.mean())
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
-        scatter = float(instants.var(ddof=1)) / len(instants) if self.chosen.mode == "free" else 0.0
+        scatter = float(instants.var(ddof=1)) / len(instants) if fit.mode == "free" else 0.0
         error = float(np.sqrt(scatter + own.mean() ** 2))
         # where each drop was cut at a frame of its own, up to a frame of lateness is how it was cut
-        if abs(mean) < (step if self.chosen.mode == "free" else 0.02 * step) or abs(mean) < 3.0 * error:
+        if abs(mean) < (step if fit.mode == "free" else 0.02 * step) or abs(mean) < 3.0 * error:
             return None
         return mean, mean - 2.0 * error, mean + 2.0 * error
 
@@ -154,7 +172,7 @@ class FallStudy(Study):
             much = energy > (VISIBLE * self.found.floor) ** 2
         if self.leftover.p_value < SIGNIFICANT and much:
             return "unknown"
-        if self._strange > TRANSFERRED or self._many:
+        if self._strange > TRANSFERRED or self._many or self._rejected:
             return "unknown"
         return "effects" if self.chosen.names or self.late else "adequate"
 
@@ -280,7 +298,9 @@ class FallStudy(Study):
         guess = ""
         if self.verdict == "unknown":
             guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
-            if self._strange > TRANSFERRED:
+            if self._rejected:
+                guess = f"{self._rejected} would explain the fitted drops and make the held-out ones worse"
+            elif self._strange > TRANSFERRED:
                 guess = "the effects that explain the fitted drops do not hold on the held-out ones"
             elif self._many and self.leftover.p_value >= SIGNIFICANT:
                 guess = "a smooth force that only three effects of the registry together can follow, as they follow any"
@@ -352,14 +372,18 @@ class FallStudy(Study):
             )
         return gap, None, tuple(controls), detectable(self.found, self.chosen)
 
-    def _compared(self) -> tuple[DropFit, DropFit]:
-        """Held-out drops under the model as given and with the effects; heights of release are each drop's own."""
-        late = self.late[0] if self.late else None
-        mode = "late" if late is not None else self.chosen.mode
-        given = self.found.given.mode if late is None else "together"
+    def _compared(
+        self, fit: DropFit | None = None, late: tuple[float, float, float] | None = None
+    ) -> tuple[DropFit, DropFit]:
+        """Held-out drops under the model as given and with a fit, else the chosen one; releases are each drop's own."""
+        if fit is None:
+            fit, late = self.chosen, self.late
+        when = late[0] if late else None
+        mode = "late" if when is not None else fit.mode
+        given = self.found.given.mode if when is None else "together"
         return (
             fit_drops(self.heldout, (), given),
-            fit_drops(self.heldout, self.chosen.names, mode, start=self.chosen.theta, late=late),
+            fit_drops(self.heldout, fit.names, mode, start=fit.theta, late=when),
         )
 
     def curves(self) -> list[Curve]:

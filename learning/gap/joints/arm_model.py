@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,31 +13,8 @@ from ..errors import GapError
 from .rigid import BodyTerm, RigidModel
 
 GRAVITY = (0.0, 0.0, -9.81)
+MOTIONS_KEPT = 8  # of which the regressor is remembered
 MASS_DEVIATION = 0.1  # a link mass in a URDF is usually right to a tenth
-
-
-def find_urdf(robot: str, folder: Path) -> Path:
-    """Path of a robot's URDF: a file beside the measurement set, or a name in example-robot-data.
-
-    Raises:
-        GapError: there is none; the message lists names that resemble the one given.
-    """
-    for path in (Path(robot), folder / robot):
-        if path.suffix == ".urdf" and path.is_file():
-            return path
-    if robot.endswith(".urdf"):
-        raise GapError(f"robot: no URDF file {robot} (looked beside measurement.yaml too)")
-    root = Path(sys.prefix) / "lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
-    base = root / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
-    files = sorted(base.rglob("*.urdf"), key=lambda p: (len(p.stem), str(p)))
-    for match in (lambda s: s == robot, lambda s: s.startswith(robot + "_"), lambda s: s.startswith(robot)):
-        for path in files:
-            if match(path.stem.lower() if robot.islower() else path.stem):
-                return path
-    near = [p.stem for p in files if robot.lower()[:3] in p.stem.lower()][:5] or ["ur10", "panda"]
-    raise GapError(
-        f"robot is '{robot}', it must be a URDF file or a name in example-robot-data such as {', '.join(near)}"
-    )
 
 
 class ArmModel(RigidModel):
@@ -58,6 +34,7 @@ class ArmModel(RigidModel):
         self.data = model.createData()
         self.joints = tuple(model.names[1:])
         self.prismatic = tuple("P" in model.joints[i].shortname()[10:12] for i in range(1, model.njoints))
+        self._kept: dict[tuple[bytes, ...], np.ndarray] = {}
         self._round = [model.joints[i].nq == 2 for i in range(1, model.njoints)]
 
     @classmethod
@@ -79,8 +56,14 @@ class ArmModel(RigidModel):
         except Exception as error:  # pinocchio raises several kinds
             raise GapError(f"{urdf}: not a URDF that pinocchio can read ({str(error).splitlines()[0]})") from None
         movable = [i for i in range(1, full.njoints) if full.joints[i].nv == 1]
+        if not movable:
+            raise GapError(f"{urdf}: has no joint that moves, an arm needs one at least")
         if len(movable) < joints:
             raise GapError(f"{urdf}: has {len(movable)} movable joints, the columns name {joints}")
+        joint_names = set(full.names)
+        for frame in full.frames:  # a link named as a joint is one name too many for pinocchio's reduction
+            if frame.type == pin.FrameType.BODY and frame.name in joint_names:
+                frame.name = f"{frame.name} (link)"
         tool = None
         for frame in full.frames:  # bodies fixed to the last measured link keep their own inertia as frames
             if frame.parentJoint == movable[joints - 1] and frame.inertia.mass > 1e-6:
@@ -178,7 +161,7 @@ class ArmModel(RigidModel):
         Payload inertia about its own centre is neglected; `shape` may carry the centre (com_x, com_y, com_z) [m] at
         which the point mass is taken, so that its inertia about the joint axes is not.
         """
-        pin, model, data = self._pin, self.model, self.data
+        pin, model = self._pin, self.model
         index = model.getJointId(term.target)
         if term.name == "mass":
             inertia = model.inertias[index]
@@ -192,13 +175,25 @@ class ArmModel(RigidModel):
                 c = np.array([term.shape[f"com_{a}"] for a in "xyz"])
                 point = pin.Inertia(1.0, c, np.zeros((3, 3))).toDynamicParameters()
                 mix[4:, 0] = point[4:]
-        block = slice(10 * (index - 1), 10 * index)
-        return np.array(
-            [
-                pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)[:, block] @ mix
-                for a, b, c in zip(q, dq, ddq, strict=True)
-            ]
-        )
+        return self._regressor(q, dq, ddq)[:, :, 10 * (index - 1) : 10 * index] @ mix
+
+    def _regressor(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+        """Joint loads per inertial parameter of every body along a motion, (T, n, 10 n).
+
+        The terms of one motion ask for it one after the other, so that of the last motions is kept.
+        """
+        key = tuple(x.tobytes() for x in (q, dq, ddq))
+        if key not in self._kept:
+            while len(self._kept) >= MOTIONS_KEPT:
+                del self._kept[next(iter(self._kept))]
+            pin, model, data = self._pin, self.model, self.data
+            self._kept[key] = np.array(
+                [
+                    pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)
+                    for a, b, c in zip(q, dq, ddq, strict=True)
+                ]
+            )
+        return self._kept[key]
 
     def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:
         """The arm with a body changed by `values`."""

@@ -95,3 +95,13 @@ def clock_columns(log: JointLog, channel: int) -> np.ndarray:
     state = log.shared(np.stack([v, s, u, q], axis=1))
     slow = np.stack([x, x**2 - 1.0 / 3.0], axis=1)
     return np.concatenate([slow, state * slow[:, :1], state * slow[:, 1:]], axis=1)
+
+
+def other_columns(log: JointLog, channel: int, other: int, scale: np.ndarray) -> np.ndarray:
+    """What another joint does: position, its square and wave, its product with the joint's own, motion (T_inner, 7)."""
+    q, v, a, u = (
+        (getattr(log, name) - scale[i, 0] * (i != 1)) / scale[i, 1]
+        for i, name in enumerate(("q", "dq", "ddq", "rigid"))
+    )
+    bound = [q[:, other], q[:, other] ** 2, np.sin(2.0 * log.q[:, other]), q[:, other] * q[:, channel]]
+    return log.shared(np.column_stack([*bound, v[:, other], a[:, other], u[:, other]]))

@@ -13,6 +13,7 @@ from ..smoothing import bandwidth, derivative, lowpass, resample
 from .rigid import RigidModel
 
 ROWS = 6000  # an episode is thinned to at most about this many rows
+FINE = 16  # rows per period of the cutoff where the log has as many: a sign, a threshold has to be met when it happens
 FEWEST = 10  # rows of an episode that the filters have to leave sound
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
@@ -162,7 +163,7 @@ def _prepare(
     episode: Episode, raw: _Raw, cut: float, use_speed: np.ndarray, noise_v: np.ndarray, model: RigidModel
 ) -> JointLog:
     t, dt, q, load, dq = raw.t, raw.dt, raw.q, raw.load, raw.dq
-    step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (4.0 * cut * dt)))
+    step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (FINE * cut * dt)))
     cut = min(cut, 0.4 / (dt * step))
     position = lowpass(q, dt, cut)
     speed, acceleration = derivative(q, dt, cut, 1), derivative(q, dt, cut, 2)

@@ -45,7 +45,9 @@ REFIT_GAIN = 0.2  # part of what is left on held-out logs that other numbers for
 SIGNIFICANT = 0.01  # level of the test on leftovers, all channels together
 
 
-def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: tuple[str, ...], unit: str) -> Outcome:
+def judge(
+    named: Named, logs: list[JointLog], heldout: list[JointLog], joints: tuple[str, ...], unit: str, worse: str = ""
+) -> Outcome:
     """Look at what the named effects leave and decide.
 
     Args:
@@ -54,6 +56,7 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
         heldout: logs nothing was fitted to.
         joints: names, one per channel.
         unit: of the load.
+        worse: what had been named before the held-out logs were seen to be worse with it, or "".
     """
     left = _unexplained(named, logs)
     broad = [log.wide() for log in logs]
@@ -68,7 +71,10 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
     strange = bool(named.blocks) and _strange(named, heldout, left) > REMAINDER
     unknown = (bool(missing.energy.any()) and missing.share > REMAINDER) or strange
     text = ""
-    if strange:
+    unknown = unknown or bool(worse)
+    if worse:
+        text = f"{worse} would explain the fitted recordings and make the held-out ones worse"
+    elif strange:
         text = "the effects that explain the fitted recordings do not hold on the held-out ones"
     elif unknown:
         text = guess(logs, calm, missing.worst)
@@ -82,6 +88,14 @@ def judge(named: Named, logs: list[JointLog], heldout: list[JointLog], joints: t
         remainders=remainders,
         guess=text,
     )
+
+
+def makes_worse(named: Named, heldout: list[JointLog]) -> bool:
+    """Whether held-out logs are farther from the model with the effects, in the load's unit or against the noise."""
+    before = np.mean(np.concatenate([log.residual[log.inner] for log in heldout]) ** 2, axis=0)
+    after = np.mean(np.concatenate(_unexplained(named, heldout)) ** 2, axis=0)
+    weight = 1.0 / named.noise.rms**2
+    return bool(after.sum() > before.sum() or weight @ after > weight @ before)
 
 
 def _unexplained(named: Named, logs: list[JointLog]) -> list[np.ndarray]:
@@ -272,7 +286,8 @@ def _contacts(found: list[Burst], joints: tuple[str, ...], unit: str) -> tuple[E
     for c in sorted({b.channel for b in found}):
         mine = [b for b in found if b.channel == c]
         load = np.array([b.load for b in mine])
-        spread = 1.96 * load.std() / max(np.sqrt(len(load)), 1.0)
+        # of one burst nobody knows how much the next would differ
+        spread = 1.96 * load.std(ddof=1) / np.sqrt(len(load)) if len(load) > 1 else np.inf
         out.append(
             EffectFinding(
                 name="contact",

@@ -1,8 +1,9 @@
 """What is left after the named effects: still a function of the state or of time, or only noise?
 
 Each channel's leftover is predicted out of sample (each stretch from the others) by smooth functions of the state, by
-waves in position (cogging, eccentric gears) and by waves and slow drifts in time (fans, vibration, warming up).  What
-such a prediction removes is a missing effect the registry has no name for.
+waves in position (cogging, eccentric gears), by what another joint does (a cable that runs along both, coupled gears),
+and by waves and slow drifts in time (fans, vibration, warming up).  What such a prediction removes is a missing effect
+the registry has no name for.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from scipy.stats import f as fisher
 from scipy.stats import t as student
 
-from .generic import clock_columns, generic_columns, past_columns, place_columns, scales
+from .generic import clock_columns, generic_columns, other_columns, past_columns, place_columns, scales
 from .gram import fold_edges
 from .log import JointLog
 from .noise import autocorrelation, estimate_noise
@@ -25,7 +26,7 @@ SHIFTS = 40
 STRETCHES = 24
 REPEATS = 0.05  # p-value of the gain over stretches above which it does not repeat
 ALIKE = 3  # neighbouring stretches that may be alike
-TRIED = {"position wave": 100, "time wave": 20}  # the period was picked from the same data
+TRIED = {"position wave": 100, "time wave": 20, "other joint": 6}  # the period, the joint was picked from the same data
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +38,7 @@ class Remainder:
         energy: mean square predicted out of sample, in the squared unit of the load.
         base: mean square it was predicted from.
         p_value: chance that noise alone is predicted this well, over all kinds tried.
-        kind: `state`, `position wave`, `time wave` or `drift`.
+        kind: `state`, `place`, `past`, `drift`, `other joint`, `position wave` or `time wave`.
         detail: period or form, for the reader.
     """
 
@@ -64,6 +65,7 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
     fold = np.concatenate([np.concatenate([np.full(b - a, f) for f, a, b in parts]) for parts in edges])
     kinds = {
         **_state_kinds(logs, channel),
+        **_other_kind(logs, y, channel),
         "position wave": _position_wave(logs, y, channel),
         "time wave": _time_wave(logs, wide, channel),
     }
@@ -74,6 +76,10 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         gain, p = _predict(X, target, _interleaved(fold, edges) if within else fold, within)
         if kind == "drift":
             gain, p = _wald(X, y, [len(x) for x in left])
+        elif kind == "other joint":
+            # few columns, so what noise does in sample is known; a shift in time leaves slow joints alike
+            removed, p = _wald(X, y, [len(x) for x in left])
+            gain = min(gain, removed)
         results.append(
             Remainder(
                 channel=channel,
@@ -106,6 +112,20 @@ def _state_kinds(logs: list[JointLog], channel: int) -> dict[str, Kind]:
             "slow in time, alone or with the state",
         ),
     }
+
+
+def _other_kind(logs: list[JointLog], y: np.ndarray, channel: int) -> dict[str, Kind]:
+    """What that other joint of an arm does which tells most of `y` (T_inner over all logs,); none for an axis."""
+    scale, found = scales(logs), []
+    for j in range(logs[0].q.shape[1]):
+        if j != channel:
+            X = np.concatenate([other_columns(log, channel, j, scale) for log in logs])
+            left = y - X @ np.linalg.lstsq(X, y, rcond=1e-8)[0]
+            found.append((float(left @ left), j, X))
+    if not found:
+        return {}
+    _, j, X = min(found, key=lambda x: x[0])
+    return {"other joint": (X, f"bound to what another joint does (q{j + 1})")}
 
 
 def _position_wave(logs: list[JointLog], y: np.ndarray, channel: int) -> Kind:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -10,24 +11,26 @@ from scipy.stats import chi2
 
 from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where, told_apart
-from ..measurement import Episode, MeasurementSet, require_columns
+from ..measurement import SHOWN, Episode, MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
 from .alternatives import alternatives, best_experiment, mass_twins
-from .arm_model import GRAVITY, ArmModel, find_urdf
+from .arm_model import GRAVITY, ArmModel
 from .axis_model import AxisModel
 from .block import Block
 from .bootstrap import Resampled, confident, resample
 from .detect import smallest_found
 from .localise import places
 from .log import JointColumns, JointLog, read_logs
-from .outcome import Outcome, judge
+from .outcome import Outcome, judge, makes_worse
 from .placebo import placebos
 from .rigid import RigidModel
+from .robot_files import find_urdf
 from .rollout import patched_joints, rollout_gap
 from .workflow import Named, explained, name_effects
 
 WRONG_UNIT = 20.0  # numbers this many times too large or too small are in another unit
+STRONGEST_GRAVITY = 1e3  # [m/s^2]
 LIKE = 0.9  # correlation from which on a speed column is the slope of the position
 
 
@@ -115,8 +118,12 @@ def rigid_model(measured: MeasurementSet, joints: int) -> RigidModel:
         raise GapError(f"{file}: `robot` is {robot!r}, an arm needs a URDF file or a name such as ur10 or panda")
     try:
         gravity = measured.settings.get("gravity", GRAVITY)
-        if not (isinstance(gravity, list | tuple) and len(gravity) == 3):
-            raise GapError(f"gravity is {gravity!r}, three numbers [m/s^2] are needed")
+        if not (
+            isinstance(gravity, list | tuple)
+            and len(gravity) == 3
+            and all(isinstance(g, int | float) and abs(g) < STRONGEST_GRAVITY for g in gravity)
+        ):
+            raise GapError(f"gravity is {str(gravity)[:SHOWN]}, three numbers [m/s^2] are needed")
         return ArmModel.from_urdf(
             find_urdf(robot, measured.folder), joints, (float(gravity[0]), float(gravity[1]), float(gravity[2]))
         )
@@ -168,14 +175,23 @@ class JointStudy(Study):
         return "N" if all(self.model.prismatic) else "N m"
 
     @cached_property
+    def _searched(self) -> tuple[Named, str]:
+        """The search's result, and what it had named where that made the held-out logs worse and was given up."""
+        named = confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
+        if not named.chosen or not makes_worse(named, self.heldout):
+            return named, ""
+        worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks)
+        return replace(named, blocks=(), chosen=(), theta=np.zeros(0)), worse
+
+    @property
     def named(self) -> Named:
-        """The search's result."""
-        return confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
+        """The search's result; nothing where the held-out logs are worse with it."""
+        return self._searched[0]
 
     @cached_property
     def outcome(self) -> Outcome:
         """What the search's result amounts to, after a look at what it leaves."""
-        return judge(self.named, self.fitted, self.heldout, self.model.joints, self.unit)
+        return judge(self.named, self.fitted, self.heldout, self.model.joints, self.unit, self._searched[1])
 
     @cached_property
     def resampled(self) -> Resampled:

@@ -18,6 +18,8 @@ def guess(logs: list[JointLog], left: list[np.ndarray], found: Remainder) -> str
     """
     c = found.channel
     y = np.concatenate([x[:, c] for x in left])
+    if found.kind == "other joint":
+        return f"about {np.sqrt(found.energy):.3g}, {found.detail}"
     q, v, a, u = (
         np.concatenate([getattr(log, n)[log.inner][:, c] for log in logs]) for n in ("q", "dq", "ddq", "rigid")
     )

@@ -36,11 +36,26 @@ def test_notes_of_any_other_name_may_stand_in_a_set(axis_set):
         (lambda f: edit(f, masss=2.0), ("measurement.yaml", "there is no setting 'masss', did you mean mass?")),
         (
             lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "e1.csv", "rolle": "heldout"}]),
-            ("measurement.yaml", "there is no setting 'rolle', did you mean role?"),
+            ("measurement.yaml", "there is no setting 'rolle' of episode e1.csv, did you mean role?"),
         ),
         (
             lambda f: (f / "measurement.yaml").write_text("system: axis\nmass: 1\nmass: 2\n"),
             ("measurement.yaml", "row 3", "'mass' is given twice"),
+        ),
+        (
+            lambda f: edit(f, friction_of_rail=2.0),
+            ("measurement.yaml", "there is no setting 'friction_of_rail'", "(there are system, episodes"),
+        ),
+        (
+            lambda f: edit(f, episodes=[{"file": "e0.csv"}, {"file": "e1.csv", "type": "heldout"}]),
+            ("measurement.yaml", "there is no setting 'type' of episode e1.csv", "file, role"),
+        ),
+        (lambda f: edit(f, mass=10**400), ("mass is 1000", "a positive number")),
+        (lambda f: edit(f, phases={"reach": 3}), ("`phases` must list",)),
+        (lambda f: edit(f, phases=[{"name": "reach", "t2": 3}]), ("there is no setting 't2' of a phase",)),
+        (
+            lambda f: (f / "measurement.yaml").write_text("mass: " + "9" * 5000),
+            ("measurement.yaml", "Exceeds the limit"),
         ),
         (lambda f: edit(f, system="boat"), ("measurement.yaml", "system is 'boat'", "arm, axis, fall, cloth")),
         (lambda f: edit(f, episodes=[{"file": "e0.csv"}]), ("measurement.yaml", "one episode only")),

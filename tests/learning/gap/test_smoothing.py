@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.smoothing import bandwidth, derivative, lowpass, resample
+from scipy.signal import lfilter
 
 T = np.arange(0.0, 10.0, 0.005)
 
@@ -25,7 +26,7 @@ def test_bandwidth_finds_the_last_line_above_the_noise():
     rng = np.random.default_rng(1)
     x = np.sin(2 * np.pi * 0.5 * T) + 0.3 * np.sin(2 * np.pi * 2.0 * T) + 1e-3 * rng.normal(size=len(T))
     cutoff, noise = bandwidth(x, 0.005)
-    assert 1.9 < cutoff < 6.0
+    assert 1.9 < cutoff < 16.5  # as wide as the noise of the acceleration allows
     assert noise == pytest.approx(1e-3, rel=0.25)
 
 
@@ -34,3 +35,25 @@ def test_resample_makes_uneven_steps_even():
     grid, out, dt = resample(t, np.sin(t)[:, None])
     assert np.allclose(np.diff(grid), dt)
     assert np.abs(out[:, 0] - np.sin(grid)).max() < 1e-4
+
+
+def motion_at_1_khz():
+    """Six seconds of motion up to 2.5 Hz."""
+    t = np.arange(0.0, 6.0, 1e-3)
+    return t, 0.1 * sum(np.sin(2 * np.pi * f * t + f) / f for f in (0.5, 1.0, 1.5, 2.5))
+
+
+def test_noise_that_the_sensor_filtered_is_not_taken_for_motion():
+    t, x = motion_at_1_khz()
+    pole = np.exp(-2 * np.pi * 80.0 * 1e-3)  # of a sensor's own filter, passed twice
+    noise = np.random.default_rng(100).normal(size=len(t))
+    for _ in range(2):
+        noise = lfilter([1.0 - pole], [1.0, -pole], noise)
+    assert 5.0 < bandwidth(x + 2e-5 * noise, 1e-3)[0] < 25.0
+
+
+def test_a_quiet_log_is_read_well_beyond_its_motion_and_a_noisy_one_is_not():
+    t, x = motion_at_1_khz()
+    noise = np.random.default_rng(100).normal(size=len(t))
+    assert bandwidth(x + 1e-6 * noise, 1e-3)[0] > 10.0
+    assert bandwidth(x + 3e-3 * noise, 1e-3)[0] < 10.0

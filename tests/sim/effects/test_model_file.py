@@ -50,3 +50,19 @@ def test_other_yaml_is_refused(tmp_path):
     (tmp_path / "model.yaml").write_text(yaml.safe_dump({"a": 1}))
     with pytest.raises(EffectError, match="format"):
         load_model(tmp_path / "model.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("masss: 2.0\n", "there is no key 'masss', did you mean mass"),
+        ("effects: [{name: offset, target: axis, parameters: {value: 1.0}, targett: x}]\n", "did you mean target"),
+        ("mass: 1\nmass: 2\n", "'mass' is given twice"),
+        (f"effects: [{{name: offset, target: axis, parameters: {{value: {10**400}}}}}]\n", "must be numbers"),
+    ],
+)
+def test_a_key_that_says_nothing_is_refused_with_the_nearest_that_does(tmp_path, text, words):
+    file = tmp_path / "model.yaml"
+    file.write_text("format: caretree-model-1\nsystem: axis\n" + text)
+    with pytest.raises(EffectError, match=words):
+        load_model(file)

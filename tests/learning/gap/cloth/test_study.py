@@ -48,3 +48,34 @@ def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth
         worth=100.0,
     )
     assert study.verdict == verdict
+
+
+@pytest.mark.parametrize(("after", "believed"), [(0.5, True), (4.0, False)])
+def test_what_makes_the_held_out_recording_worse_is_never_found(cloth_set, monkeypatch, after, believed):
+    study = open_study(load_set(cloth_set))
+    start = ClothModel(physics={"elastic_stiffness": 40.0}, free=(("physics", "elastic_stiffness"),))
+    rows = len(study.episodes[0].t)
+    off = 1e-3 * np.random.default_rng(0).normal(size=(rows, 18))
+    calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
+    fit = ClothFit(model=start, rss=1.0, residuals=[0.1 * off], covariance=np.eye(1))
+    candidate = Candidate(
+        name="elastic_stiffness", target="cloth", start=start, push=start, steps={}, recalibration=True
+    )
+    found = ClothSearch(
+        chosen=(candidate,),
+        fit=fit,
+        plain=ClothFit(model=ClothModel(), rss=1.0, residuals=[off], covariance=np.eye(0)),
+        before=calm,
+        after=calm,
+        rivals={},
+        worth=100.0,
+    )
+    monkeypatch.setattr(study.sim, "ahead", lambda runs: None)
+    monkeypatch.setattr(
+        "caretree.learning.gap.cloth.fitting.ClothFitter.residuals",
+        lambda self, model: [(after if model.physics else 1.0) * off],
+    )
+    study.__dict__["found"] = study._believed(found)
+    assert (study.verdict == "recalibration") == believed
+    assert bool(study.found.chosen) == believed
+    assert study.found.fit.model.physics == ({"elastic_stiffness": 40.0} if believed else {})

@@ -88,3 +88,34 @@ def test_sets_that_fit_as_well_are_listed_with_the_drop_that_tells_them_apart(dr
 
 def test_nothing_is_asked_for_where_nothing_is_missing(drop_set):
     assert open_study(load_set(drop_set(0.0))).follow_up() == ()
+
+
+def test_what_makes_the_held_out_drop_worse_is_never_found(drop_set):
+    folder = drop_set(0.004)
+    assert open_study(load_set(folder)).name()[0] == "effects"
+    file = folder / "d3.csv"  # held out, and fell in vacuum, a little lifted
+    t = np.loadtxt(file, delimiter=",", skiprows=1)[:, 0]
+    t = t[t < 1.9]
+    h = 20.0 - 0.5 * 9.7 * t**2 + 0.01 * np.random.default_rng(0).normal(size=len(t))
+    np.savetxt(file, np.column_stack([t, h]), delimiter=",", header="t,h", comments="")
+    study = open_study(load_set(folder))
+    verdict, effects, _, guess = study.name()
+    gap = study.show()[0]
+    assert verdict == "unknown"
+    assert gap.after <= gap.before
+    assert effects == ()
+    assert "make the held-out ones worse" in guess
+    assert study.patch()["effects"] == []
+
+
+def test_a_lift_that_size_and_mass_do_not_foretell_is_told_as_an_equal_of_a_wrong_scale(drop_set):
+    folder = drop_set()
+    for file in folder.glob("d*.csv"):
+        t, h = np.loadtxt(file, delimiter=",", skiprows=1).T
+        np.savetxt(file, np.column_stack([t, h + 0.05 * 0.5 * 9.81 * t**2]), delimiter=",", header="t,h", comments="")
+    settings = folder / "measurement.yaml"
+    settings.write_text(settings.read_text() + "mass: 0.2\ndiameter: 0.2\n")
+    verdict, effects, _, _ = open_study(load_set(folder)).name()
+    assert verdict == "effects"
+    assert {"buoyancy", "gain_error"} <= {effects[0].name, *effects[0].equivalent}
+    assert "heavy" in effects[0].experiment

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.errors import GapError
-from caretree.learning.gap.joints.arm_model import ArmModel, find_urdf
+from caretree.learning.gap.joints.arm_model import ArmModel
+from caretree.learning.gap.joints.robot_files import find_urdf, robots_folder
 
 pytest.importorskip("pinocchio")
 Q, DQ, DDQ = (np.random.default_rng(k).uniform(-1.0, 1.0, (5, 6)) for k in range(3))
@@ -32,6 +33,31 @@ def test_acceleration_undoes_load(arm):
     assert np.allclose([arm.acceleration(*x) for x in zip(Q, DQ, load, strict=True)], DDQ)
 
 
-def test_an_unknown_robot_is_told_with_names_that_exist(tmp_path):
-    with pytest.raises(GapError, match="robot is 'r2d2', it must be a URDF file or a name in example-robot-data"):
-        find_urdf("r2d2", tmp_path)
+def families():
+    """URDF files of example-robot-data that hold a robot, and how pinocchio is to read them."""
+    return sorted(p for p in robots_folder().rglob("*.urdf") if p.stem != "ur3")
+
+
+@pytest.mark.parametrize("urdf", families(), ids=lambda p: f"{p.parts[-3]}/{p.stem}")
+def test_every_robot_of_example_robot_data_works_or_says_why(urdf):
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+    full = pin.buildModelFromUrdf(str(urdf))
+    movable = sum(j.nv == 1 for j in full.joints[1:])
+    if movable == 0:
+        with pytest.raises(GapError, match="has no joint that moves"):
+            ArmModel.from_urdf(urdf, 1)
+        return
+    for n in sorted({1, min(6, movable), max(1, movable - 1), movable}):
+        arm = ArmModel.from_urdf(urdf, n)
+        q, dq, ddq = (np.random.default_rng([100, k]).uniform(-0.5, 0.5, (2, n)) for k in range(3))
+        load = arm.load(q, dq, ddq)
+        assert load.shape == (2, n)
+        assert np.isfinite(load).all()
+        assert np.abs(load).max() > 0.0
+    assert all(np.isfinite(arm.body_columns(t, q[:1], dq[:1], ddq[:1])).all() for t in arm.body_terms())
+
+
+def test_a_robot_without_a_moving_joint_is_one_sentence():
+    with pytest.raises(GapError, match="has no joint that moves"):
+        ArmModel.from_urdf(find_urdf("iris_simple", robots_folder()), 1)

@@ -1,4 +1,5 @@
 import numpy as np
+from caretree.learning.gap.joints.log import FINE, SHARED
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 
@@ -20,3 +21,10 @@ def test_without_a_column_of_speed_the_slope_of_the_position_is_taken(axis_set):
     derived = open_study(load_set(folder)).fitted[0]
     inner = derived.inner
     assert np.allclose(derived.dq[inner], given.dq[inner], atol=0.02 * np.abs(given.dq).max())
+
+
+def test_a_log_keeps_enough_rows_for_what_happens_at_once(axis_set):
+    log = open_study(load_set(axis_set(noise=0.05))).fitted[0]
+    recorded = 0.01
+    assert log.dt <= max(recorded, 1.0 / (FINE * log.cutoff / SHARED))
+    assert FINE >= 16

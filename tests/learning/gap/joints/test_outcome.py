@@ -29,3 +29,18 @@ def test_a_louder_held_out_recording_does_not_make_an_effect_unknown(axis_set):
     _, verdict, effects, _, _ = solved(folder)
     assert verdict == "effects"
     assert [f.name for f in effects] == ["viscous_friction"]
+
+
+def test_what_makes_the_held_out_recording_worse_is_never_found(axis_set):
+    folder = axis_set(lambda q, v, a: 6.0 * v, episodes=4)
+    file = folder / "e3.csv"  # held out, and without friction
+    data = np.loadtxt(file, delimiter=",", skiprows=1)
+    data[:, 3] -= 6.0 * data[:, 2]
+    np.savetxt(file, data, delimiter=",", header="t,q,dq,force", comments="")
+    study, verdict, effects, recalibration, guess = solved(folder)
+    assert verdict == "unknown"
+    assert effects == recalibration == ()
+    assert "viscous_friction on axis would explain the fitted recordings and make the held-out ones worse" in guess
+    assert study.patch()["effects"] == []
+    gap = study.show()[0]
+    assert gap.after == gap.before
