@@ -93,8 +93,8 @@ def bandwidth(x: np.ndarray, dt: float, margin: float = 6.0) -> tuple[float, flo
         highest = f[np.searchsorted(speed, SPEED_PART * speed[-1])]
         # white noise of this plateau in the acceleration up to each frequency
         quiet = np.cumsum(f**4) * plateau <= NOISY**2 * np.sum(f**4 * signal)
-        wide = max(cutoff, min(REACH[0] * highest, f[quiet][-1]))
-        cutoff = min(wide, max(REACH[1] * highest, OF_RATE / dt))
+        near, far = (max(reach * highest, OF_RATE / dt) for reach in REACH)
+        cutoff = min(max(cutoff, min(near, f[quiet][-1])), far)
     return float(np.clip(cutoff, FEWEST_PERIODS / (n * dt), 0.4 / dt)), float(np.sqrt(max(plateau, 0.0)))
 
 
