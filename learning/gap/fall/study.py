@@ -295,16 +295,19 @@ class FallStudy(Study):
                 "Over one range of speeds linear and quadratic drag look alike; which fits better here says "
                 "little about which acts."
             )
-        guess = ""
-        if self.verdict == "unknown":
-            guess = f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
-            if self._rejected:
-                guess = f"{self._rejected} would explain the fitted drops and make the held-out ones worse"
-            elif self._strange > TRANSFERRED:
-                guess = "the effects that explain the fitted drops do not hold on the held-out ones"
-            elif self._many and self.leftover.p_value >= SIGNIFICANT:
-                guess = "a smooth force that only three effects of the registry together can follow, as they follow any"
-        return self.verdict, tuple(out), (), guess
+        return self.verdict, tuple(out), (), self._guess()
+
+    def _guess(self) -> str:
+        """What is missing where the verdict is `unknown`, as far as can be said; else nothing."""
+        if self.verdict != "unknown":
+            return ""
+        if self._rejected:
+            return f"{self._rejected} would explain the fitted drops and make the held-out ones worse"
+        if self._strange > TRANSFERRED:
+            return "the effects that explain the fitted drops do not hold on the held-out ones"
+        if self._many and self.leftover.p_value >= SIGNIFICANT:
+            return "a smooth force that only three effects of the registry together can follow, as they follow any"
+        return f"{self.leftover.what}, {np.sqrt(self.leftover.energy):.3g} m root mean square"
 
     def rivals(self) -> tuple[Rival, ...]:
         """See `Study.rivals`."""
