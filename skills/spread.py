@@ -34,7 +34,10 @@ class SpreadTuning(Quantities):
         0.03, "m", "of the collar's middle from the line of the shoulders", "choice: below the throat, above the chest"
     )
     lies_well: float = quantity(
-        0.05, "m", "from there, aside, within which the collar is left as it is", "choice: as well as it is seen"
+        0.02,
+        "m",
+        "from there, aside, within which the collar is left as it is",
+        "measured: a sleeve that is drawn up afterwards takes the collar along by 1 to 3 cm, and 7 cm aside are too much",
     )
     headward: float = quantity(
         0.05, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"

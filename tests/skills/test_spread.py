@@ -81,7 +81,7 @@ def bench_that_ended():
     return run
 
 
-@pytest.mark.parametrize("aside", [-0.03, 0.03])
+@pytest.mark.parametrize("aside", [-0.015, 0.015])
 def test_a_collar_that_lies_well_is_left_alone(aside):
     run = bench(aside=aside)
     assert run.ended() is None
