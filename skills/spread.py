@@ -37,7 +37,7 @@ class SpreadTuning(Quantities):
         0.02,
         "m",
         "from there, aside, within which the collar is left as it is",
-        "measured: a sleeve that is drawn up afterwards takes the collar along by 1 to 3 cm, and 7 cm aside are too much",
+        "measured: a sleeve that is drawn up afterwards takes the collar along by 1 to 3 cm, of 7 cm that are allowed",
     )
     headward: float = quantity(
         0.05, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"
