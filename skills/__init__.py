@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .carry_across import CarryAcross as CarryAcross
+    from .check_collar import CheckCollar as CheckCollar
     from .check_laid_out import CheckLaidOut as CheckLaidOut
     from .check_sleeve import CheckSleeve as CheckSleeve
     from .core.context import Context as Context
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
 _HOME = {
     "CarryAcross": ".carry_across",
     "CheckLaidOut": ".check_laid_out",
+    "CheckCollar": ".check_collar",
     "CheckSleeve": ".check_sleeve",
     "Context": ".core.context",
     "FindCorner": ".find_corner",

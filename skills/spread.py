@@ -67,6 +67,14 @@ class SpreadTuning(Quantities):
         "by which the collar is carried beyond its place, and then drawn back along the body",
         "measured: let go of at its place, it sprang back by 6 to 16 cm; drawn back to it, by less than 3 cm",
     )
+    laid_height: float = quantity(
+        0.02,
+        "m",
+        "of the hand that draws the collar back, above where it took it",
+        "measured: lower, it met the chest beside the breastbone with 120 N (101)",
+    )
+    laying_speed: float = quantity(0.03, "m/s", "of the hand on its way down", "choice: it may meet the chest")
+    touch_load: float = quantity(3.0, "N", "upwards, of a hand that touches the body", "choice: cloth never pushes up")
     speed: float = quantity(0.08, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
     tolerance: float = quantity(0.01, "m", "to the end of a way", "choice: the width of a thread")
     timeout_factor: float = quantity(
@@ -125,8 +133,9 @@ class Spread(Skill):
         self.note("carries the collar to the midline")
         yield from self._carry(low + tuning.lift * UP)
         yield from self._carry(past + tuning.lift * UP)
-        yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], low[2]))
-        yield from self._carry(low + way)
+        laid = low + tuning.laid_height * UP
+        yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], laid[2]), tuning.laying_speed)
+        yield from self._carry(laid + way)
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
 
@@ -146,18 +155,19 @@ class Spread(Skill):
             raise tries.last
         yield from pinch_or_back_off(self, self.hand)
 
-    def _carry(self, goal: np.ndarray) -> Iterator[None]:
-        """Straight to `goal` (3,) [m], or as far as the collar comes."""
+    def _carry(self, goal: np.ndarray, speed: float | None = None) -> Iterator[None]:
+        """Straight to `goal` (3,) [m], or as far as the collar comes, or until the hand touches the body."""
         tuning, n = self.tuning, SIDES.index(self.hand)
+        speed = tuning.speed if speed is None else speed
         way = float(np.linalg.norm(goal - hand_now(self, self.hand)[:3, 3]))
-        end = self.now() + tuning.timeout_factor * way / tuning.speed
+        end = self.now() + tuning.timeout_factor * way / speed
         while self.now() < end:
             rest = goal - self.world.observe().pose_hand_in_map[n, :3, 3]
             load = cloth_load(self, self.hand)
             pulls = np.linalg.norm(load) > tuning.max_load and load @ rest < 0.0
-            if np.linalg.norm(rest) < tuning.tolerance or pulls:
+            if np.linalg.norm(rest) < tuning.tolerance or pulls or load[2] > tuning.touch_load:
                 return
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(tuning.speed * unit(rest), np.zeros(3))))
+            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(speed * unit(rest), np.zeros(3))))
             yield
 
 

@@ -128,27 +128,29 @@ def test_bad_arguments_are_one_sentence(arguments, says):
 
 @pytest.mark.parametrize("fails", ["frame", "picture", "view"])
 def test_time_goes_on_when_nobody_can_watch_it(world, monkeypatch, fails):
+    def show(what):
+        shown.append(what)
+        if what == fails:
+            raise RecordError("the disk is full")
+
     class Recorder:
+        caption = ("dress", "pull")
+
         def begin(self, static):
             pass
 
         def frame(self, truth):
-            self.show("frame")
+            show("frame")
 
-        def picture(self, t, image):
-            self.show("picture")
-
-        def show(self, what):
-            shown.append(what)
-            if what == fails:
-                raise RecordError("the disk is full")
+        def film(self, t, draw):
+            show("picture")
 
     class View:
-        def serve(self, draw):
-            Recorder().show("view")
+        def show(self, time, room):
+            show("view")
 
     shown, told = [], []
-    monkeypatch.setattr(world, "_watchers", Watchers(world.truth_frame, world._draw))
+    monkeypatch.setattr(world, "_watchers", Watchers(world.truth_frame, world._draw, world._backdrop.diorama, {}))
     world._watchers.show(View())
     world.attach_recorder(Recorder(), told.append)
     begin = world.clock.now()

@@ -73,7 +73,7 @@ def test_a_gown_too_stiff_for_the_room_is_refused_in_one_sentence(tmp_path, capf
     path = write_gown(tmp_path / "gown.yaml", stiff)
     assert main(["run", "dressing", "--gown", str(path), "--out", str(tmp_path / "run")]) == 2
     said = capfd.readouterr().err.splitlines()
-    assert any(line.startswith("caretree: gown 'light (identified)': elastic x dt^2") for line in said)
+    assert any(line.startswith("caretree: cloth 'light (identified)': elastic x dt^2") for line in said)
     assert not (tmp_path / "run").exists()
 
 

@@ -360,6 +360,7 @@ def test_the_guard_passes_on_the_contract_and_nothing_else():
         "take_fault",
         "still",
         "check",
+        "seen",  # what was observed last, for who watches
         "observe",
         "look",
         "send",
