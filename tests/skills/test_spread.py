@@ -55,7 +55,7 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_on_the_midline():
     way = carried(run)
     assert way[0] == pytest.approx((0.14, -0.50, HEIGHT), abs=0.03)
     assert way[:, 2].max() - way[0, 2] == pytest.approx(0.10, abs=0.02)  # [m]
-    assert way[-1, 2] - way[0, 2] == pytest.approx(0.0, abs=0.02)
+    assert way[-1, 2] - way[0, 2] == pytest.approx(0.02, abs=0.02)
     assert way[-1, 0] - way[0, 0] == pytest.approx(-0.14, abs=0.03)
     assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] - way[-1, 2] == pytest.approx(0.12, abs=0.03), "drawn back"
@@ -72,7 +72,7 @@ def test_it_goes_past_the_midline_and_is_drawn_back_along_the_body():
     way = carried(bench_that_ended())
     assert way[:, 0].min() - way[-1, 0] == pytest.approx(-0.08, abs=0.03)  # [m]
     back = way[np.argmin(way[:, 0]) :]
-    assert back[back[:, 0] > way[:, 0].min() + 0.02, 2].max() < way[0, 2] + 0.02  # [m]
+    assert back[back[:, 0] > way[:, 0].min() + 0.02, 2].max() < way[0, 2] + 0.04  # [m]
 
 
 def bench_that_ended():
@@ -125,3 +125,15 @@ def test_where_the_hand_does_not_get_to_the_collar_it_takes_the_cloth_farther_do
     assert run.ended() is None
     assert asked == [0.0, 0.05, 0.08]
     assert carried(run)[0] == pytest.approx((0.14, -0.42, HEIGHT), abs=0.03)
+
+
+def test_the_hand_on_its_way_down_stops_where_it_touches_the_body():
+    def chest(bench):
+        height = bench.world.observe().pose_hand_in_map[1, 2, 3]
+        x = bench.world.observe().pose_hand_in_map[1, 0, 3]
+        pulls(bench.world, "right", (0.0, 0.0, 5.0 if x < -0.05 and height < HEIGHT + 0.05 else -0.5))
+
+    run = bench(each_tick=chest)
+    assert run.ended() is None
+    way = carried(run)
+    assert way[way[:, 0] < -0.05, 2].min() > HEIGHT + 0.04  # [m]
