@@ -38,6 +38,7 @@ from .person.hand_cover import HandCoverTuning, hand_cover
 from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
 from .senses import Senses
+from .sleeve.armhole_front import ArmholeFrontTuning, armhole_front
 from .sleeve.cuff_round_arm import CuffTuning, cuff_round
 from .sleeve.held_armhole import HeldArmholeTuning, held_armhole
 from .sleeve.held_sleeve_heading import SleeveHeadingTuning, sleeve_heading
@@ -68,6 +69,7 @@ class ClassicalTuning(Quantities):
     arm: ArmTrackerTuning = field(default_factory=ArmTrackerTuning)
     arm_shift: ArmShiftTuning = field(default_factory=ArmShiftTuning)
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
+    armhole_front: ArmholeFrontTuning = field(default_factory=ArmholeFrontTuning)
     hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
 
 
@@ -170,6 +172,10 @@ class ClassicalSenses(Senses):
     def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """By the bindings of armhole and cuff near the upper arm."""
         return worn_sleeve(frame, side, arm_in_map, self._tuning.worn_sleeve)
+
+    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
+        """By the armhole's binding over the arm's axis."""
+        return armhole_front(frame, side, arm_in_map, self._tuning.armhole_front)
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the skin that shows along the axis of the hand."""

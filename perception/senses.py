@@ -273,6 +273,22 @@ class Senses(ABC):
     # -- the gown on the person --------------------------------------------------------------------------
 
     @abstractmethod
+    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
+        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it.
+
+        Args:
+            frame: a view from above the arm.
+            side: of the person.
+            arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+
+        Returns:
+            Target `sleeve_left` or `sleeve_right`.
+
+        Raises:
+            PerceptionFailure: the armhole does not show there.
+        """
+
+    @abstractmethod
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """How much of the person's hand is covered.
 

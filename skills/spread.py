@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..perception.estimates import GraspPoint
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import SIDES, HandTwist, Side
+from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.shoulders import between_shoulders, off_middle
+from .control.carry import Carry, carry
 from .control.fingers import open_gripper
-from .control.hands import cloth_load, hand_now
+from .control.hands import hand_now
 from .control.pinch import pinch_or_back_off, reach_in
 from .control.withdraw import withdraw
 from .core.ports import Input, Output
@@ -22,6 +23,7 @@ from .core.reasons import Reason
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import UP
+from .geometry.from_above import from_above
 from .geometry.stances import HEADWARD, outwards
 from .motion.errors import MotionError
 
@@ -74,15 +76,7 @@ class SpreadTuning(Quantities):
         "measured: lower, it met the chest beside the breastbone with 120 N (101)",
     )
     laying_speed: float = quantity(0.03, "m/s", "of the hand on its way down", "choice: it may meet the chest")
-    touch_load: float = quantity(3.0, "N", "upwards, of a hand that touches the body", "choice: cloth never pushes up")
-    speed: float = quantity(0.08, "m/s", "of the hand that holds the collar", "choice: slow at the neck")
-    tolerance: float = quantity(0.01, "m", "to the end of a way", "choice: the width of a thread")
-    timeout_factor: float = quantity(
-        2.5, "1", "of the time that a way takes at full speed", "choice: room for a guard that slows it down"
-    )
-    max_load: float = quantity(
-        6.0, "N", "of the collar, at which it is carried no farther", "measured: 5 to 6 N bring it to the midline"
-    )
+    carry: Carry = field(default_factory=Carry)
     withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the collar")
 
 
@@ -131,11 +125,12 @@ class Spread(Skill):
         way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
-        yield from self._carry(low + tuning.lift * UP)
-        yield from self._carry(past + tuning.lift * UP)
+        yield from carry(self, self.hand, low + tuning.lift * UP, tuning.carry)
+        yield from carry(self, self.hand, past + tuning.lift * UP, tuning.carry)
         laid = low + tuning.laid_height * UP
-        yield from self._carry(np.append(hand_now(self, self.hand)[:2, 3], laid[2]), tuning.laying_speed)
-        yield from self._carry(laid + way)
+        down = np.append(hand_now(self, self.hand)[:2, 3], laid[2])
+        yield from carry(self, self.hand, down, tuning.carry, tuning.laying_speed)
+        yield from carry(self, self.hand, laid + way, tuning.carry)
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
 
@@ -144,7 +139,7 @@ class Spread(Skill):
         tuning, tries = self.tuning, Tries(MotionError)
         for below in tuning.below:
             point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle, below=below)
-            approach = _from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
+            approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
             place, closing = point.position_in_map, point.closing_in_map
             with tries:
                 yield from reach_in(
@@ -154,33 +149,3 @@ class Spread(Skill):
         else:
             raise tries.last
         yield from pinch_or_back_off(self, self.hand)
-
-    def _carry(self, goal: np.ndarray, speed: float | None = None) -> Iterator[None]:
-        """Straight to `goal` (3,) [m], or as far as the collar comes, or until the hand touches the body."""
-        tuning, n = self.tuning, SIDES.index(self.hand)
-        speed = tuning.speed if speed is None else speed
-        way = float(np.linalg.norm(goal - hand_now(self, self.hand)[:3, 3]))
-        end = self.now() + tuning.timeout_factor * way / speed
-        while self.now() < end:
-            rest = goal - self.world.observe().pose_hand_in_map[n, :3, 3]
-            load = cloth_load(self, self.hand)
-            pulls = np.linalg.norm(load) > tuning.max_load and load @ rest < 0.0
-            if np.linalg.norm(rest) < tuning.tolerance or pulls or load[2] > tuning.touch_load:
-                return
-            self.world.send(HandTwist(side=self.hand, twist_in_map=np.append(speed * unit(rest), np.zeros(3))))
-            yield
-
-
-def _from_above(approach: np.ndarray, outward: np.ndarray, max_tilt: float) -> np.ndarray:
-    """The approach nearest to one square to the cloth that comes from above and from the robot's side of the bed.
-
-    Args:
-        approach: (3,) unit vector, square to the cloth.
-        outward: (3,) unit vector from the body's middle to the robot's side.
-        max_tilt: of the approach off the vertical [rad].
-    """
-    lean = approach + UP * max(-float(approach @ UP), 0.0)  # the horizontal part
-    if lean @ outward > 0.0:
-        lean = lean - (lean @ outward) * outward
-    angle = min(float(np.arctan2(np.linalg.norm(lean), max(-float(approach[2]), 1e-6))), max_tilt)
-    return -np.cos(angle) * UP + np.sin(angle) * (unit(lean) if np.linalg.norm(lean) > 1e-6 else np.zeros(3))

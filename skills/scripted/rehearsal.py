@@ -30,7 +30,7 @@ class RehearsalTuning(Quantities):
         0.03, "m", "between the fingertips, below which a hand takes hold", "choice: no skill goes in with less"
     )
     arm_radius: float = quantity(
-        0.10, "m", "about an arm's axis, within which closing fingers hold the arm", "choice: the fingers' length more"
+        0.05, "m", "about an arm's axis, within which closing fingers hold the arm", "choice: that of an upper arm"
     )
     arm_width: float = quantity(0.07, "m", "of an arm between the fingers", "choice: a forearm")
     cloth_width: float = quantity(0.002, "m", "of cloth between the fingers", "choice: two layers and a hem")

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...perception.estimates import (
     CORNER_OF,
+    SLEEVE_OF,
     ArmPosture,
     Cover,
     Estimate,
@@ -159,7 +160,18 @@ class ScriptedSenses(Senses):
 
     def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """At the shoulder, and round the arm."""
-        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, round_arm=0.8)
+        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.55, round_arm=0.8)
+
+    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
+        """On top of the upper arm, a third of it down."""
+        return GraspPoint(
+            stamp=frame.stamp,
+            confidence=0.9,
+            target=SLEEVE_OF[side],
+            position_in_map=arm_in_map[0] + 0.35 * (arm_in_map[1] - arm_in_map[0]) + (0.0, 0.0, 0.06),
+            approach_in_map=np.array((0.0, 0.0, -1.0)),
+            closing_in_map=np.array((1.0, 0.0, 0.0)),
+        )
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """All of it."""

@@ -14,6 +14,7 @@ from ....skills.core.scope import Scope
 from ....skills.geometry.stances import PULLING, stance
 from ....skills.look_at_person import LookAtPerson
 from ....skills.navigate import Navigate
+from ....skills.seat_sleeve import SeatSleeve
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
@@ -27,16 +28,16 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    The collar comes before the right sleeve: carried to the middle, it draws that sleeve down the arm, while a sleeve
-    that is drawn up moves the collar by 1 to 3 cm only.
+    The right sleeve, which the left one has pulled down, comes first: drawn up, it takes the left one down by more than
+    the left one takes it.  The collar comes last, as either sleeve takes it along by up to 9 cm.
     """
     return timed_stage(
         "spread",
-        settle_sleeve(context, "left"),
-        will_do(context, "left"),
-        straighten_collar(context, "right"),
         settle_sleeve(context, "right"),
         will_do(context, "right"),
+        settle_sleeve(context, "left"),
+        straighten_collar(context, "left"),
+        will_do(context, "left"),
         CheckCollar("the collar lies in the middle", Scope(context, "collar")),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
@@ -65,7 +66,7 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
 
 
 def settle_sleeve(context: Context, side: Side) -> Behaviour:
-    """See to a sleeve that the other one has pulled down: while it is low, take it by the strap and draw it up.
+    """See to a sleeve that has slipped down: far down, by its strap first; then by the front of its armhole.
 
     The arm lies: lowered afterwards, it would draw the sleeve down again.
     """
@@ -81,22 +82,26 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
         away = back_off("let the strap go", sleeve, DRESSING.back_off_distance)
         return sequence("come back to the sleeve", away, *go("come back"))
 
-    def draw_up() -> Behaviour:
-        once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
-        drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
-        return sequence(
-            "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
-        )
+    def seat() -> Behaviour:
+        drawn = SeatSleeve("seat", sleeve, hand=sleeve["pulling"])
+        return sequence("seat the sleeve", drawn, back_off("leave it", sleeve), LookAtPerson("look again", sleeve))
 
+    once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
+    drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
+    draw_up = sequence(
+        "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
+    )
+    near = CheckSleeve("is near the shoulder", sleeve, max_cuff_distance=DRESSING.cuff_in_reach)
     sits = CheckSleeve("sits", sleeve, max_cuff_distance=DRESSING.cuff_sits)
     return sequence(
         f"settle the {side} sleeve",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
         *go("go up"),
         put_down("first", sleeve),
+        fallback("near the shoulder", near, draw_up, back_off("leave it there", sleeve, DRESSING.back_off_distance)),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, draw_up), attempts=DRESSING.settle_attempts),
+            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, seat), attempts=DRESSING.settle_attempts),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
         put_down("in the end", sleeve),
