@@ -115,12 +115,14 @@ class WornSleeve(Estimate):
         side: of the person.
         armhole_at: middle of what shows of the armhole's binding, 0 shoulder, 1 elbow.
         cuff_at: the same of the cuff's.
+        reach: how far up the upper arm the whole armhole is taken to be, 0 elbow to 1 shoulder: its hidden side too.
         round_arm: share of the directions off the arm's axis in which the cuff shows.
     """
 
     side: Side
     armhole_at: float
     cuff_at: float
+    reach: float
     round_arm: float
 
 

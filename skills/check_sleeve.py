@@ -38,17 +38,17 @@ class CheckSleeveTuning(Quantities):
 class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
-    It fails where the cuff is in a heap or beside the arm, and where it is too far down the arm; a sleeve of which too
+    It fails where the cuff is in a heap or beside the arm, and where the armhole is too far down the arm; a sleeve of which too
     little shows is let pass.
     """
 
     commands = False
     side = Input(Side, doc="arm of the person")
-    max_cuff_distance = Input(
+    min_reach = Input(
         float,
-        unit="m",
-        default=np.inf,
-        doc="how far down the upper arm, from the shoulder, the cuff of a sleeve that sits well shows at most",
+        unit="1",
+        default=0.0,
+        doc="how far up the upper arm the armhole of a sleeve that sits well is at least: 0 elbow, 1 shoulder",
     )
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
     reasons = (Reason.SLEEVE_MISSED, Reason.SLEEVE_LOW, Reason.ARM_LOST)
@@ -62,7 +62,7 @@ class CheckSleeve(Skill):
             self.note(f"cannot see the {self.side} sleeve's bindings")
             return
         self.note(
-            f"{self.side} armhole at {seen.armhole_at:.2f} of the upper arm, cuff at {seen.cuff_at:.2f}, "
+            f"{self.side} armhole {seen.reach:.2f} up the upper arm, cuff at {seen.cuff_at:.2f}, "
             f"{seen.round_arm:.0%} round it"
         )
         if seen.cuff_at < self.tuning.min_cuff_at or seen.round_arm < self.tuning.min_share_round:
@@ -71,11 +71,9 @@ class CheckSleeve(Skill):
                 f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
                 f"{seen.round_arm:.0%} of the way round it",
             )
-        away = seen.cuff_at * float(np.linalg.norm(arm[1] - arm[0]))
-        if away > self.max_cuff_distance:
+        if seen.reach < self.min_reach:
             raise SkillFailure(
                 Reason.SLEEVE_LOW,
-                f"the cuff is {away * 100:.0f} cm down the arm, "
-                f"{self.max_cuff_distance * 100:.0f} cm at most are asked for",
+                f"the armhole is at {seen.reach:.2f} of the upper arm, at least {self.min_reach:.2f} is asked for",
             )
         yield

@@ -160,7 +160,9 @@ class ScriptedSenses(Senses):
 
     def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """At the shoulder, and round the arm."""
-        return WornSleeve(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.55, round_arm=0.8)
+        return WornSleeve(
+            stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, reach=0.9, round_arm=0.8
+        )
 
     def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
         """On top of the upper arm, a third of it down."""

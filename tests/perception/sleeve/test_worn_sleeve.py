@@ -37,3 +37,8 @@ def test_bindings_along_the_upper_arm(armhole, cuff, places):
 def test_the_other_sleeve_does_not_count():
     with pytest.raises(PerceptionFailure):
         worn_sleeve(picture((30, 40), (55, 65), rows=(0, 15)), "right", ARM)
+
+
+def test_a_sleeve_that_shows_farther_down_reaches_less_far_up():
+    high, low = (worn_sleeve(picture(a, c), "right", ARM).reach for a, c in (((20, 26), (40, 50)), ((26, 32), (50, 60))))
+    assert 1.0 > high > low + 0.1 > 0.3

@@ -91,8 +91,8 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
     draw_up = sequence(
         "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
     )
-    near = CheckSleeve("is near the shoulder", sleeve, max_cuff_distance=DRESSING.cuff_in_reach)
-    sits = CheckSleeve("sits", sleeve, max_cuff_distance=DRESSING.cuff_sits)
+    near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
+    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_sits)
     return sequence(
         f"settle the {side} sleeve",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
@@ -114,7 +114,7 @@ def will_do(context: Context, side: Side) -> Behaviour:
     return sequence(
         f"see whether the {side} sleeve will do",
         LookAtPerson("look at the end", sleeve),
-        CheckSleeve("will do", sleeve, max_cuff_distance=DRESSING.cuff_will_do),
+        CheckSleeve("will do", sleeve, min_reach=DRESSING.armhole_will_do),
     )
 
 

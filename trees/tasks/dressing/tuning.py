@@ -113,24 +113,20 @@ class DressingTuning(Quantities):
     )
     back_off_distance: float = quantity(0.25, "m", "of the base from a dressed arm", "choice: the arm comes into view")
     # settling the sleeves and the collar
-    cuff_in_reach: float = quantity(
-        0.24,
-        "m",
-        "from the shoulder to the cuff, above which the sleeve is drawn up by its strap first",
+    armhole_in_reach: float = quantity(
+        0.60,
+        "1",
+        "of the upper arm, below which a sleeve is drawn up by its strap first",
         "measured: armholes below 0.6 of the upper arm are not brought to 0.7 by their front edge",
     )
-    cuff_sits: float = quantity(
-        0.16,
-        "m",
-        "from the shoulder to the cuff, above which the armhole is drawn up by its front edge",
-        "measured: on arms that lie, five runs: cuffs at 0.13, 0.13, 0.17, 0.18, 0.19, 0.20, 0.22, 0.24 m, armholes at "
-        "0.96, 0.92, 0.78, 0.68, 0.64, 0.70, 0.71, 0.64",
+    armhole_sits: float = quantity(
+        0.80,
+        "1",
+        "of the upper arm, below which the armhole is drawn up by its front edge",
+        "choice: what is asked for, 0.7, and what the collar and the other sleeve take away again, 0.03 to 0.08",
     )
-    cuff_will_do: float = quantity(
-        0.22,
-        "m",
-        "from the shoulder to the cuff, above which the sleeve counts as low in the end",
-        "measured: as above; the cuff tells the armhole to 0.06 only",
+    armhole_will_do: float = quantity(
+        0.70, "1", "of the upper arm, below which the sleeve counts as low in the end", "design requirement"
     )
     settle_attempts: int = quantity(
         3,
