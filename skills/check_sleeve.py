@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
@@ -38,8 +36,8 @@ class CheckSleeveTuning(Quantities):
 class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
-    It fails where the cuff is in a heap or beside the arm, and where the armhole is too far down the arm; a sleeve of which too
-    little shows is let pass.
+    It fails where the cuff is in a heap or beside the arm, and where the armhole is too far down the arm; a sleeve
+    of which too little shows is let pass.
     """
 
     commands = False

@@ -10,6 +10,7 @@ from py_trees.common import Status
 
 from .bench import LeafBench, beside_bed
 
+
 def worn(cuff_at=0.5, round_arm=0.7, reach=0.8):
     return WornSleeve(
         stamp=0.0, confidence=0.9, side="left", armhole_at=0.2, cuff_at=cuff_at, reach=reach, round_arm=round_arm

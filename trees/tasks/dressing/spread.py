@@ -29,15 +29,16 @@ def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
     The right sleeve, which the left one has pulled down, comes first: drawn up, it takes the left one down by more than
-    the left one takes it.  The collar comes last, as either sleeve takes it along by up to 9 cm.
+    the left one takes it.  The collar comes last, as either sleeve takes it along by up to 9 cm.  Only then is judged
+    whether the sleeves will do: one that seems low is no reason to leave the rest undone.
     """
     return timed_stage(
         "spread",
         settle_sleeve(context, "right"),
-        will_do(context, "right"),
         settle_sleeve(context, "left"),
         straighten_collar(context, "left"),
         will_do(context, "left"),
+        will_do(context, "right"),
         CheckCollar("the collar lies in the middle", Scope(context, "collar")),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
@@ -109,10 +110,11 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
 
 
 def will_do(context: Context, side: Side) -> Behaviour:
-    """Look from the same side of the bed whether the sleeve is up far enough."""
+    """Look from its side of the bed whether the sleeve is up far enough."""
     sleeve = arm_scope(context, f"{side} sleeve", side)
     return sequence(
         f"see whether the {side} sleeve will do",
+        Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look at the end", sleeve),
         CheckSleeve("will do", sleeve, min_reach=DRESSING.armhole_will_do),
     )
