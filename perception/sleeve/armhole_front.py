@@ -46,7 +46,7 @@ def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Armh
         tuning: numbers of the search.
 
     Returns:
-        The grasp in the map: into the cloth, and the fingers close across the arm.
+        The grasp in the map: into the cloth, and the fingers close along the arm, where the trunk is not in their way.
 
     Raises:
         PerceptionFailure: too little of the armhole's tape is seen there.
@@ -69,5 +69,5 @@ def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Armh
         target=SLEEVE_OF[side],
         position_in_map=place,
         approach_in_map=-normal,
-        closing_in_map=across(along, -normal),
+        closing_in_map=across(aside, -normal),
     )

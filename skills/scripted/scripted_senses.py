@@ -71,6 +71,7 @@ class ScriptedSenses(Senses):
     def __init__(self, world: Proprioception) -> None:
         self._world = world
         self._moved_before = self._moved()
+        self._collar_aside = 0.06  # [m]
 
     def hang_point(self, frame: Frame) -> GraspPoint:
         """Straight ahead."""
@@ -188,12 +189,14 @@ class ScriptedSenses(Senses):
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 
     def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
-        """A little aside, taken from above."""
+        """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
+        place = np.array((self._collar_aside, -0.5 + below, 0.83))
+        self._collar_aside *= below == 0.0
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,
             target="collar_middle",
-            position_in_map=np.array((0.06, -0.5 + below, 0.83)),
+            position_in_map=place,
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )

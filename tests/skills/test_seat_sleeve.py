@@ -44,13 +44,13 @@ def drawn(run):
     return run.way("right")[run.openings("right") < 0.005]
 
 
-def test_it_is_taken_on_top_of_the_arm_lifted_and_drawn_along_it_to_beyond_the_shoulder():
+def test_it_is_taken_on_top_of_the_arm_lifted_and_drawn_to_the_shoulder_and_inwards():
     run = bench()
     assert run.ended() is None
-    way, along = drawn(run), unit(ARM[1] - ARM[0])
+    way = drawn(run)
     assert way[0] == pytest.approx(PLACE, abs=0.03)
-    assert (way[-1] - way[0] - (0.0, 0.0, 0.04)) @ along == pytest.approx(-0.20, abs=0.03)  # [m]
-    assert np.linalg.norm(np.cross(way[-1] - way[0] - (0.0, 0.0, 0.04), along)) < 0.03  # [m]
+    assert way[-1] - ARM[0] == pytest.approx((-0.10, -0.02, 0.10), abs=0.03)  # [m]
+    assert way[:, 2].min() > PLACE[2] - 0.03, "above the arm"
     assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] - way[-1, 2] == pytest.approx(0.12, abs=0.04), "drawn back"
 
@@ -60,11 +60,11 @@ def test_a_sleeve_that_pulls_back_is_drawn_no_farther():
 
     def taut(bench):
         here = bench.world.observe().pose_hand_in_map[1, :3, 3]
-        pulls(bench.world, "right", 9.0 * along if (here - PLACE) @ along < -0.10 else 0.5 * along)
+        pulls(bench.world, "right", 9.0 * along if (here - PLACE) @ along < -0.06 else 0.5 * along)
 
     run = bench(each_tick=taut)
     assert run.ended() is None
-    assert ((drawn(run) - PLACE) @ along).min() == pytest.approx(-0.10, abs=0.02)  # [m]
+    assert ((drawn(run) - PLACE) @ along).min() == pytest.approx(-0.06, abs=0.02)  # [m]
 
 
 def test_a_miss_ends_with_the_hand_open_and_drawn_back():

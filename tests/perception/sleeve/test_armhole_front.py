@@ -16,7 +16,7 @@ def test_it_lies_where_the_tape_crosses_the_top_of_the_arm():
     seen = armhole_front(picture((30, 40), (55, 65), rows=(45, 75)), "right", lower(ARM))
     assert seen.position_in_map == pytest.approx((-0.225, 0.0, 1.0), abs=0.01)
     assert seen.approach_in_map == pytest.approx((0.0, 0.0, -1.0), abs=0.05)
-    assert abs(seen.closing_in_map @ (0.0, 1.0, 0.0)) == pytest.approx(1.0, abs=0.05), "across the arm"
+    assert abs(seen.closing_in_map @ (1.0, 0.0, 0.0)) == pytest.approx(1.0, abs=0.05), "along the arm"
     assert seen.target == "sleeve_right"
 
 

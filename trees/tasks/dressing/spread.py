@@ -29,12 +29,13 @@ def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
     The right sleeve, which the left one has pulled down, comes first: drawn up, it takes the left one down by more than
-    the left one takes it.  The collar comes last, as either sleeve takes it along by up to 9 cm.  Only then is judged
+    the left one takes it.  The collar follows either of them, as it is taken along by up to 9 cm.  Only then is judged
     whether the sleeves will do: one that seems low is no reason to leave the rest undone.
     """
     return timed_stage(
         "spread",
         settle_sleeve(context, "right"),
+        straighten_collar(context, "right"),
         settle_sleeve(context, "left"),
         straighten_collar(context, "left"),
         will_do(context, "left"),
