@@ -10,7 +10,7 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import careful, watch_arm
+from .belief.person_tracking import watch_arm
 from .control.carry import Carry, carry
 from .control.fingers import open_gripper
 from .control.hands import hand_now
@@ -93,7 +93,7 @@ class SeatSleeve(Skill):
             closing,
             opening=tuning.opening,
             depth=tuning.depth,
-            speed=careful(self, tuning.reach_in_speed),
+            speed=tuning.reach_in_speed,
         )
         yield from pinch_or_back_off(self, self.hand)
         self.note(f"draws the {self.side} armhole to the shoulder")

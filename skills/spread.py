@@ -61,7 +61,7 @@ class SpreadTuning(Quantities):
         (0.05, 0.08, 0.11, 0.15, 0.19),
         "m",
         "footward of the collar's middle, where the cloth is grasped, tried one after the other",
-        "measured: at the middle itself the neck was in the hand's way in 5 of 6 whole runs; on a recorded state (105) a "
+        "measured: at the middle itself the neck was in the hand's way in 5 of 6 whole runs; on a state of 105 a "
         "collar 14 cm headward came to within 4 cm of its place by any of 0.05, 0.11, 0.15 and 0.19",
     )
     beyond: float = quantity(

@@ -52,7 +52,7 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
 
     Where the hand cannot bring it there, it may lie well enough all the same, which is looked at in the end.
     """
-    collar = Scope(context, "collar", side=side, hand=PULLING[side])
+    collar = Scope(context, f"{side} collar", side=side, hand=PULLING[side])
     return sequence(
         "straighten the collar",
         Navigate("go round to its side", collar, goal=f"bed_{side}"),
