@@ -44,7 +44,7 @@ class SeatSleeveTuning(Quantities):
         (0.10, 0.02, 0.10),
         "m",
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
-        "measured: on two recorded states armholes at 0.70 and 0.71 came to rest at 0.77 and 0.86; 0.20 m along the arm, "
+        "measured: on two recorded states armholes at 0.70 and 0.71 came to rest at 0.77 and 0.86; 0.20 m along it, "
         "which is farther headward, 0.76 and 0.77, with the collar on the throat; by the strap, 0.65 to 0.75",
     )
     carry: Carry = field(default_factory=lambda: Carry(max_load=8.0))
