@@ -11,7 +11,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
-from .control.carry import Carry, carry
+from .control.carry import Carry, carry, ease_off
 from .control.fingers import open_gripper
 from .control.hands import hand_now
 from .control.pinch import pinch_or_back_off, reach_in
@@ -95,6 +95,7 @@ class SeatSleeve(Skill):
             depth=tuning.depth,
             speed=tuning.reach_in_speed,
         )
+        yield from ease_off(self, self.hand, tuning.carry)
         yield from pinch_or_back_off(self, self.hand)
         self.note(f"draws the {self.side} armhole to the shoulder")
         yield from carry(self, self.hand, hand_now(self, self.hand)[:3, 3] + tuning.lift * UP, tuning.carry)

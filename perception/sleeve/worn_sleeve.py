@@ -30,7 +30,7 @@ class WornSleeveTuning(Quantities):
         (1.55, -2.83, -0.96),
         "1, 1/m, 1/m",
         "of the armhole, and its change with how far down the arm the cuff's end and the armhole's middle show",
-        "measured: least squares over 1,137 states of 40 recorded runs on seeds 100 to 108 (vertices above the "
+        "measured: least squares over 1,137 states of about 40 runs on seeds 100 to 108 (vertices above the "
         "axis, sleeves above 0.5 that nobody holds): 0.045 root mean square; by the cuff's middle alone 0.065",
     )
     full_points: int = quantity(100, "1", "of the smaller one that make it certain", "choice: seen from close by")
