@@ -6,7 +6,7 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import Side
-from ....skills.check_collar import CheckCollar
+from ....skills.check_collar import CheckCollar, CheckCollarTuning
 from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
@@ -23,6 +23,8 @@ from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
+
+ROOM = CheckCollarTuning(max_aside=DRESSING.collar_room[0], max_along=DRESSING.collar_room[1])
 
 
 def spread(context: Context) -> Stage:
@@ -85,8 +87,11 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
         return sequence("come back to the sleeve", away, *go("come back"))
 
     def seat() -> Behaviour:
+        """A collar that is near the throat leaves no room: the armhole would take it on over the face."""
+        room = CheckCollar("the collar leaves room", sleeve, tuning=ROOM)
         drawn = SeatSleeve("seat", sleeve, hand=sleeve["pulling"])
-        return sequence("seat the sleeve", drawn, back_off("leave it", sleeve), LookAtPerson("look again", sleeve))
+        back = [back_off("leave it", sleeve), LookAtPerson("look again", sleeve)]
+        return sequence("seat the sleeve", room, drawn, *back)
 
     once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
     drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
