@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .carry_across import CarryAcross as CarryAcross
-    from .check_collar import CheckCollar as CheckCollar
     from .check_laid_out import CheckLaidOut as CheckLaidOut
     from .check_sleeve import CheckSleeve as CheckSleeve
     from .core.context import Context as Context
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
     from .raise_corner import RaiseCorner as RaiseCorner
     from .release_arm import ReleaseArm as ReleaseArm
     from .retreat import Retreat as Retreat
+    from .seat_sleeve import SeatSleeve as SeatSleeve
     from .segment_and_grasp import SegmentAndGrasp as SegmentAndGrasp
     from .spread import Spread as Spread
     from .stretch_neckline import StretchNeckline as StretchNeckline
@@ -52,7 +52,6 @@ if TYPE_CHECKING:
 _HOME = {
     "CarryAcross": ".carry_across",
     "CheckLaidOut": ".check_laid_out",
-    "CheckCollar": ".check_collar",
     "CheckSleeve": ".check_sleeve",
     "Context": ".core.context",
     "FindCorner": ".find_corner",
@@ -82,6 +81,7 @@ _HOME = {
     "SegmentAndGrasp": ".segment_and_grasp",
     "Skill": ".core.skill",
     "SkillFailure": ".core.reasons",
+    "SeatSleeve": ".seat_sleeve",
     "Spread": ".spread",
     "StretchNeckline": ".stretch_neckline",
     "TakeCorner": ".take_corner",

@@ -3,7 +3,6 @@
 import numpy as np
 from caretree.sim.robot import model
 from caretree.skills.carry_across import CarryAcross
-from caretree.skills.check_collar import CheckCollar
 from caretree.skills.check_laid_out import CheckLaidOut
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.find_corner import FindCorner
@@ -52,7 +51,6 @@ def pre_grasp_manipulate(context):
 EXAMPLES = {
     CarryAcross: lambda context: CarryAcross("carry across", context, side="left"),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
-    CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     FindCorner: lambda context: FindCorner("find corner", context),
     FindStand: lambda context: FindStand("find stand", context, side="right", lifting="left", pulling="right"),

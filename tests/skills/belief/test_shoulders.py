@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from caretree.skills.belief.shoulders import between_shoulders, off_middle
-from caretree.skills.check_collar import CheckCollar
 from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.tasks.dressing.check_collar import CheckCollar
 
 from ..bench import LeafBench, beside_bed
 

@@ -6,7 +6,6 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import Side
-from ....skills.check_collar import CheckCollar, CheckCollarTuning
 from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
@@ -20,6 +19,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
+from .check_collar import CheckCollar, CheckCollarTuning
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm

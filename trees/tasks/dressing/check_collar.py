@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..perception.errors import PerceptionFailure
-from ..sim.quantity import Quantities, quantity
-from .belief.shoulders import between_shoulders, off_middle
-from .core.ports import Input
-from .core.reasons import Reason, SkillFailure
-from .core.skill import Skill
+from ....perception.errors import PerceptionFailure
+from ....sim.quantity import Quantities, quantity
+from ....skills.belief.shoulders import between_shoulders, off_middle
+from ....skills.core.ports import Input
+from ....skills.core.reasons import Reason, SkillFailure
+from ....skills.core.skill import Skill
 
 
 @dataclass(frozen=True, kw_only=True)

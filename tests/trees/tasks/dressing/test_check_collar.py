@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import GraspPoint
-from caretree.skills.check_collar import CheckCollar
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.tasks.dressing.check_collar import CheckCollar
 from py_trees.common import Status
 
-from .bench import LeafBench, beside_bed
+from ....skills.bench import LeafBench, beside_bed
 
 MIDDLE = np.mean([lying_posture(side).points_in_map[0] for side in ("left", "right")], axis=0)  # of the shoulders [m]
 
