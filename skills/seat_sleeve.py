@@ -36,7 +36,7 @@ class SeatSleeveTuning(Quantities):
         0.10,
         "m/s",
         "of the hand to before the cloth; half of it on the way in",
-        "measured: at three times that a hand met the body beside the arm with 80 N (101)",
+        "choice: slow beside the person; it does not lower the 80 N with which closing fingers met the trunk (101)",
     )
     depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the arm is right below it")
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")

@@ -37,7 +37,7 @@ DEFAULT = ArmholeFrontTuning()
 
 
 def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: ArmholeFrontTuning = DEFAULT) -> GraspPoint:
-    """The front edge of a worn sleeve's armhole, where it crosses the top of the arm nearest to the shoulder.
+    """The front edge of a worn sleeve's armhole, where it crosses the top of the arm.
 
     Args:
         frame: of any camera.
@@ -46,7 +46,7 @@ def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Armh
         tuning: numbers of the search.
 
     Returns:
-        The grasp in the map: into the cloth, and the fingers close along the arm, where the trunk is not in their way.
+        The grasp in the map: into the cloth, and the fingers close along the arm.
 
     Raises:
         PerceptionFailure: too little of the armhole's tape is seen there.
