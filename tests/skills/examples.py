@@ -33,6 +33,7 @@ from caretree.skills.take_corner import TakeCorner
 from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
+from caretree.trees.tasks.dressing.check_collar import CheckCollar
 
 ALWAYS = LowerArmTuning(lies_below=0.0)  # an arm that lies would be left alone
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
@@ -50,6 +51,7 @@ def pre_grasp_manipulate(context):
 
 EXAMPLES = {
     CarryAcross: lambda context: CarryAcross("carry across", context, side="left"),
+    CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     FindCorner: lambda context: FindCorner("find corner", context),
