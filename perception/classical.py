@@ -12,6 +12,7 @@ from ..sim.world import SIDES, Frame, RoomMap, Side
 from .errors import PerceptionFailure, Problem
 from .estimates import (
     ArmPosture,
+    ChestFront,
     Cover,
     Estimate,
     GownSide,
@@ -34,6 +35,7 @@ from .image.garment import GarmentTuning, gown_side
 from .person.arm_shift import ArmShiftTuning, arm_shift
 from .person.arm_tracker import ArmTracker, ArmTrackerTuning
 from .person.chest_cover import ChestCoverTuning, chest_cover
+from .person.chest_front import ChestFrontTuning, chest_front
 from .person.hand_cover import HandCoverTuning, hand_cover
 from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
@@ -69,6 +71,7 @@ class ClassicalTuning(Quantities):
     arm: ArmTrackerTuning = field(default_factory=ArmTrackerTuning)
     arm_shift: ArmShiftTuning = field(default_factory=ArmShiftTuning)
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
+    chest_front: ChestFrontTuning = field(default_factory=ChestFrontTuning)
     armhole_front: ArmholeFrontTuning = field(default_factory=ArmholeFrontTuning)
     hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
 
@@ -188,6 +191,10 @@ class ClassicalSenses(Senses):
     def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
         """By the gown's colours at a grid of points on the front of the trunk."""
         return chest_cover(frame, self._bed, shoulders_in_map, self._tuning.chest_cover)
+
+    def chest_front(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestFront:
+        """By the depth of cells on the front of the chest."""
+        return chest_front(frame, self._bed, shoulders_in_map, self._tuning.chest_front)
 
     def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
         """Half the neck binding's length from its ends."""

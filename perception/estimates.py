@@ -164,6 +164,19 @@ class Head(Estimate):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ChestFront(Estimate):
+    """How high the front of the chest lies above the mattress; what covers it counts as part of it.
+
+    Attributes:
+        height: of its highest part [m].
+        breastbone: on the midline [m].
+    """
+
+    height: float
+    breastbone: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Shift(Estimate):
     """How much of what was seen of an arm is elsewhere now.  share: 0 to 1 of its skin in free view."""
 

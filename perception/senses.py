@@ -12,6 +12,7 @@ from ..sim.errors import CaretreeError
 from ..sim.world import Frame, Side
 from .estimates import (
     ArmPosture,
+    ChestFront,
     Cover,
     Estimate,
     GownSide,
@@ -322,6 +323,18 @@ class Senses(ABC):
 
         Raises:
             PerceptionFailure: no gown in the image, or too little of the trunk in view.
+        """
+
+    @abstractmethod
+    def chest_front(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestFront:
+        """How high the front of the chest lies, with what covers it.
+
+        Args:
+            frame: a view of the person.
+            shoulders_in_map: (3,) middle between the shoulders [m].
+
+        Raises:
+            PerceptionFailure: too little of the chest in view.
         """
 
     @abstractmethod

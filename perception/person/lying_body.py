@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.world import Frame, Side
+from ..estimates import Head
 from .head import DEFAULT as HEAD_DEFAULT
 from .head import HeadTuning, head_seen
 from .person_facts import PERSON
@@ -102,12 +103,21 @@ def body_seen(
     Raises:
         PerceptionFailure: no head is seen.
     """
-    head = head_seen(frame, bed, head_tuning, skin_tuning)
+    return body_of(head_seen(frame, bed, head_tuning, skin_tuning), float(bed[1, 2]), scale)
+
+
+def body_of(head: Head, mattress: float, scale: float | None = None) -> LyingBody:
+    """The body that belongs to a head.
+
+    Args:
+        head: as it was seen.
+        mattress: z of the bed's upper side [m].
+        scale: body size relative to an adult of 174 cm; judged by how high the head rises when omitted.
+    """
     if scale is None:
-        height = head.crown_in_map[2] - bed[1, 2]
-        scale = float(np.clip(height / PERSON.head_height, *PERSON.scale_range))
+        scale = float(np.clip((head.crown_in_map[2] - mattress) / PERSON.head_height, *PERSON.scale_range))
     return LyingBody(
-        mattress=float(bed[1, 2]),
+        mattress=mattress,
         middle=head.middle,
         shoulder_y=float(head.crown_in_map[1]) + PERSON.crown_to_shoulder * scale,
         scale=scale,

@@ -134,25 +134,38 @@ def expected_body(bed: np.ndarray) -> dict[str, tuple[np.ndarray, float]]:
     return body_parts(x, shoulders - PERSON.crown_to_shoulder, float(bed[1, 2]))
 
 
-def body_parts(middle: float, crown: float, mattress: float) -> dict[str, tuple[np.ndarray, float]]:
+def body_parts(
+    middle: float,
+    crown: float,
+    mattress: float,
+    *,
+    scale: float = 1.0,
+    front: float = PERSON.front_height,
+    breastbone: float | None = None,
+) -> dict[str, tuple[np.ndarray, float]]:
     """Head, trunk and legs of a person on the back, as chains of points with a radius [m].
 
     Args:
         middle: x of the midline in the map [m].
         crown: y of the far end of the head [m].
         mattress: height of the mattress [m].
+        scale: body size relative to an adult of 174 cm.
+        front: of the trunk, above the mattress [m].
+        breastbone: height of the trunk's front on the midline, if it lies lower [m].
     """
-    shoulders, level = crown + PERSON.crown_to_shoulder, mattress + PERSON.axis_height
-    radius = PERSON.front_height / 2
+    shoulders, radius = crown + PERSON.crown_to_shoulder * scale, front / 2
+    level, dip = mattress + radius, front - min(front, front if breastbone is None else breastbone)
     aside = PERSON.trunk_half_width - radius
     hips = shoulders + PERSON.trunk_length
     feet = hips + PERSON.leg_length
     low = shoulders + radius / 2  # the trunk is round below the shoulders
     left, right = middle - aside, middle + aside
-    trunk = np.array(((left, hips, level), (left, low, level), (right, low, level), (right, hips, level)))
+    between = (middle, low, level - dip)
+    trunk = np.array(((left, hips, level), (left, low, level), between, (right, low, level), (right, hips, level)))
     flat = mattress + PERSON.leg_radius
     legs = np.array(((left, feet, flat), (left, hips, flat), (right, hips, flat), (right, feet, flat)))
-    head = np.array(((middle, crown + PERSON.head_radius, level), (middle, shoulders, level)))
+    axis = mattress + PERSON.axis_height
+    head = np.array(((middle, crown + PERSON.head_radius, axis), (middle, shoulders, axis)))
     return {HEAD: (head, PERSON.head_radius), TRUNK: (trunk, radius), LEGS: (legs, PERSON.leg_radius)}
 
 

@@ -12,6 +12,7 @@ from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
     ArmPosture,
+    ChestFront,
     Cover,
     Estimate,
     GownSide,
@@ -25,6 +26,7 @@ from ...perception.estimates import (
     SleeveOpening,
     WornSleeve,
 )
+from ...perception.person.person_facts import PERSON
 from ...perception.senses import Senses
 from ...sim.quantity import Quantities, quantity
 from ...sim.robot.kinematics import planar_pose
@@ -188,6 +190,11 @@ class ScriptedSenses(Senses):
         """All of it."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 
+    def chest_front(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestFront:
+        """An adult's, and flat."""
+        height = PERSON.front_height
+        return ChestFront(stamp=frame.stamp, confidence=0.9, height=height, breastbone=height)
+
     def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
         """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
         place = np.array((self._collar_aside, -0.5 + below, 0.83))
@@ -203,7 +210,7 @@ class ScriptedSenses(Senses):
 
     def head(self, frame: Frame) -> Head:
         """On the midline of the bed."""
-        return Head(stamp=frame.stamp, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.72)), middle=0.0)
+        return Head(stamp=frame.stamp, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.88)), middle=0.0)
 
     def arm(
         self, frame: Frame, *, side: Side, grip_in_map: np.ndarray | None = None, arm_coordinate: float = 1.0

@@ -58,6 +58,7 @@ ELSEWHERE = {
     "worn_sleeve",
     "sleeve_strap",
     "chest_cover",
+    "chest_front",
 }  # these need a whole scene
 
 

@@ -1,6 +1,7 @@
 """Skin of the person on the bed, and of nobody else."""
 
 import numpy as np
+from caretree.perception.image.surfaces import Surface, surfaces
 from caretree.perception.person.skin import skin_on_bed
 
 
@@ -30,3 +31,11 @@ def test_no_skin(bed, black):
     points, mask = skin_on_bed(black, bed)
     assert points.shape == (0, 3)
     assert not np.any(mask)
+
+
+def test_the_mask_of_skin_is_not_beside_it(scenes, bed):
+    frame = scenes.person(0).frame(0)
+    mask = skin_on_bed(frame, bed)[1]
+    skin = surfaces(frame.rgb) == Surface.SKIN
+    assert not (mask & ~skin).any()
+    assert mask.sum() > 0.95 * skin.sum()

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import Head
+from caretree.perception.estimates import ChestFront, Head
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import Frame
 from caretree.skills.belief.person_tracking import (
@@ -18,6 +18,7 @@ from caretree.skills.belief.person_tracking import (
 from caretree.skills.core.context import Context
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.hold import Hold
+from caretree.skills.geometry.person_zone import TRUNK
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.guard.guard import GuardedWorld
 
@@ -42,6 +43,7 @@ def looking_down(stamp=0.0, covered=(), colour=(0, 0, 0)):
     )
 
 
+HIDDEN = PerceptionFailure(Problem.OUT_OF_REACH, "chest of the person")
 LOST = PerceptionFailure(Problem.ARM_LOST, "right arm")
 HEAD = Head(stamp=0.0, confidence=0.9, crown_in_map=np.array((0.0, -0.86, 0.72)), middle=0.0)
 
@@ -50,11 +52,12 @@ class Watcher(Skill):
     commands = False
 
 
-def make(arm, elsewhere=LOST, frames=None, head=HEAD):
+def make(arm, elsewhere=LOST, frames=None, head=HEAD, chest=HIDDEN):
     """A skill that sees an arm as `arm` says, and as `elsewhere` says where it does not show any more."""
     world = ScriptedWorld(frames=frames or (lambda camera, time: looking_down(time)))
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, senses=fake_senses(arm=arm, relocalised_arm=elsewhere, head=head))
+    senses = fake_senses(arm=arm, relocalised_arm=elsewhere, head=head, chest_front=chest)
+    context = Context(world=guard, guard=guard, senses=senses)
     return Watcher("watch", context), world
 
 
@@ -137,6 +140,23 @@ def test_who_looks_at_the_person_does_not_see_an_arm_that_is_covered():
     world.clock.wait_until(4.0)
     assert see_person(skill) == ["right"]
     assert watch_of(skill).arms["right"].points_in_map == pytest.approx(elsewhere.points_in_map)
+
+
+def test_the_chest_is_as_high_as_the_lowest_that_was_seen_of_it():
+    heights = [0.24, 0.19, 0.26]
+
+    def chest(frame, shoulders_in_map):
+        height = heights.pop(0)
+        return ChestFront(stamp=frame.stamp, confidence=1.0, height=height, breastbone=height - 0.03)
+
+    skill, world = make(lying_posture("right"), chest=chest)
+    zone, above, gaps = skill.context.guard.zone, np.array(((-0.1, -0.3, 1.0), (-0.1, -0.3, 1.0))), []
+    while heights:
+        see_person(skill)
+        gaps.append(zone.gaps(above[None], np.zeros(1))[0][0, [name == TRUNK for name in zone.names]].min())
+        world.clock.wait_until(world.clock.now() + 1.0)
+    # [m] below the point; the mattress lies at 0.7
+    assert gaps == pytest.approx((0.3 - 0.24, 0.3 - 0.19, 0.3 - 0.19), abs=0.01)
 
 
 def test_after_the_person_has_moved_an_arm_is_unknown_until_it_is_found_anew():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.skills.geometry.person_zone import HEAD, LEGS, PARTS, TRUNK, WHOLE, PersonZone
+from caretree.skills.geometry.person_zone import HEAD, LEGS, PARTS, TRUNK, WHOLE, PersonZone, body_parts
 
 BED = np.array(((-0.5, -1.0, 0.5), (0.5, 1.0, 0.6)))  # [m]
 
@@ -49,6 +49,20 @@ def test_head_and_trunk_are_expected_in_the_middle_of_the_bed_before_they_are_se
     assert away[0, nearest] == pytest.approx((0.0, 0.0, 1.0), abs=0.1)
     zone.update(np.array(((0.2, -0.9, 0.7), (0.2, -0.6, 0.7))), part=HEAD, radius=0.1)
     assert zone.ends[zone.names.index(HEAD), 0] == pytest.approx((0.2, -0.9, 0.7)), "seen elsewhere"
+
+
+def test_the_trunk_is_as_high_as_it_was_seen_and_lower_at_the_breastbone():
+    zone = PersonZone(np.zeros((2, 3)))
+    points, radius = body_parts(0.0, -0.86, 0.6, front=0.20, breastbone=0.17)[TRUNK]
+    zone.update(points, part=TRUNK, radius=radius)
+    # [m] just below the shoulders, at -0.55 where the crown is at -0.86
+    assert zone.distance(np.array(((0.10, -0.45, 1.0), (0.0, -0.45, 1.0)))) == pytest.approx((0.20, 0.225), abs=0.01)
+
+
+def test_a_smaller_person_has_shoulders_nearer_to_the_crown():
+    adult, small = (body_parts(0.0, -0.86, 0.6, scale=scale)[HEAD][0] for scale in (1.0, 0.9))
+    assert adult[1, 1] - small[1, 1] == pytest.approx(0.031)  # [m]
+    assert adult[0] == pytest.approx(small[0])
 
 
 def test_a_part_that_is_seen_again_has_moved_and_one_forgotten_is_gone():
