@@ -41,8 +41,11 @@ class SpreadTuning(Quantities):
         "from there, aside, within which the collar is left as it is",
         "measured: a sleeve that is drawn up afterwards takes the collar along by 1 to 3 cm, of 7 cm that are allowed",
     )
-    headward: float = quantity(
-        0.05, "m", "from the line of the shoulders, beyond which the collar is drawn footward", "choice: off the face"
+    lies_along: tuple[float, float] = quantity(
+        (-0.06, 0.05),
+        "m",
+        "headward of the line of the shoulders, within which the collar is left as it is",
+        "choice: off the face, and 2 cm of the 8 cm footward that are allowed",
     )
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
@@ -118,7 +121,8 @@ class Spread(Skill):
         aside, ahead = off_middle(point.position_in_map, middle)
         self.note(f"the collar's middle is {aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders")
         self.grasp = point
-        if abs(aside) < tuning.lies_well and ahead < tuning.headward:
+        lowest, highest = tuning.lies_along
+        if abs(aside) < tuning.lies_well and lowest < ahead < highest:
             yield
             return
         yield from self._take(middle)

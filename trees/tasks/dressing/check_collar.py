@@ -18,8 +18,11 @@ class CheckCollarTuning(Quantities):
     """Where the collar of a gown that is worn neatly lies."""
 
     max_aside: float = quantity(0.07, "m", "of its middle from the midline", "design requirement: as a nurse leaves it")
-    max_along: float = quantity(
+    max_headward: float = quantity(
         0.10, "m", "of its middle from the line of the shoulders", "design requirement: as a nurse leaves it"
+    )
+    max_footward: float = quantity(
+        0.08, "m", "of its middle from the line of the shoulders", "design requirement: as a nurse leaves it"
     )
 
 
@@ -40,6 +43,6 @@ class CheckCollar(Skill):
         aside, ahead = off_middle(seen.position_in_map, middle)
         where = f"{aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders"
         self.note(f"the collar's middle is {where}")
-        if abs(aside) > self.tuning.max_aside or abs(ahead) > self.tuning.max_along:
+        if abs(aside) > self.tuning.max_aside or not -self.tuning.max_footward <= ahead <= self.tuning.max_headward:
             raise SkillFailure(Reason.COLLAR_ASIDE, where)
         yield

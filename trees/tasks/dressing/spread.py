@@ -24,7 +24,8 @@ from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 
-ROOM = CheckCollarTuning(max_aside=DRESSING.collar_room[0], max_along=DRESSING.collar_room[1])
+ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_room
+ROOM = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
 
 
 def spread(context: Context) -> Stage:

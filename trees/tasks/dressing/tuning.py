@@ -128,10 +128,10 @@ class DressingTuning(Quantities):
     armhole_will_do: float = quantity(
         0.70, "1", "of the upper arm, below which the sleeve counts as low in the end", "design requirement"
     )
-    collar_room: tuple[float, float] = quantity(
-        (0.10, 0.08),
+    collar_room: tuple[float, float, float] = quantity(
+        (0.10, 0.08, 0.30),
         "m",
-        "of the collar's middle aside and headward, within which a sleeve may be drawn up by its front edge",
+        "of the collar's middle aside, headward and footward, within which a sleeve may be drawn up by its front edge",
         "measured: seen at 0.04 (101) it stayed off the face; from 0.13 it was taken over the face (105, twice)",
     )
     settle_attempts: int = quantity(

@@ -34,7 +34,9 @@ def collar(aside, headward):
         (collar(0.09, 0.0), Reason.COLLAR_ASIDE),
         (collar(-0.09, 0.0), Reason.COLLAR_ASIDE),
         (collar(0.0, 0.12), Reason.COLLAR_ASIDE),
-        (collar(0.0, -0.12), Reason.COLLAR_ASIDE),
+        (collar(0.0, 0.09), None),
+        (collar(0.0, -0.07), None),
+        (collar(0.0, -0.09), Reason.COLLAR_ASIDE),
         (PerceptionFailure(Problem.NOTHING_SEEN, "neck binding"), Reason.NOTHING_SEEN),
     ],
 )
