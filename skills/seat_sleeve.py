@@ -10,7 +10,7 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import watch_arm
+from .belief.person_tracking import chest_top, watch_arm
 from .control.carry import Carry, carry, ease_off
 from .control.fingers import open_gripper
 from .control.hands import hand_now
@@ -46,6 +46,13 @@ class SeatSleeveTuning(Quantities):
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
         "measured: on two recorded states armholes at 0.70 and 0.71 came to rest at 0.77 and 0.86; 0.20 m along it, "
         "which is farther headward, 0.76 and 0.77, with the collar on the throat; by the strap, 0.65 to 0.75",
+    )
+    above_chest: float = quantity(
+        0.04,
+        "m",
+        "of the hand there, above the front of the chest, at least",
+        "measured: at 0.10 m above the shoulder, which is as high as the chest, fingers met the trunk with 64 to 85 N "
+        "as they opened or before (101, 102, 105)",
     )
     carry: Carry = field(default_factory=lambda: Carry(max_load=8.0))
     withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the sleeve")
@@ -101,6 +108,7 @@ class SeatSleeve(Skill):
         yield from carry(self, self.hand, hand_now(self, self.hand)[:3, 3] + tuning.lift * UP, tuning.carry)
         inward, headward, up = tuning.drawn_to
         goal = arm[0] - inward * outwards(self.side) + headward * HEADWARD + up * UP
+        goal[2] = max(goal[2], chest_top(self) + tuning.above_chest)
         yield from carry(self, self.hand, goal, tuning.carry)
-        yield from open_gripper(self, self.hand)
+        yield from open_gripper(self, self.hand, tuning.opening)  # wider, a finger would come down to the chest
         yield from withdraw(self, [self.hand], tuning.withdrawal)

@@ -282,6 +282,12 @@ def _tell_body(skill: Skill, frame: Frame, tuning: PersonTrackingTuning) -> None
         skill.context.guard.update_person(points, part=part, radius=radius)
 
 
+def chest_top(skill: Skill) -> float:
+    """Height of the front of the chest in the map, as the guard knows it; an adult's where it was not seen [m]."""
+    front = watch_of(skill).front
+    return float(skill.world.room.bed[1, 2]) + (PERSON.front_height if front is None else float(front[0]))
+
+
 def careful(
     skill: Skill, fast: float, *, tuning: PersonTrackingTuning = PERSON_TRACKING
 ) -> Callable[[np.ndarray], float]:

@@ -21,7 +21,9 @@ class ClearanceTuning(Quantities):
     """
 
     fingers_head: float = quantity(0.02, "m", "of fingers to head and neck", "choice: the head is seen to 1 cm")
-    fingers_trunk: float = quantity(-0.005, "m", "of fingers to trunk and legs", "choice: cloth lies there")
+    fingers_trunk: float = quantity(
+        -0.003, "m", "of fingers to trunk and legs", "choice: cloth lies there, and 1 mm into the skin are 20 N"
+    )
     fingers_arm: float = quantity(-0.02, "m", "of fingers to arms", "choice: an arm is tracked to 1 or 2 cm")
     palm_head: float = quantity(0.02, "m", "of palm and wrist to head and neck", "choice: the head is seen to 1 cm")
     palm_trunk: float = quantity(0.01, "m", "of palm and wrist to trunk and legs", "choice: the trunk is seen to 1 cm")
