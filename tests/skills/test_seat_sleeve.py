@@ -15,7 +15,7 @@ from .bench import LeafBench, beside_bed, pulls
 ARM = lying_posture("right").points_in_map
 PLACE = ARM[0] + 0.35 * (ARM[1] - ARM[0]) + (0.0, 0.0, 0.06)
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
-CHEST = 0.7 + 0.22  # [m] the front of an adult's
+CHEST = 0.6 + 0.22  # [m] the front of an adult
 HELD = Estimate(stamp=0.0, confidence=0.9)
 FRONT = GraspPoint(
     stamp=0.0,
