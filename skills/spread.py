@@ -36,16 +36,13 @@ class SpreadTuning(Quantities):
         0.03, "m", "of the collar's middle from the line of the shoulders", "choice: below the throat, above the chest"
     )
     lies_well: float = quantity(
-        0.02,
-        "m",
-        "from there, aside, within which the collar is left as it is",
-        "measured: a sleeve that is drawn up afterwards takes the collar along by 1 to 3 cm, of 7 cm that are allowed",
+        0.05, "m", "from there, aside, within which the collar is left as it is", "choice: 2 cm of the 7 cm allowed"
     )
     lies_along: tuple[float, float] = quantity(
-        (-0.06, 0.05),
+        (-0.06, 0.07),
         "m",
         "headward of the line of the shoulders, within which the collar is left as it is",
-        "choice: off the face, and 2 cm of the 8 cm footward that are allowed",
+        "choice: 2 and 3 cm of the 8 and 10 cm that are allowed",
     )
     max_tilt: float = quantity(
         float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"

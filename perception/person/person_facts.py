@@ -39,6 +39,12 @@ class PersonFacts(Quantities):
         0.55, "m", "of the shoulders from the middle of the bed", "choice: with the head on a pillow"
     )
     head_radius: float = quantity(0.10, "m", "of head and neck, with hair", "choice: an adult's")
+    neck_length: float = quantity(
+        0.08,
+        "m",
+        "of the end of the neck's axis from the shoulders, towards the head",
+        "choice: its front, as round as the head, ends 2 cm footward of them, at the notch of the breastbone",
+    )
     shoulder_half_width: float = quantity(0.20, "m", "from the midline to the shoulder joint", _WINTER)
     trunk_half_width: float = quantity(0.20, "m", "from the midline to the flank", _WINTER)
     head_height: float = quantity(

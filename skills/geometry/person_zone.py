@@ -165,7 +165,8 @@ def body_parts(
     flat = mattress + PERSON.leg_radius
     legs = np.array(((left, feet, flat), (left, hips, flat), (right, hips, flat), (right, feet, flat)))
     axis = mattress + PERSON.axis_height
-    head = np.array(((middle, crown + PERSON.head_radius, axis), (middle, shoulders, axis)))
+    neck = shoulders - PERSON.neck_length * scale
+    head = np.array(((middle, crown + PERSON.head_radius, axis), (middle, neck, axis)))
     return {HEAD: (head, PERSON.head_radius), TRUNK: (trunk, radius), LEGS: (legs, PERSON.leg_radius)}
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from py_trees.behaviour import Behaviour
 
@@ -31,15 +33,16 @@ ROOM = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FO
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    The right sleeve, which the left one has pulled down, comes first: drawn up, it takes the left one down by more than
-    the left one takes it.  The collar follows either of them, as it is taken along by up to 9 cm.  Only then is judged
-    whether the sleeves will do: one that seems low is no reason to leave the rest undone.
+    The right sleeve, which the left one has pulled down, comes first.  A sleeve that is drawn up takes the front along,
+    and with it the other one down, by about half as much as it gains itself: after the left one both are seen to again.
+    The collar, which is taken along by up to 9 cm, comes last.  Only then is judged whether the sleeves will do: one
+    that seems low is no reason to leave the rest undone.
     """
+    once_more = [settle_sleeve(context, "right", " again"), settle_sleeve(context, "left", " again")]
     return timed_stage(
         "spread",
         settle_sleeve(context, "right"),
-        straighten_collar(context, "right"),
-        settle_sleeve(context, "left"),
+        settle_sleeve(context, "left", then=once_more),
         straighten_collar(context, "left"),
         will_do(context, "left"),
         will_do(context, "right"),
@@ -50,14 +53,14 @@ def spread(context: Context) -> Stage:
     )
 
 
-def straighten_collar(context: Context, side: Side) -> Behaviour:
+def straighten_collar(context: Context, side: Side, when: str = "") -> Behaviour:
     """From beside one shoulder, bring the collar's middle over the breastbone.
 
     Where the hand cannot bring it there, it may lie well enough all the same, which is looked at in the end.
     """
-    collar = Scope(context, f"{side} collar", side=side, hand=PULLING[side])
+    collar = Scope(context, f"{side} collar{when}", side=side, hand=PULLING[side])
     return sequence(
-        "straighten the collar",
+        f"straighten the collar{when}",
         Navigate("go round to its side", collar, goal=f"bed_{side}"),
         Navigate("stand there", collar, goal=stance(side, "collar")),
         LookAtPerson("look", collar),
@@ -70,12 +73,18 @@ def straighten_collar(context: Context, side: Side) -> Behaviour:
     )
 
 
-def settle_sleeve(context: Context, side: Side) -> Behaviour:
+def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[Behaviour] = ()) -> Behaviour:
     """See to a sleeve that has slipped down: far down, by its strap first; then by the front of its armhole.
 
     The arm lies: lowered afterwards, it would draw the sleeve down again.
+
+    Args:
+        context: shared services.
+        side: of the sleeve.
+        when: what is added to the names of its nodes.
+        then: what follows once the armhole was drawn up by its front.
     """
-    sleeve = arm_scope(context, f"{side} sleeve", side)
+    sleeve = arm_scope(context, f"{side} sleeve{when}", side)
 
     def go(name: str) -> list[Behaviour]:
         return [
@@ -89,10 +98,18 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
 
     def seat() -> Behaviour:
         """A collar that is near the throat leaves no room: the armhole would take it on over the face."""
-        room = CheckCollar("the collar leaves room", sleeve, tuning=ROOM)
+        room = fallback(
+            "room for the sleeve",
+            CheckCollar("the collar leaves room", sleeve, tuning=ROOM),
+            sequence(
+                "make room",
+                straighten_collar(context, side, f"{when} for the sleeve"),
+                *go("come back from the collar"),
+                CheckCollar("leaves room now", sleeve, tuning=ROOM),
+            ),
+        )
         drawn = SeatSleeve("seat", sleeve, hand=sleeve["pulling"])
-        back = [back_off("leave it", sleeve), LookAtPerson("look again", sleeve)]
-        return sequence("seat the sleeve", room, drawn, *back)
+        return sequence("seat the sleeve", room, drawn, back_off("leave it", sleeve), *(then or go("look again")))
 
     once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
     drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
@@ -102,7 +119,7 @@ def settle_sleeve(context: Context, side: Side) -> Behaviour:
     near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
     sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_sits)
     return sequence(
-        f"settle the {side} sleeve",
+        f"settle the {side} sleeve{when}",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
         *go("go up"),
         put_down("first", sleeve),

@@ -120,25 +120,30 @@ class DressingTuning(Quantities):
         "measured: by its front edge alone an armhole at 0.44 came to 0.53, others at 0.51 to 0.62 to 0.71 to 0.85",
     )
     armhole_sits: float = quantity(
-        0.80,
+        0.76,
         "1",
         "of the upper arm, below which the armhole is drawn up by its front edge",
-        "choice: what is asked for, 0.7, and what the collar and the other sleeve take away again, 0.03 to 0.08",
+        "choice: what is asked for, 0.7, and what the collar and the other sleeve take away again, 0.03 to 0.08; "
+        "drawn up from 0.83, one came to rest at 0.69 (105)",
     )
     armhole_will_do: float = quantity(
-        0.70, "1", "of the upper arm, below which the sleeve counts as low in the end", "design requirement"
+        0.72,
+        "1",
+        "of the upper arm, below which the sleeve counts as low in the end",
+        "design requirement: 0.7, and half a standard deviation of what is seen of it",
     )
     collar_room: tuple[float, float, float] = quantity(
-        (0.10, 0.08, 0.30),
+        (0.20, 0.08, 0.30),
         "m",
         "of the collar's middle aside, headward and footward, within which a sleeve may be drawn up by its front edge",
-        "measured: seen at 0.04 (101) it stayed off the face; from 0.13 it was taken over the face (105, twice)",
+        "measured: headward, seen at 0.04 (101) it stayed off the face; from 0.13 it was taken over the face (105, "
+        "twice); aside, the sleeve brings it back",
     )
     settle_attempts: int = quantity(
-        3,
+        2,
         "1",
         "at a low sleeve, the look before it is drawn included",
-        "measured: a second draw brings 0.71 to 0.81 (101), a third one nothing",
+        "measured: turn by turn both gain, on four recorded states 0.57 to 0.76 and more; at once again, little",
     )
     again_load: float = quantity(
         3.7,

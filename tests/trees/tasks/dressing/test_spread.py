@@ -41,9 +41,9 @@ def rehearsed(reach, headward=0.0):
 
 
 @pytest.mark.parametrize(
-    ("reach", "taken"), [(0.85, []), (0.70, ["right", "left"]), (0.55, ["right", "right", "left", "left"])]
+    ("reach", "taken"), [(0.85, []), (0.70, ["right", "left"]), (0.55, ["right", "left", "right", "left"])]
 )
-def test_low_sleeves_are_drawn_up_the_right_one_first_until_they_sit_and_twice_at_most(reach, taken):
+def test_low_sleeves_are_drawn_up_turn_by_turn_until_they_sit_and_twice_at_most(reach, taken):
     assert rehearsed(reach) == ("success", taken)
 
 
