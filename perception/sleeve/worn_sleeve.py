@@ -25,9 +25,7 @@ class WornSleeveTuning(Quantities):
     depth: float = quantity(
         0.01, "m", "below the arm's axis, down to which tape counts for the reach", "choice: what a camera above sees"
     )
-    far_end: float = quantity(
-        0.95, "1", "quantile of the armhole's points that is its far end", "choice: few are noise"
-    )
+    far_end: float = quantity(0.95, "1", "quantile of the armhole's points that is its end", "choice: few are noise")
     reach: tuple[float, float, float] = quantity(
         (1.08, -0.73, -1.30),
         "1, 1/m, 1/m",
