@@ -1,4 +1,4 @@
-# make dress | make learn | make test | make lint | make types | make lock | make clean
+# make dress | make learn | make test | make lint | make types | make docs | make lock | make clean
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -10,13 +10,14 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 
-.PHONY: help setup dress learn test lint types lock clean
+.PHONY: help setup dress learn test lint types docs lock clean
 
 help:
 	@echo "make dress   set up, then dress the person: gown on the rail to dressed (SEED=$(SEED))"
 	@echo "make learn   also install what training and clusters need (torch for the CPU, Ray)"
 	@echo "make test    set up, then run the tests with the coverage floor of pyproject.toml"
-	@echo "make lint    ruff;   make types   pyright;   make lock   renew requirements.lock;   make clean"
+	@echo "make lint    ruff;   make types   pyright;   make docs   API pages, into build/api"
+	@echo "make lock    renew requirements.lock;   make clean"
 
 setup: $(READY)
 
@@ -47,6 +48,9 @@ lint: $(READY)
 
 types: $(READY)
 	@$(BIN)/pyright
+
+docs: $(READY)
+	@$(BIN)/python docs/build_api.py build/api
 
 # Resolves setup.cfg afresh in a throw-away environment and writes down what came out.
 lock:

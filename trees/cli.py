@@ -94,6 +94,14 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--port", type=port, metavar="N", help="of the view (default: the first free one from 8080 on)")
+    run.add_argument(
+        "--groot",
+        type=port,
+        nargs="?",
+        const=1667,
+        metavar="PORT",
+        help="let Groot2 watch, and hold a simulated run at breakpoints (default: port 1667, and the next one)",
+    )
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from xml.sax.saxutils import escape, quoteattr
 
 from py_trees.behaviour import Behaviour
@@ -59,16 +59,13 @@ class _Writing:
     def _tree(self, name: str, root: Behaviour) -> str:
         """Write a tree of its own and return its ID."""
         body = self._node(root, 2, top=True)
-        taken = {*self._trees, *self._vocabulary.names()}
-        found, number = name, 2
-        while found in taken:
-            found, number = f"{name}{number}", number + 1
+        found = free_name(name, {*self._trees, *self._vocabulary.names()})
         self._trees[found] = body
         return found
 
     def _node(self, node: Behaviour, depth: int, top: bool = False) -> list[str]:
         if isinstance(node, Stage) and not top:
-            tree = self._tree(_identifier(node.name), node)
+            tree = self._tree(tree_name(node), node)
             return [f'{INDENT * depth}<SubTree ID={quoteattr(tree)} _autoremap="true"/>']
         try:
             tag, attributes, parts = self._parts(node)
@@ -155,7 +152,15 @@ def _model(category: str, name: str, ports: list[PortModel] | tuple[PortModel, .
     return [*lines, f"{INDENT * 2}</{category}>"]
 
 
-def _identifier(name: str) -> str:
-    """An ID that BehaviorTree.CPP takes: no spaces, points or slashes."""
-    words = re.findall(r"\w+", name)
+def tree_name(stage: Behaviour) -> str:
+    """An ID that BehaviorTree.CPP takes for the tree of a stage: no spaces, points or slashes."""
+    words = re.findall(r"\w+", stage.name)
     return "".join(word[0].upper() + word[1:] for word in words) + "Stage"
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """`name`, numbered if it is taken."""
+    found, number = name, 2
+    while found in taken:
+        found, number = f"{name}{number}", number + 1
+    return found

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import errno
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...perception.senses import Senses
 from ...sim.abilities import HasTiming, SupportsRecording
@@ -15,7 +16,7 @@ from ...sim.command_line import drop_output
 from ...sim.errors import CaretreeError, DisplayError, RecordError
 from ...sim.evaluate.run_record import Judgement
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
-from ...sim.fence import fenced, said
+from ...sim.fence import said
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
@@ -30,9 +31,7 @@ from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given
 from ..run.worlds import make_world, prepare_stage
-
-if TYPE_CHECKING:
-    from ..watch.live import LiveView
+from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
 RATE_HZ = 15.0
@@ -78,49 +77,30 @@ def main(options: argparse.Namespace) -> int:
         "build": given.parameters,
     }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
-    view = _view(options)
-    # claimed before the world is built, which takes a while: two runs begun together get a folder each
-    claim = (
-        FolderClaim(Path(options.out))
-        if options.out
-        else claim_free(Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
-    )
-    try:
-        with StopSignals() as signals:
-            inner, senses = make_world(
-                options.world,
-                task,
-                seed=options.seed,
-                gown=options.gown,
-                person=options.person,
-                model=options.model,
-                kind=options.world_kind,
-            )
-            try:
-                return _run(options, task, inner, senses, faults, given, parameters, claim, signals, view)
-            finally:
-                inner.close()
-    finally:
-        claim.release()
-        if view is not None:
-            view.close()
-
-
-def _view(options: argparse.Namespace) -> LiveView | None:
-    """The page that somebody asked for.
-
-    Raises:
-        CaretreeError: it cannot be served, or a port is given for none.
-    """
-    if not options.view:
-        if options.port is not None:
-            raise CaretreeError("--port is the port of the view: give --view too")
-        return None
-    from ..watch.live import LiveView  # viser is needed only here
-
-    view = LiveView(f"{options.task}, seed {options.seed}", options.port)
-    print(f"live view: {view.url}", flush=True)
-    return view
+    with closing(Watchers(options)) as watchers:
+        # claimed before the world is built, which takes a while: two runs begun together get a folder each
+        claim = (
+            FolderClaim(Path(options.out))
+            if options.out
+            else claim_free(Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
+        )
+        try:
+            with StopSignals() as signals:
+                inner, senses = make_world(
+                    options.world,
+                    task,
+                    seed=options.seed,
+                    gown=options.gown,
+                    person=options.person,
+                    model=options.model,
+                    kind=options.world_kind,
+                )
+                try:
+                    return _run(options, task, inner, senses, faults, given, parameters, claim, signals, watchers)
+                finally:
+                    inner.close()
+        finally:
+            claim.release()
 
 
 def _refuse_faulty(task: Task, stage: str | None) -> None:
@@ -147,7 +127,7 @@ def _run(
     parameters: dict[str, Any],
     claim: FolderClaim,
     signals: StopSignals,
-    view: LiveView | None,
+    watchers: Watchers,
 ) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
     events = _Events()
@@ -161,18 +141,17 @@ def _run(
         senses=senses,
         params=given.parameters | task.parameters(options.stage),
         settings=given.settings,
-        before_tick=view.before_tick if view else None,
+        before_tick=watchers.before_tick,
     )
     witness = Witness()
     run.context.watch_senses(witness.watch)
     prepare_stage(inner, task, options.stage)
     directory = claim.directory
     recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
-    events.recorder, events.looks, events.view = recorder, LookLog(directory, witness), view
+    events.recorder, events.looks, events.watchers = recorder, LookLog(directory, witness), watchers
     try:
         write_outline(directory, outline_of(run.root))
-        if view is not None:
-            view.follow(run, inner, witness)
+        watchers.follow(run, inner, witness)
         if isinstance(inner, SupportsRecording):
             inner.attach_recorder(recorder, run.lost)
         signals.run = run
@@ -193,9 +172,7 @@ def _run(
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
     if isinstance(world, FaultyWorld):
         _tell_faults(world)
-    if view is not None:
-        fenced(view.finish, lambda error: print(f"the view failed: {said(error)}"))(result.reason)
-        print(f"look at it again: caretree view {directory}")
+    watchers.finish(result.reason, directory)
     print(f"{result.outcome.replace('_', ' ')}: {result.reason}")
     if judgement is not None:
         print(f"judged from the truth: {judgement}")
@@ -226,11 +203,11 @@ def _finish(recorder: Recorder, result: RunResult) -> RecordError | None:
 
 
 class _Events:
-    """Hands on what happens, to the recorder and the view, which exist only once the task is known to build."""
+    """Hands on what happens, to the recorder and whoever watches, which exist only once the task is known to build."""
 
     recorder: Recorder | None = None
     looks: LookLog | None = None
-    view: LiveView | None = None
+    watchers: Watchers | None = None
 
     def event(self, event: Mapping[str, Any]) -> None:
         """Append one event."""
@@ -238,6 +215,8 @@ class _Events:
             self.recorder.event(event)
         if self.looks is not None:
             self.looks.event(event)
+        if self.watchers is not None:
+            self.watchers.event(event)
 
     def progress(self, progress: Progress) -> None:
         """Write stage and skill on the video and the page, and tell the operator."""
@@ -245,8 +224,8 @@ class _Events:
             stage = self.recorder.caption[0]
             words = f"{progress.name}{f': {progress.message}' if progress.message else ''}"
             self.recorder.caption = (progress.name, "") if progress.kind == "stage" else (stage, words)
-        if self.view is not None:
-            self.view.progress(progress)
+        if self.watchers is not None:
+            self.watchers.progress(progress)
         show(progress)
 
 

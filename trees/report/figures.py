@@ -85,7 +85,8 @@ def timeline(
     names = list(dict.fromkeys(span.name for span in spans))
     for name in names[:ROWS_MAX]:
         bars.append((name, [(span.t_start, span.t_end, span.status.lower()) for span in spans if span.name == name]))
-    figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)))
+    above = 0.03 * max((len(which) for _, which in faults), default=0)  # [in] that the slanting names of faults rise
+    figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)) + above)
     for row, (_, pieces) in enumerate(bars):
         for start, stop, status in pieces:
             axis.barh(

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import difflib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, Protocol
@@ -169,6 +170,18 @@ class Run:
     def hangs(self) -> bool:
         """Whether the last tick began so long ago that it will hardly end by itself."""
         return time.perf_counter() - self._began > HANG
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """A while within a tick that is no work of a node's, such as a breakpoint's: neither too long, nor a hang."""
+        self._limit.pause()
+        self._began = float("inf")
+        try:
+            with self.stopwatch.of("held"):
+                yield
+        finally:
+            self._began = time.perf_counter()
+            self._limit.start()
 
     def _check_fault_nodes(self, world: FaultyWorld) -> None:
         skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})

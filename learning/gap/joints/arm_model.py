@@ -192,7 +192,7 @@ class ArmModel(RigidModel):
                     pin.computeJointTorqueRegressor(model, data, self.configuration(a), b, c)
                     for a, b, c in zip(q, dq, ddq, strict=True)
                 ]
-            )
+            ).reshape(*q.shape, -1)  # of one joint pinocchio gives a row, not a matrix
         return self._kept[key]
 
     def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:

@@ -6,7 +6,8 @@ import dataclasses
 
 import numpy as np
 from caretree.sim.evaluate.series import read_series
-from caretree.trees.report.figures import COLOURS, curves, part_style
+from caretree.trees.report.figures import COLOURS, curves, part_style, timeline
+from caretree.trees.report.timeline import Span
 from caretree.trees.watch.panel import COLOURS as OF_THE_VIEW
 
 
@@ -30,3 +31,9 @@ def test_empty_curves_are_left_out(make_record, tmp_path):
         bare, person_force=0 * series.person_force, speed=nobody, distance=np.full_like(series.distance, np.nan)
     )
     assert curves(still) is None
+
+
+def test_the_name_of_a_fault_has_room_above_a_short_timeline():
+    span = Span(path="task/wait", t_start=0.0, t_end=2.0, status="SUCCESS")
+    name = "dead_sensor@wait for the hand of the person:step"
+    assert height_of(timeline([], [span], 2.0, [(1.0, name)])) > height_of(timeline([], [span], 2.0))  # or it warns

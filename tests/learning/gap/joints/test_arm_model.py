@@ -33,6 +33,28 @@ def test_acceleration_undoes_load(arm):
     assert np.allclose([arm.acceleration(*x) for x in zip(Q, DQ, load, strict=True)], DDQ)
 
 
+PENDULUM = """<robot name="pendulum">
+  <link name="base"/>
+  <joint name="swing" type="revolute">
+    <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="9" velocity="9"/>
+  </joint>
+  <link name="rod"><inertial><origin xyz="0.2 0 0"/><mass value="1"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+</robot>"""
+
+
+def test_a_robot_of_one_joint_has_columns_too(tmp_path):
+    (tmp_path / "pendulum.urdf").write_text(PENDULUM)
+    one = ArmModel.from_urdf(tmp_path / "pendulum.urdf", 1)
+    motion = Q[:, :1], DQ[:, :1], DDQ[:, :1]
+    for term in one.body_terms():
+        columns = one.body_columns(term, *motion)
+        assert columns.shape == (len(Q), 1, len(term.parameters))
+        change = one.patched(term, {term.parameters[0].name: 0.5}).load(*motion) - one.load(*motion)
+        assert np.allclose(change, 0.5 * columns[:, :, 0], rtol=0.1)
+
+
 def families():
     """URDF files of example-robot-data that hold a robot, and how pinocchio is to read them."""
     return sorted(p for p in robots_folder().rglob("*.urdf") if p.stem != "ur3")
