@@ -196,9 +196,11 @@ class ClassicalSenses(Senses):
         """By the depth of cells on the front of the chest."""
         return chest_front(frame, self._bed, shoulders_in_map, self._tuning.chest_front)
 
-    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
+    def collar_middle(
+        self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0, flat: Side | None = None
+    ) -> GraspPoint:
         """Half the neck binding's length from its ends."""
-        return collar_middle(frame, near_in_map, below, self._tuning.collar)
+        return collar_middle(frame, near_in_map, below, flat, self._tuning.collar)
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""

@@ -11,6 +11,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import chest_top, watch_arm
+from .belief.shoulders import drawn_up
 from .control.carry import Carry, carry, ease_off
 from .control.fingers import open_gripper
 from .control.hands import hand_now
@@ -41,11 +42,11 @@ class SeatSleeveTuning(Quantities):
     depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the arm is right below it")
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
     drawn_to: tuple[float, float, float] = quantity(
-        (0.10, 0.02, 0.10),
+        (0.03, 0.02, 0.10),
         "m",
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
-        "measured: on two recorded states armholes at 0.70 and 0.71 came to rest at 0.77 and 0.86; 0.20 m along it, "
-        "which is farther headward, 0.76 and 0.77, with the collar on the throat; by the strap, 0.65 to 0.75",
+        "measured: on two recorded states armholes at 0.64 and 0.66 came to rest at 0.80 and 0.75, and no higher from "
+        "0.10 m inwards; by the strap, 0.65 to 0.75",
     )
     above_chest: float = quantity(
         0.04,
@@ -110,5 +111,6 @@ class SeatSleeve(Skill):
         goal = arm[0] - inward * outwards(self.side) + headward * HEADWARD + up * UP
         goal[2] = max(goal[2], chest_top(self) + tuning.above_chest)
         yield from carry(self, self.hand, goal, tuning.carry)
+        drawn_up(self).last = self.side
         yield from open_gripper(self, self.hand, tuning.opening)  # wider, a finger would come down to the chest
         yield from withdraw(self, [self.hand], tuning.withdrawal)

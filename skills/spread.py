@@ -12,7 +12,7 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
-from .belief.shoulders import between_shoulders, off_middle
+from .belief.shoulders import between_shoulders, look_at_collar, off_middle
 from .control.carry import Carry, carry
 from .control.fingers import open_gripper
 from .control.hands import hand_now
@@ -114,7 +114,7 @@ class Spread(Skill):
         tuning = self.tuning
         self.note("looks where the collar lies")
         middle = between_shoulders(self)
-        point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle)
+        point = look_at_collar(self, middle)
         aside, ahead = off_middle(point.position_in_map, middle)
         self.note(f"the collar's middle is {aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders")
         self.grasp = point
@@ -140,7 +140,7 @@ class Spread(Skill):
         """Grasp the cloth below the collar's middle, as near to it as the hand gets."""
         tuning, tries = self.tuning, Tries(MotionError)
         for below in tuning.below:
-            point = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle, below=below)
+            point = look_at_collar(self, middle, below)
             approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
             place, closing = point.position_in_map, point.closing_in_map
             with tries:

@@ -1,13 +1,49 @@
-"""Where the shoulders are, as a collar that sits well lies in the middle between them."""
+"""Where the collar lies between the shoulders.
+
+A sleeve that is drawn up by its front takes the gown's front along: on its side the neckline lies flat, and what there
+is too much of it hides in a fold at the other shoulder.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ...sim.world import SIDES
+from ...perception.estimates import GraspPoint
+from ...sim.world import SIDES, Side
 from ..core.skill import Skill
 from ..geometry.stances import HEADWARD
 from .person_tracking import watch_arm, watch_of
+
+
+@dataclass
+class DrawnUp:
+    """Which sleeve was drawn up by its front last."""
+
+    last: Side | None = None
+
+
+def drawn_up(skill: Skill) -> DrawnUp:
+    """The run's memory of it."""
+    return skill.context.memory.of(DrawnUp, DrawnUp)
+
+
+def look_at_collar(skill: Skill, middle: np.ndarray, below: float = 0.0) -> GraspPoint:
+    """Where the middle of the neckline lies, or the cloth `below` it [m].
+
+    Args:
+        skill: that looks.
+        middle: (3,) between the shoulders [m].
+        below: footward of the neckline, where the cloth is to be grasped [m].
+
+    Raises:
+        PerceptionFailure: too little of it is seen.
+        SensorLost: the camera is dead.
+        SkillFailure: its picture is stale.
+    """
+    frame, flat = skill.world.look("head"), drawn_up(skill).last
+    return skill.context.senses.collar_middle(frame, near_in_map=middle, below=below, flat=flat)
 
 
 def between_shoulders(skill: Skill) -> np.ndarray:

@@ -195,7 +195,9 @@ class ScriptedSenses(Senses):
         height = PERSON.front_height
         return ChestFront(stamp=frame.stamp, confidence=0.9, height=height, breastbone=height)
 
-    def collar_middle(self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0) -> GraspPoint:
+    def collar_middle(
+        self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0, flat: Side | None = None
+    ) -> GraspPoint:
         """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
         place = np.array((self._collar_aside, -0.5 + below, 0.83))
         self._collar_aside *= below == 0.0

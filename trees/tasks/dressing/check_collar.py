@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ....perception.errors import PerceptionFailure
 from ....sim.quantity import Quantities, quantity
-from ....skills.belief.shoulders import between_shoulders, off_middle
+from ....skills.belief.shoulders import between_shoulders, look_at_collar, off_middle
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason, SkillFailure
 from ....skills.core.skill import Skill
@@ -17,6 +17,12 @@ from ....skills.core.skill import Skill
 class CheckCollarTuning(Quantities):
     """Where the collar of a gown that is worn neatly lies."""
 
+    min_shown: float = quantity(
+        0.0,
+        "1",
+        "share of the neckline that has to show",
+        "choice: any tells that it is off the throat",
+    )
     max_aside: float = quantity(0.07, "m", "of its middle from the midline", "design requirement: as a nurse leaves it")
     max_headward: float = quantity(
         0.10, "m", "of its middle from the line of the shoulders", "design requirement: as a nurse leaves it"
@@ -37,9 +43,11 @@ class CheckCollar(Skill):
         """One look."""
         middle = between_shoulders(self)
         try:
-            seen = self.context.senses.collar_middle(self.world.look("head"), near_in_map=middle)
+            seen = look_at_collar(self, middle)
         except PerceptionFailure as hidden:
             raise SkillFailure(Reason.NOTHING_SEEN, f"{hidden}") from None
+        if seen.confidence < self.tuning.min_shown:
+            raise SkillFailure(Reason.NOTHING_SEEN, f"{seen.confidence * 100:.0f} % of the neckline shows, too little")
         aside, ahead = off_middle(seen.position_in_map, middle)
         where = f"{aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders"
         self.note(f"the collar's middle is {where}")

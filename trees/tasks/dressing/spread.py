@@ -27,6 +27,7 @@ from .tuning import DRESSING
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_room
+MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown)
 ROOM = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
 
 
@@ -46,7 +47,7 @@ def spread(context: Context) -> Stage:
         straighten_collar(context, "left"),
         will_do(context, "left"),
         will_do(context, "right"),
-        CheckCollar("the collar lies in the middle", Scope(context, "collar")),
+        CheckCollar("the collar lies in the middle", Scope(context, "collar"), tuning=MIDDLE),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
         seconds=DRESSING.spread_timeout,

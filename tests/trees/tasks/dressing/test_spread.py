@@ -25,8 +25,8 @@ class LowSleeves(ScriptedSenses):
         self.low[side] += 0.15
         return super().armhole_front(frame, side=side, arm_in_map=arm_in_map)
 
-    def collar_middle(self, frame, *, near_in_map, below=0.0):
-        seen = super().collar_middle(frame, near_in_map=near_in_map, below=below)
+    def collar_middle(self, frame, *, near_in_map, below=0.0, flat=None):
+        seen = super().collar_middle(frame, near_in_map=near_in_map, below=below, flat=flat)
         return replace(seen, position_in_map=seen.position_in_map - np.array((0.0, self.headward, 0.0)))
 
 
