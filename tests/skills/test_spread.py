@@ -115,7 +115,7 @@ def test_a_collar_that_does_not_show_is_told_and_no_hand_moves():
 def test_where_the_hand_does_not_get_to_the_collar_it_takes_the_cloth_farther_down():
     asked = []
 
-    def collar(frame, *, near_in_map, below=0.0):
+    def collar(frame, *, near_in_map, below=0.0, flat=None):
         asked.append(below)
         near = seen.position_in_map + ((0.0, 0.0, 0.9) if 0.0 < below < 0.06 else (0.0, below, 0.0))  # out of reach
         return dataclasses.replace(seen, position_in_map=near)
