@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
+from numba import types
+from numba.extending import intrinsic
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -24,3 +26,15 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
             return numba.njit(**options)(function)
 
     return compiled
+
+
+def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
+    """The sum a * b + c rounded once, for compiled loops: so BLAS adds up, whose results they give to the last bit."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fma(*arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), generate
+
+
+fma: Any = intrinsic(_fma)

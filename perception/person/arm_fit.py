@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
+from ...sim.vector import cross
 from ..image.cloud import unit
 from ..image.projection import project
 from .lying_body import Trunk
@@ -143,7 +144,7 @@ def turned(points: np.ndarray, about: np.ndarray, before: np.ndarray, after: np.
     from scipy.spatial.transform import Rotation
 
     start, end = unit(before - about), unit(after - about)
-    axis = np.cross(start, end)
+    axis = cross(start, end)
     turn = Rotation.from_rotvec(unit(axis) * np.arctan2(np.linalg.norm(axis), start @ end))
     return about + turn.apply(points - about)
 

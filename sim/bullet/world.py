@@ -358,8 +358,8 @@ class BulletWorld(World):
             self._wake()
 
     def _step_room(self) -> None:
-        held = [grip.kind != "nothing" for grip in self._grips]
-        for n in np.flatnonzero(held):
+        held = [n for n, grip in enumerate(self._grips) if grip.kind != "nothing"]
+        for n in held:
             self._handles[n].follow(self._hands[n])
         self._hook.before_step()
         self._objects.before_step()
@@ -368,7 +368,7 @@ class BulletWorld(World):
         self._contact.push_arms()
         with self.stopwatch.of("bullet"):
             self._client.stepSimulation()
-        for n in np.flatnonzero(held):
+        for n in held:
             if self._grips[n].kind in ("arm", "object"):
                 self._handles[n].feel()
 

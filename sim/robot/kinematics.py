@@ -6,12 +6,14 @@ them costs a few microseconds in pinocchio, and the base pose is applied afterwa
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
+from ..compiled import njit
 from ..world import CAMERAS, SIDES, Side
 from . import model
 from .urdf import compose
@@ -40,9 +42,17 @@ class ArmLimits:
 
 def planar_pose(pose_base_in_map: np.ndarray) -> np.ndarray:
     """Transform (4, 4) of a base pose (x [m], y [m], yaw [rad])."""
-    x, y, yaw = np.asarray(pose_base_in_map, float)
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.array(((c, -s, 0.0, x), (s, c, 0.0, y), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
+    x, y, yaw = pose_base_in_map
+    return _planar_pose(float(x), float(y), float(yaw))
+
+
+@njit()
+def _planar_pose(x: float, y: float, yaw: float) -> np.ndarray:
+    pose = np.eye(4)
+    c, s = math.cos(yaw), math.sin(yaw)
+    pose[0, 0], pose[0, 1], pose[0, 3] = c, -s, x
+    pose[1, 0], pose[1, 1], pose[1, 3] = s, c, y
+    return pose
 
 
 class Kinematics:

@@ -6,6 +6,7 @@ loads and what is between the fingers by attributes, and what is seen by scripte
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -37,6 +38,7 @@ FINGER_SPEED = 0.1  # [m/s]
 WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
 DEPTH_NOISE = 0.001  # [m]
 STROKE = 0.085  # [m]
+SINGULAR = 1e-3  # share of the greatest singular value below which a hand does not move in a direction
 # Every camera looks straight down from above the middle of the bed, whose mattress is all that shows.
 FROM_ABOVE = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
@@ -68,6 +70,19 @@ class _Motion:
     times: np.ndarray
     positions: np.ndarray  # (k, n)
     slots: list[tuple[int, int]] = field(default_factory=list)  # per column: arm and joint, or (-1, 0) for the head
+
+    def __post_init__(self) -> None:
+        self.columns = [n for n, (arm, _) in enumerate(self.slots) if arm >= 0]  # those of arms
+        self.arms, self.joints = [self.slots[n][0] for n in self.columns], [self.slots[n][1] for n in self.columns]
+        self.head = next((n for n, (arm, _) in enumerate(self.slots) if arm < 0), None)  # column of the head
+
+    def at(self, time: float) -> np.ndarray:
+        """(n,) positions at a time since its start [s], straight between the samples."""
+        n = int(self.times.searchsorted(time, "right")) - 1
+        if n < 0 or n == len(self.times) - 1:
+            return self.positions[max(n, 0)]
+        first, last = self.positions[n], self.positions[n + 1]
+        return (last - first) / (self.times[n + 1] - self.times[n]) * (time - self.times[n]) + first
 
 
 class ScriptedWorld(World):
@@ -126,6 +141,7 @@ class ScriptedWorld(World):
         self._opening = np.full(2, STROKE)
         self._opening_goal = np.full(2, STROKE)
         self._force_limit = np.zeros(2)
+        self._posed, self._poses = b"", np.zeros((2, 4, 4))
 
     # -- what a task brings along ------------------------------------------------------------------------
 
@@ -144,12 +160,13 @@ class ScriptedWorld(World):
     def observe(self) -> Observation:
         """Exact joints, noisy wrenches."""
         now = self.clock.now()
-        held = (self._opening <= np.array([self.between_fingers[s] for s in SIDES]) + 1e-6) & (self._opening > 1e-6)
-        wrench = np.stack([self.load[side] for side in SIDES]) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
-        poses = np.stack(
-            [self.kinematics.pose_hand_in_map(side, self._q[n], self._base) for n, side in enumerate(SIDES)]
-        )
+        held = [
+            self.between_fingers[side] + 1e-6 >= opening > 1e-6
+            for side, opening in zip(SIDES, self._opening.tolist(), strict=True)
+        ]
+        wrench = np.array((self.load["left"], self.load["right"])) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
         moving = self._base_velocity if now < self._base_until else self._coast_base * self._slowing(now)
+        squeezing = [force if holds else 0.0 for force, holds in zip(self._force_limit.tolist(), held, strict=True)]
         return Observation(
             time=now,
             arm_positions=self._q.copy(),
@@ -157,12 +174,21 @@ class ScriptedWorld(World):
             arm_efforts=np.zeros((2, 7)),
             head_pan=self._head,
             pose_base_in_map=self._base.copy(),
-            twist_base=np.array(moving, float),
+            twist_base=moving.copy(),
             gripper_opening=self._opening.copy(),
-            gripper_force=np.where(held, self._force_limit, 0.0),
+            gripper_force=np.array(squeezing),
             wrench_hand_in_map=wrench,
-            pose_hand_in_map=poses,
+            pose_hand_in_map=self._hand_poses().copy(),
         )
+
+    def _hand_poses(self) -> np.ndarray:
+        """Poses (2, 4, 4) of both hands in the map, kept as long as nothing has moved: many ask within one tick."""
+        stands = self._q.tobytes() + self._base.tobytes()
+        if stands != self._posed:
+            place = self.kinematics.pose_hand_in_map
+            self._poses = np.array([place(side, self._q[n], self._base) for n, side in enumerate(SIDES)])
+            self._posed = stands
+        return self._poses
 
     def look(self, camera: str) -> Frame:
         """What the script shows; raises SensorLost for an unknown camera."""
@@ -257,19 +283,21 @@ class ScriptedWorld(World):
         now = self.time.time
         if self._motions or self._twists or now < self._base_until or self._slowing(now) > 0.0:
             return False
-        goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
-        return bool((self._opening == goal).all())
+        return self._opening.tolist() == self._fingers_goal()
+
+    def _fingers_goal(self) -> list[float]:
+        """Opening (2,) at which each hand's fingers end [m]."""
+        wanted = self._opening_goal.tolist()
+        return [max(wanted[n], self.between_fingers[side]) for n, side in enumerate(SIDES)]
 
     def _step(self, dt: float) -> None:
         now = self.time.time + dt
         before = self._q.copy()
         for motion in list(self._motions):
-            for column, (arm, joint) in enumerate(motion.slots):
-                value = float(np.interp(now - motion.start, motion.times, motion.positions[:, column]))
-                if arm < 0:
-                    self._head = value
-                else:
-                    self._q[arm, joint] = value
+            values = motion.at(now - motion.start)
+            self._q[motion.arms, motion.joints] = values[motion.columns]
+            if motion.head is not None:
+                self._head = float(values[motion.head])
             if now - motion.start > motion.times[-1] + dt:
                 self._motions.remove(motion)
         for side, twist in list(self._twists.items()):
@@ -279,17 +307,25 @@ class ScriptedWorld(World):
                 del self._twists[side]
                 continue
             jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
-            self._q[arm] += np.linalg.pinv(jacobian, rcond=1e-3) @ np.asarray(twist.twist_in_map, float) * moved
+            self._q[arm] += _pseudo_inverse(jacobian) @ np.asarray(twist.twist_in_map, float) * moved
         left = self._slowing(now)
-        self._q += self._coast_q * left * dt
+        if left > 0.0:
+            self._q += self._coast_q * left * dt
         driven = max(min(self._base_until, now) - self.time.time, 0.0)
-        c, s = np.cos(self._base[2]), np.sin(self._base[2])
-        vx, vy, turn = driven * self._base_velocity + dt * left * self._coast_base
-        self._base += np.array((c * vx - s * vy, s * vx + c * vy, turn))
-        goal = np.maximum(self._opening_goal, [self.between_fingers[side] for side in SIDES])
-        self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
+        if left > 0.0 or driven > 0.0:
+            self._drive(driven * self._base_velocity + dt * left * self._coast_base)
+        goal = self._fingers_goal()
+        if self._opening.tolist() != goal:
+            self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
         self._dq = (self._q - before) / dt
         self.time.time = now
+
+    def _drive(self, way: np.ndarray) -> None:
+        """Move the base by a way (3,) in its own frame [m, m, rad]."""
+        vx, vy, turn = way.tolist()
+        yaw = float(self._base[2])
+        c, s = math.cos(yaw), math.sin(yaw)
+        self._base += np.array((c * vx - s * vy, s * vx + c * vy, turn))
 
     # -- effects of faults -------------------------------------------------------------------------------
 
@@ -301,3 +337,10 @@ class ScriptedWorld(World):
     def fault_move_person(self) -> None:
         """The person shifts by 10 cm."""
         self.person_offset = self.person_offset + np.array((0.1, 0.0, 0.0))
+
+
+def _pseudo_inverse(jacobian: np.ndarray) -> np.ndarray:
+    """That of `np.linalg.pinv`, which checks its input for longer than it computes."""
+    u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
+    inverse = np.where(s > SINGULAR * s.max(), 1.0 / np.maximum(s, 1e-300), 0.0)
+    return vt.T @ (inverse[:, None] * u.T)

@@ -14,6 +14,7 @@ import numpy as np
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
+from ...sim.vector import cross
 
 UP = np.array((0.0, 0.0, 1.0))  # in the map
 
@@ -95,8 +96,8 @@ class ArmPath:
         if abs(along[2]) > slope:  # keep the heading of a steep arm defined
             flat = unit(along * (1.0, 1.0, 0.0) + 1e-6 * self._directions[0])
             along = unit(flat * np.sqrt(1.0 - slope**2) + np.sign(along[2]) * slope * UP)
-        across = unit(np.cross(along, UP))
-        return np.column_stack((across, along, np.cross(across, along)))
+        across = unit(cross(along, UP))
+        return np.column_stack((across, along, cross(across, along)))
 
     def coordinate_of(self, point_in_map: np.ndarray, near: float | None = None) -> float:
         """The arm coordinate nearest to a point (3,) [m], looked for only around `near` where that is given."""

@@ -55,7 +55,7 @@ class LinkClearance:
         self.names, self.radii, self.tuning = names, radii, tuning
         self._kinds = [link_kind(name) for name in names]
         self._asked: tuple[tuple[str, ...], dict[Side, str]] = ((), {})  # what `_gaps` was made for
-        self._gaps = self._least(*self._asked)
+        self._gaps = self.least_gaps(*self._asked)
 
     def room(
         self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str]
@@ -72,11 +72,16 @@ class LinkClearance:
         """
         gaps, away = zone.gaps(ends_in_map, self.radii)
         if (asked := (zone.names, dict(held))) != self._asked:
-            self._asked, self._gaps = asked, self._least(*asked)
+            self._asked, self._gaps = asked, self.least_gaps(*asked)
         return gaps - self._gaps, away
 
-    def _least(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
-        """(r, m) least gaps [m]."""
+    def least_gaps(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
+        """Least gaps (r, m) [m].
+
+        Args:
+            parts: (m,) of the person that capsules belong to.
+            held: hand -> the arm that it holds, which its fingers and palm may touch.
+        """
         tuning = self.tuning
         table = {
             "fingers": (tuning.fingers_head, tuning.fingers_trunk, tuning.fingers_arm),

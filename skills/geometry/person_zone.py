@@ -11,7 +11,7 @@ import numpy as np
 from ...perception.person.arm_fit import turned_about_shoulder
 from ...perception.person.person_facts import PERSON
 from ...sim.errors import CaretreeError
-from ...sim.segments import segment_distances
+from ...sim.segments import box_distances, capsule_gaps, nearest_gaps, segment_distances
 
 ARMS = ("left arm", "right arm")
 HEAD, TRUNK, LEGS = "head", "trunk", "legs"
@@ -45,7 +45,7 @@ class PersonZone:
     @property
     def known(self) -> bool:
         """Whether all of the person has been seen at least once."""
-        return WHOLE in self._parts or set(PARTS) <= set(self._parts)
+        return WHOLE in self._parts or all(part in self._parts for part in PARTS)
 
     def seen(self, part: str) -> bool:
         """Whether that part has been seen at least once."""
@@ -97,9 +97,10 @@ class PersonZone:
 
     def link_distance(self, ends_in_map: np.ndarray, radii: np.ndarray) -> np.ndarray:
         """Distance (r,) from each capsule, ends (r, 2, 3) and radii (r,), to where the person is or may be [m]."""
-        nearest = self.gaps(ends_in_map, radii)[0].min(axis=1, initial=np.inf)
+        ends, radii = np.ascontiguousarray(ends_in_map, float), np.ascontiguousarray(radii, float)
+        nearest = nearest_gaps(ends, radii, self.ends, self.radii)
         if self._has_bed and not self.known:
-            nearest = np.minimum(nearest, self._to_bed(ends_in_map) - radii)
+            nearest = np.minimum(nearest, box_distances(ends, self._bed) - radii)
         return np.maximum(nearest, 0.0)
 
     def gaps(self, ends_in_map: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -108,15 +109,8 @@ class PersonZone:
         Returns:
             (r, m) gaps between the surfaces [m] and (r, m, 3) directions from the person to the capsule.
         """
-        apart, offsets = segment_distances(np.ascontiguousarray(ends_in_map, float), self.ends)
-        away = offsets / np.maximum(apart, 1e-9)[..., None]
-        return apart - np.asarray(radii)[:, None] - self.radii, away
-
-    def _to_bed(self, ends: np.ndarray) -> np.ndarray:
-        """Distance (r,) of axes (r, 2, 3) to the room over the bed, at five points of each [m]."""
-        points = ends[:, :1] + np.linspace(0.0, 1.0, 5)[:, None] * (ends[:, 1:] - ends[:, :1])
-        outside = np.maximum(np.maximum(self._bed[0] - points, points - self._bed[1]), 0.0)
-        return np.linalg.norm(outside, axis=2).min(axis=1)
+        ends, radii = np.ascontiguousarray(ends_in_map, float), np.ascontiguousarray(radii, float)
+        return capsule_gaps(ends, radii, self.ends, self.radii)
 
     def _stack(self) -> None:
         """All chains as one array of capsules; what has not been seen is where it is expected."""

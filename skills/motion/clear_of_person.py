@@ -8,6 +8,7 @@ import numpy as np
 
 from ...sim.robot.capsules import RobotCapsules
 from ...sim.robot.collision import CollisionChecker
+from ...sim.segments import any_nearer
 from ...sim.world import Observation, Side
 from ..geometry.clearance import CLEARANCE, LinkClearance
 from ..geometry.person_zone import PersonZone
@@ -40,12 +41,14 @@ class ClearOfPerson(CollisionChecker):
         self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
         self._least = np.minimum(room, 0.0) - EPSILON
+        planned = self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)
+        self._least_gaps = self._clearance.least_gaps(zone.names, held) + planned
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
         """Whether arms (2, 7) at these angles touch nothing and come near nobody, with room for a smooth motion."""
-        room = self._room(pose_base_in_map, arm_positions, head_pan)
-        assert room.shape == self._least.shape, "one checker serves one plan: the person must not change meanwhile"
-        near = (room < self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)).any()
+        zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, head_pan, self._opening)
+        assert len(zone.names) == self._least.shape[1], "one checker serves one plan: the person must not change"
+        near = any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)
         return not near and self._checker.free(pose_base_in_map, arm_positions, head_pan)
 
     def collisions(

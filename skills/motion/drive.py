@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.compiled import fma, njit
 from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
+from ...sim.vector import length
 from ...sim.world import BaseVelocity
 
 
@@ -75,7 +77,7 @@ class PathFollower:
         """Whether the base at a pose (3,) stands at the end, within the tolerances."""
         pose = np.asarray(pose_base_in_map, float)
         return bool(
-            np.linalg.norm(self._path[-1] - pose[:2]) <= self._tuning.position_tolerance
+            length(self._path[-1] - pose[:2]) <= self._tuning.position_tolerance
             and abs(_wrap(self._yaw - pose[2])) <= self._tuning.yaw_tolerance
         )
 
@@ -87,14 +89,15 @@ class PathFollower:
         left = self._marks[-1] - self._progress
         aim = self._point(self._progress + self._tuning.look_ahead)
         offset = aim - here
-        distance = float(np.linalg.norm(offset))
-        to_go = max(left, float(np.linalg.norm(self._path[-1] - here)))
+        distance = length(offset)
+        to_go = max(left, length(self._path[-1] - here))
         # Brake as half the acceleration limit allows, then settle exponentially.
-        speed = min(self._speed, np.sqrt(model.BASE_ACCELERATION[0] * to_go), self._tuning.gain * to_go)
+        speed = min(self._speed, math.sqrt(model.BASE_ACCELERATION[0] * to_go), self._tuning.gain * to_go)
         velocity = offset / max(distance, 1e-9) * speed
         error = _wrap(self._yaw - yaw) if left <= self._turn_from else 0.0
-        turn = np.clip(self._tuning.turn_gain * error, -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
-        c, s = np.cos(yaw), np.sin(yaw)
+        fastest = float(model.BASE_VELOCITY[1])
+        turn = min(max(self._tuning.turn_gain * error, -fastest), fastest)
+        c, s = math.cos(yaw), math.sin(yaw)
         return BaseVelocity(
             velocity=np.array((c * velocity[0] + s * velocity[1], c * velocity[1] - s * velocity[0], turn))
         )
@@ -102,13 +105,40 @@ class PathFollower:
     def _advance(self, here: np.ndarray) -> None:
         """Move the progress mark to the nearest point of the path ahead of it, never back."""
         farthest = min(self._progress + self._tuning.search_ahead, self._marks[-1])
-        ahead = np.linspace(self._progress, farthest, self._tuning.search_points)
-        distances = [float(np.linalg.norm(self._point(mark) - here)) for mark in ahead]
-        self._progress = float(ahead[int(np.argmin(distances))])
+        self._progress = _nearest(
+            self._path, self._marks, self._progress, float(farthest), self._tuning.search_points, here[0], here[1]
+        )
 
     def _point(self, mark: float) -> np.ndarray:
-        mark = min(mark, self._marks[-1])
-        return np.array([np.interp(mark, self._marks, self._path[:, n]) for n in range(2)])
+        return np.array(_point(self._path, self._marks, mark))
+
+
+@njit()
+def _point(path: np.ndarray, marks: np.ndarray, mark: float) -> tuple[float, float]:
+    """The point of a path (k, 2) at a distance along it, given that of each corner (k,) [m]."""
+    last = len(marks) - 1
+    if mark >= marks[last]:
+        return path[last, 0], path[last, 1]
+    n = 0
+    while marks[n + 1] <= mark:
+        n += 1
+    over, step = mark - marks[n], marks[n + 1] - marks[n]
+    x = (path[n + 1, 0] - path[n, 0]) / step * over + path[n, 0]
+    y = (path[n + 1, 1] - path[n, 1]) / step * over + path[n, 1]
+    return x, y
+
+
+@njit()
+def _nearest(path: np.ndarray, marks: np.ndarray, first: float, last: float, count: int, x: float, y: float) -> float:
+    """Of `count` marks between two of them, the one whose point is nearest to (x, y) [m]."""
+    step, best, nearest = (last - first) / (count - 1), np.inf, first
+    for n in range(count):
+        mark = last if n == count - 1 else n * step + first
+        px, py = _point(path, marks, mark)
+        apart = np.sqrt(fma(py - y, py - y, (px - x) * (px - x)))
+        if apart < best:
+            best, nearest = apart, mark
+    return nearest
 
 
 def _wrap(angle: float) -> float:

@@ -16,6 +16,7 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cm
 from ...sim.quantity import Quantities, quantity
 from ...sim.robot import model
 from ...sim.robot.kinematics import Kinematics, planar_pose
+from ...sim.vector import cross, length
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
 
@@ -192,7 +193,7 @@ def _descend(
     for step in range(iterations):
         pose, jacobian = kinematics.pose_and_jacobian_local(side, q)
         error = _error(pose, target, free)
-        position, rotation = float(np.linalg.norm(error[:3])), float(np.linalg.norm(error[3:]))
+        position, rotation = length(error[:3]), length(error[3:])
         if position + turn * rotation < result[1] + turn * result[2]:
             result = (q.copy(), position, rotation)
         share = tuning.stop_below
@@ -240,10 +241,10 @@ def _error(pose: pin.SE3, target: pin.SE3, free: FreeAxis) -> np.ndarray:
         k = 2 if free == "approach" else 1
         axis = np.eye(3)[k]
         wanted = R.T @ target.rotation[:, k]
-        cross, cosine = np.cross(axis, wanted), float(wanted[k])
-        sine = float(np.linalg.norm(cross))
+        product, cosine = cross(axis, wanted), float(wanted[k])
+        sine = length(product)
         if sine > 1e-9:
-            error[3:] = cross / sine * np.arctan2(sine, cosine)
+            error[3:] = product / sine * np.arctan2(sine, cosine)
         elif cosine < 0.0:  # exactly opposite: turn about any other axis
             error[3] = np.pi
     return error

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.compiled import njit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import RoomMap
 from .errors import PathBlocked
 
-_NEIGHBOURS = [(r, c, float(np.hypot(r, c))) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
+_DIAGONAL = float(np.hypot(1, 1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,32 +103,48 @@ def _nearest_free(room: RoomMap, position: np.ndarray, snap: float) -> tuple[int
 def _astar(
     free: np.ndarray, cost: np.ndarray, start: tuple[int, int], goal: tuple[int, int]
 ) -> list[tuple[int, int]] | None:
+    rows, columns = np.indices(free.shape)
+    came = _searched(free, cost, np.hypot(goal[0] - rows, goal[1] - columns), start, goal)
+    if start != goal and came[goal] < 0:
+        return None
+    path = [goal]
+    while path[-1] != start:
+        row, column = divmod(int(came[path[-1]]), free.shape[1])
+        path.append((row, column))
+    return path[::-1]
+
+
+@njit()
+def _searched(
+    free: np.ndarray, cost: np.ndarray, to_go: np.ndarray, start: tuple[int, int], goal: tuple[int, int]
+) -> np.ndarray:
+    """The cell before each one that was reached, numbered by rows, and -1 elsewhere."""
     rows, columns = free.shape
-    best = {start: 0.0}
-    came: dict[tuple[int, int], tuple[int, int]] = {}
-    queue = [(0.0, start)]
-    done: set[tuple[int, int]] = set()
+    best = np.full(free.shape, np.inf)
+    came = np.full(free.shape, -1)
+    done = np.zeros(free.shape, np.bool_)
+    best[start] = 0.0
+    queue = [(0.0, start[0], start[1])]
     while queue:
-        _, cell = heapq.heappop(queue)
-        if cell == goal:
-            path = [cell]
-            while path[-1] in came:
-                path.append(came[path[-1]])
-            return path[::-1]
-        if cell in done:
+        _, row, column = heapq.heappop(queue)
+        if (row, column) == goal:
+            break
+        if done[row, column]:
             continue
-        done.add(cell)
-        for dr, dc, length in _NEIGHBOURS:
-            r, c = cell[0] + dr, cell[1] + dc
-            if not (0 <= r < rows and 0 <= c < columns and free[r, c]):
-                continue
-            if dr and dc and not (free[cell[0], c] and free[r, cell[1]]):
-                continue  # no cutting of corners
-            total = best[cell] + length * 0.5 * (cost[cell] + cost[r, c])
-            if total < best.get((r, c), np.inf):
-                best[r, c], came[r, c] = total, cell
-                heapq.heappush(queue, (total + float(np.hypot(goal[0] - r, goal[1] - c)), (r, c)))
-    return None
+        done[row, column] = True
+        for dr in range(-1, 2):
+            for dc in range(-1, 2):
+                r, c = row + dr, column + dc
+                if not (0 <= r < rows and 0 <= c < columns and free[r, c]) or (dr == 0 and dc == 0):
+                    continue
+                if dr != 0 and dc != 0 and not (free[row, c] and free[r, column]):
+                    continue  # no cutting of corners
+                length = _DIAGONAL if dr != 0 and dc != 0 else 1.0
+                total = best[row, column] + length * 0.5 * (cost[row, column] + cost[r, c])
+                if total < best[r, c]:
+                    best[r, c], came[r, c] = total, row * columns + column
+                    heapq.heappush(queue, (total + to_go[r, c], r, c))
+    return came
 
 
 def _straighten(room: RoomMap, points: list[np.ndarray], keep: int, step: float) -> list[np.ndarray]:
@@ -145,4 +162,6 @@ def _straighten(room: RoomMap, points: list[np.ndarray], keep: int, step: float)
 
 def _line_free(room: RoomMap, a: np.ndarray, b: np.ndarray, step: float) -> bool:
     count = int(np.ceil(np.linalg.norm(b - a) / (step * room.resolution))) + 1
-    return all(is_free(room, point) for point in np.linspace(a, b, count))
+    columns, rows = np.round((np.linspace(a, b, count) - room.origin) / room.resolution).astype(int).T
+    inside = (rows >= 0) & (rows < room.free.shape[0]) & (columns >= 0) & (columns < room.free.shape[1])
+    return bool(inside.all()) and bool(room.free[rows, columns].all())

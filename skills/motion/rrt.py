@@ -107,6 +107,8 @@ def _step_out(
 def segment_free(a: np.ndarray, b: np.ndarray, free: Test, *, resolution: float = RRT.resolution) -> bool:
     """Whether every posture between two joint vectors (n,) is allowed; the first one is taken on trust.
 
+    Asked from the far end: of a tree that grows into something, the far end is in it before the rest.
+
     Args:
         a: joint vector to begin with [rad].
         b: joint vector to end with [rad].
@@ -114,7 +116,7 @@ def segment_free(a: np.ndarray, b: np.ndarray, free: Test, *, resolution: float 
         resolution: spacing of the tests, by the joint that moves most [rad].
     """
     count = max(1, int(np.ceil(np.abs(b - a).max() / resolution)))
-    return all(free(a + (b - a) * (n / count)) for n in range(1, count + 1))
+    return all(free(a + (b - a) * (n / count)) for n in range(count, 0, -1))
 
 
 class _Tree:
@@ -122,15 +124,15 @@ class _Tree:
         self._tuning = tuning
         self.nodes = [np.asarray(root, float)]
         self._parents = [-1]
+        self._rows = self.nodes[0][None].copy()  # the nodes as an array, with room for more
 
     def extend(self, target: np.ndarray, free: Test) -> int | None:
         """Grow one branch towards `target`; returns the new node."""
-        nearest = int(np.argmin(np.linalg.norm(np.array(self.nodes) - target, axis=1)))
-        return self._grow(nearest, target, free)
+        return self._grow(self._nearest(target), target, free)
 
     def reach(self, target: np.ndarray, free: Test) -> int | None:
         """Grow until `target` is met; returns the node that equals it, or None when something is in the way."""
-        node = int(np.argmin(np.linalg.norm(np.array(self.nodes) - target, axis=1)))
+        node = self._nearest(target)
         while True:
             grown = self._grow(node, target, free)
             if grown is None:
@@ -147,6 +149,9 @@ class _Tree:
             node = self._parents[node]
         return path
 
+    def _nearest(self, target: np.ndarray) -> int:
+        return int(np.argmin(np.linalg.norm(self._rows[: len(self.nodes)] - target, axis=1)))
+
     def _grow(self, node: int, target: np.ndarray, free: Test) -> int | None:
         offset = target - self.nodes[node]
         size = float(np.abs(offset).max())
@@ -154,6 +159,9 @@ class _Tree:
         q = target if size <= branch else self.nodes[node] + offset * (branch / size)
         if size < 1e-12 or not segment_free(self.nodes[node], q, free, resolution=resolution):
             return node if size < 1e-12 else None
+        if len(self.nodes) == len(self._rows):
+            self._rows = np.concatenate((self._rows, np.empty_like(self._rows)))
+        self._rows[len(self.nodes)] = q
         self.nodes.append(np.asarray(q, float))
         self._parents.append(node)
         return len(self.nodes) - 1

@@ -17,6 +17,7 @@ from ...sim.robot.kinematics import default_kinematics
 from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import room_map
 from ...sim.scripted.world import ScriptedWorld
+from ...sim.vector import length
 from ...sim.world import SIDES, Command, GripperOpening, Observation, Side
 from .scripted_person import lying_arm
 from .scripted_senses import ScriptedSenses
@@ -94,12 +95,12 @@ class RehearsalWorld(ScriptedWorld):
             self.load[side] = np.zeros(6)
             if side in self._taken and self.between_fingers[side] > 0.0:
                 drag = tuning.stiffness * (self._taken[side] - self._hand(side))
-                self.load[side][:3] = drag * min(1.0, tuning.max_drag / max(float(np.linalg.norm(drag)), 1e-9))
+                self.load[side][:3] = drag * min(1.0, tuning.max_drag / max(length(drag), 1e-9))
                 self.load[side][2] -= tuning.hanging_load
         return super().observe()
 
     def _hand(self, side: Side) -> np.ndarray:
-        return self.kinematics.pose_hand_in_map(side, self._q[SIDES.index(side)], self._base)[:3, 3].copy()
+        return self._hand_poses()[SIDES.index(side), :3, 3].copy()
 
 
 def _distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:

@@ -1,8 +1,11 @@
 """Compiled loops work where nothing can be written too."""
 
+from fractions import Fraction
+
 import numba
+import numpy as np
 import pytest
-from caretree.sim.compiled import njit
+from caretree.sim.compiled import fma, njit
 
 
 def count(to):
@@ -38,3 +41,12 @@ def test_another_error_is_not_hidden(monkeypatch):
     monkeypatch.setattr(numba, "njit", broken)
     with pytest.raises(RuntimeError, match="out of luck"):
         njit()(count)
+
+
+def test_sums_in_compiled_loops_are_rounded_once_a_term():
+    add = njit()(lambda a, b: fma(a[2], b[2], fma(a[1], b[1], a[0] * b[0])))
+    pairs = np.random.default_rng(0).normal(size=(200, 2, 3))
+    exact = [sum(Fraction(x) * Fraction(y) for x, y in zip(a, b, strict=True)) for a, b in pairs.tolist()]
+    assert [add(a, b) for a, b in pairs] == pytest.approx([float(each) for each in exact], abs=1e-15)
+    tiny = 2.0**-60
+    assert njit()(lambda x: fma(x, x, -1.0))(1.0 + 2.0**-30) == 2.0**-29 + tiny  # rounded once: the last bit stays

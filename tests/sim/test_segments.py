@@ -2,7 +2,14 @@
 
 import numpy as np
 import pytest
-from caretree.sim.segments import segment_distances
+from caretree.sim.segments import (
+    any_nearer,
+    box_distances,
+    capsule_gaps,
+    furthest_moved,
+    nearest_gaps,
+    segment_distances,
+)
 
 
 def searched(one, other):
@@ -38,3 +45,39 @@ def test_points_parallels_and_crossings(one, other, distance):
     got, offsets = segment_distances(np.array([one], float), np.array([other], float))
     assert got[0, 0] == pytest.approx(distance)
     assert np.linalg.norm(offsets[0, 0]) == pytest.approx(distance)
+
+
+def test_gaps_are_what_is_left_between_surfaces_and_directions_have_length_one():
+    rng = np.random.default_rng(4)
+    one, other, thick, thin = rng.normal(size=(6, 2, 3)), rng.normal(size=(5, 2, 3)), np.full(6, 0.1), np.full(5, 0.02)
+    apart, offsets = segment_distances(one, other)
+    gaps, away = capsule_gaps(one, thick, other, thin)
+    assert gaps == pytest.approx(apart - 0.12)
+    assert away == pytest.approx(offsets / apart[..., None])
+    assert nearest_gaps(one, thick, other, thin) == pytest.approx(gaps.min(axis=1))
+    assert not any_nearer(one, thick, other, thin, gaps)
+    least = gaps.copy()
+    least[5, 4] += 1e-9
+    assert any_nearer(one, thick, other, thin, least)
+    assert nearest_gaps(one, thick, other[:0], thin[:0]).tolist() == [np.inf] * 6
+
+
+def test_axes_that_meet_have_no_direction_between_them():
+    cross = np.array([((-1.0, 0.0, 0.0), (1.0, 0.0, 0.0))])
+    gaps, away = capsule_gaps(cross, np.array([0.1]), cross[..., [1, 0, 2]], np.array([0.2]))
+    assert gaps[0, 0] == pytest.approx(-0.3)
+    assert not away.any()
+
+
+def test_the_end_that_goes_further_counts():
+    before = np.zeros((2, 2, 3))
+    after = np.array([((3.0, 4.0, 0.0), (1.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 0.0, -2.0))])
+    assert furthest_moved(before, after).tolist() == [5.0, 2.0]
+
+
+def test_distance_to_a_box_is_zero_inside_and_counts_from_its_nearest_face():
+    box = np.array(((-1.0, -1.0, 0.0), (1.0, 1.0, 1.0)))
+    beside = ((2.0, 0.0, 0.5), (3.0, 0.0, 0.5))
+    through = ((-3.0, 0.0, 0.5), (3.0, 0.0, 0.5))
+    above_a_corner = ((4.0, 5.0, 1.0), (4.0, 5.0, 9.0))
+    assert box_distances(np.array((beside, through, above_a_corner)), box).tolist() == [1.0, 0.0, 5.0]

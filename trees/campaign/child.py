@@ -24,7 +24,12 @@ def watch(parent: int) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def run_watched(parent: int) -> int:
+    """Run the command line as long as the process `parent` is this one's; its exit status."""
+    threading.Thread(target=watch, args=(parent,), daemon=True).start()
+    return main()
+
+
 if __name__ == "__main__":
-    if (given := os.environ.get(PARENT, "")).isdigit():
-        threading.Thread(target=watch, args=(int(given),), daemon=True).start()
-    sys.exit(main())
+    given = os.environ.get(PARENT, "")
+    sys.exit(run_watched(int(given)) if given.isdigit() else main())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import shutil
@@ -9,7 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,17 +24,22 @@ from ...sim.record.spool import disk_error
 from ..run.judging import kept
 from ..run.task import JUDGED
 from .child import PARENT
+from .forked import ForkedRun
 from .running import Running
 
 TRIAL_FILE = "trial.json"
 ENDING = 60.0  # [s] of wall time for a child to make its person safe and to write its record, before it is killed
 # Runs side by side share the processor: libraries that start a thread for each core would only be in each other's way.
-ONE_THREAD = dict.fromkeys(
+ONE_THREAD: dict[str, str] = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENCV_FOR_THREADS_NUM"), "1"
 )
 CARETREE = (sys.executable, "-m", "caretree.trees.campaign.child")
+SCRIPTED = {("--world", "scripted")}
 STALE = "other-"  # begins the names of folders for trials of other sources, versions or arguments
 DEFECTS = ("SIGSEGV", "SIGABRT", "SIGBUS", "SIGFPE", "SIGILL", "SIGSYS", "SIGTRAP")  # the run's own doing
+
+
+Child = subprocess.Popen[bytes] | ForkedRun
 
 
 class InterruptedTrialError(Exception):
@@ -220,18 +226,9 @@ def _run(
     put_aside(directory)
     directory.mkdir(parents=True)
     begun.write_text(key, encoding="utf-8")
-    command = [*CARETREE, "run", task, "--seed", str(seed), "--out", str(directory), *arguments]
     log = directory.with_name(f"{directory.name}.log")
-    with log.open("wb") as output:
-        # a session of its own: the terminal's Ctrl-C reaches only us, and an interrupted run does not count as failed
-        child = subprocess.Popen(
-            command,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            env=os.environ | ONE_THREAD | {PARENT: str(os.getpid())},
-        )
-        status = _wait(child, patience, stop, running)
+    child = _started(("run", task, "--seed", str(seed), "--out", str(directory), *arguments), log)
+    status = _wait(child, patience, stop, running)
     last = _last_line(log)
     why = _stopped(directory)
     if status == BAD_INPUT and why:
@@ -246,6 +243,21 @@ def _run(
         if status is None:
             return _keep(directory, Trial(seed=seed, outcome="timeout", reason=f"no end within {patience:g} s"), key)
         return _keep(directory, Trial(seed=seed, outcome="crash", reason=f"exit status {status}: {last}"), key)
+
+
+def _started(arguments: Sequence[str], log: Path) -> Child:
+    """`caretree` with these arguments, in a process of its own: forked where loading would take longer than the run."""
+    if set(itertools.pairwise(arguments)) >= SCRIPTED:
+        return ForkedRun(arguments, log, ONE_THREAD)
+    with log.open("wb") as output:
+        # a session of its own: the terminal's Ctrl-C reaches only us, and an interrupted run does not count as failed
+        return subprocess.Popen(
+            [*CARETREE, *arguments],
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            env=os.environ | ONE_THREAD | {PARENT: str(os.getpid())},
+        )
 
 
 def _killed(status: int) -> str:
@@ -290,7 +302,7 @@ def _stopped(directory: Path) -> str:
     return str(run.get("reason")) if run.get("stopped_from_outside") else ""
 
 
-def _wait(child: subprocess.Popen[bytes], patience: float, stop: threading.Event, running: Running) -> int | None:
+def _wait(child: Child, patience: float, stop: threading.Event, running: Running) -> int | None:
     """Exit status of the child, or None when it was ended for taking too long."""
     waited = 0.0
     try:

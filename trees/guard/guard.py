@@ -11,12 +11,15 @@ The runner wraps every world in it, so that a task author cannot leave it out.  
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from ...sim.abilities import HasKinematics
+from ...sim.segments import furthest_moved
+from ...sim.vector import length
 from ...sim.world import (
     SIDES,
     BaseVelocity,
@@ -42,6 +45,7 @@ from .watchdog import Watchdog
 LIFT_MIN = 0.05  # [m] shorter motions of a held arm are corrections, not lifts
 BOTH_MOVE = 0.7  # [m] further from the person than `near`, an arm may move fast while the base moves too
 OPENED = 0.01  # [m] a command that opens the fingers by this much lets go
+SHARES = np.linspace(0.0, 1.0, 5)  # of a motion, after which it is looked at where a hand is
 ARM_OPENING = 0.03  # [m] between fingers that do not hold cloth, at least: no adult's arm is thinner
 
 
@@ -212,7 +216,7 @@ class GuardedWorld:
 
     def _judge_load(self, seen: Observation) -> None:
         for n, side in enumerate(SIDES):
-            load = float(np.linalg.norm(seen.wrench_hand_in_map[n, :3]))
+            load = length(seen.wrench_hand_in_map[n, :3])
             limit = self._load_stop(side)
             if load >= limit and self._lasts(side, load, seen.time) and not self._over[side]:
                 self._over[side] = True
@@ -238,17 +242,17 @@ class GuardedWorld:
         """Hold a link that has been too fast near the person against the running skill."""
         if self._links is None:
             ends = np.repeat(seen.pose_hand_in_map[:, None, :3, 3], 2, axis=1)
-            names, radii = [f"{side} hand" for side in SIDES], np.zeros(len(SIDES))
+            names, radii = tuple(f"{side}_hand" for side in SIDES), np.zeros(len(SIDES))
         else:
-            ends, radii = self._links.ends(seen), self._links.radii
-            names = [name.replace("_", " ") for name in self._links.names]
+            ends, radii, names = self._links.ends(seen), self._links.radii, self._links.names
         before, self._ends = self._ends, ends
         last = self._last
         if last is None or before is None:
             return
-        speed = np.linalg.norm(ends - before, axis=2).max(axis=1) / (seen.time - last.time)
+        speed = furthest_moved(before, ends) / (seen.time - last.time)
         fast = speed > self.limits.hand_speed * self.limits.overspeed_factor
-        fast[fast] = self.zone.link_distance(ends[fast], radii[fast]) < self.limits.near_person
+        if fast.any():
+            fast[fast] = self.zone.link_distance(ends[fast], radii[fast]) < self.limits.near_person
         if not fast.any():
             self._fast_since = None
         elif self._fast_since is None:
@@ -257,7 +261,7 @@ class GuardedWorld:
             self._fast_since = None
             self.stop()
             n = int(np.argmax(np.where(fast, speed, 0.0)))
-            self._fault = Failure(Reason.SPEED_LIMIT, f"{names[n]} at {speed[n]:.2f} m/s", "guard")
+            self._fault = Failure(Reason.SPEED_LIMIT, f"{names[n].replace('_', ' ')} at {speed[n]:.2f} m/s", "guard")
 
     def _wide(self, side: Side) -> bool:
         """Whether fingers stand too far apart to hold cloth: what they feel is an arm, or contact."""
@@ -269,8 +273,8 @@ class GuardedWorld:
     def _ease(self, side: Side, motion: np.ndarray, seen: Observation, retreat: bool) -> float:
         """Factor 0 to 1 for a hand's `motion` (3,) under its present load; raises SkillFailure at the limit."""
         force = seen.wrench_hand_in_map[SIDES.index(side), :3]
-        load, stop = float(np.linalg.norm(force)), self._load_stop(side)
-        if retreat or not np.any(motion) or float(motion @ force) > 0.0:
+        load, stop = length(force), self._load_stop(side)
+        if retreat or not motion.any() or float(motion @ force) > 0.0:
             return 1.0  # the hand moves the way it is pulled, or away: relief must stay possible
         if load >= stop and self._wide(side) and not self._over[side]:
             return 0.0  # it waits for the load to fall, or to have lasted too long
@@ -293,8 +297,8 @@ class GuardedWorld:
         twist *= self._ease(side, twist[:3], seen, retreat)
         hand = seen.pose_hand_in_map[SIDES.index(side), :3, 3]
         carried = self._carried(side, seen)
-        speed = float(np.linalg.norm(twist[:3]))
-        ahead = hand + np.linspace(0.0, command.duration, 5)[:, None] * twist[:3]
+        speed = length(twist[:3])
+        ahead = _ahead(hand, twist[:3], command.duration)
         near = bool((self.zone.distance(ahead) < self.limits.near_person + carried * command.duration).any())
         if near or self._grip[side] == "arm":
             limit = max(self._speed_limit(side) - carried, 0.0)
@@ -304,7 +308,7 @@ class GuardedWorld:
             twist = self._clear.twist(command, twist, seen, self._held)
             after = self._links.after_twist(seen, side, twist, command.duration)
             twist *= self._slow_links(seen, after, command.duration, carried)
-        self._arm_moves(side, float(np.linalg.norm(twist[:3])), command.duration)
+        self._arm_moves(side, length(twist[:3]), command.duration)
         return replace(command, twist_in_map=twist)
 
     def _slow_links(self, seen: Observation, after: np.ndarray, duration: float, already: float = 0.0) -> float:
@@ -313,7 +317,7 @@ class GuardedWorld:
         if duration <= 0.0:
             return 1.0
         here, radii = self._links.ends(seen), self._links.radii
-        speed = np.linalg.norm(after - here, axis=2).max(axis=1) / duration
+        speed = furthest_moved(here, after) / duration
         limit = max(self._near_limit() - already, 0.0)
         fast = speed > limit
         if not fast.any():
@@ -366,15 +370,16 @@ class GuardedWorld:
     def _slow_base(self, command: BaseVelocity, seen: Observation, retreat: bool) -> BaseVelocity:
         velocity, factor = np.array(command.velocity, float), 1.0
         x, y, yaw = seen.pose_base_in_map
-        turn = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
+        c, s = math.cos(yaw), math.sin(yaw)
+        turn = np.array(((c, -s), (s, c)))
         hands = seen.pose_hand_in_map[:, :3, 3]
         for n, side in enumerate(SIDES):
             arm = hands[n, :2] - (x, y)
             planar = turn @ velocity[:2] + velocity[2] * np.array((-arm[1], arm[0]))
             motion = np.append(planar, 0.0)
             factor = min(factor, self._ease(side, motion, seen, retreat))
-            speed = float(np.linalg.norm(motion))
-            ahead = hands[n] + np.linspace(0.0, command.duration, 5)[:, None] * motion
+            speed = length(motion)
+            ahead = _ahead(hands[n], motion, command.duration)
             own = self._arm_speed[side] if self.clock.now() < self._arm_until[side] else 0.0
             # an arm on its way was judged with the base at rest: moving both keeps further away
             reach = self.limits.near_person + (own * command.duration if own <= self._speed_limit(side) else BOTH_MOVE)
@@ -388,7 +393,7 @@ class GuardedWorld:
             factor *= self._slow_links(seen, after, command.duration)
         velocity *= factor
         self._base_until = self.clock.now() + command.duration
-        self._base_speed = np.array((np.linalg.norm(velocity[:2]), abs(velocity[2])))
+        self._base_speed = np.array((length(velocity[:2]), abs(velocity[2])))
         return replace(command, velocity=velocity)
 
     def _carried(self, side: Side, seen: Observation) -> float:
@@ -396,7 +401,7 @@ class GuardedWorld:
         if self.clock.now() >= self._base_until:
             return 0.0
         arm = seen.pose_hand_in_map[SIDES.index(side), :2, 3] - seen.pose_base_in_map[:2]
-        return float(self._base_speed[0] + self._base_speed[1] * np.linalg.norm(arm))
+        return float(self._base_speed[0] + self._base_speed[1] * length(arm))
 
     def _soft_grip(self, command: GripperOpening, seen: Observation) -> GripperOpening:
         n = SIDES.index(command.side)
@@ -406,3 +411,8 @@ class GuardedWorld:
         if near or self._grip[command.side] == "arm":
             return replace(command, force_limit=min(command.force_limit, self.limits.grip_force_arm))
         return command
+
+
+def _ahead(hand: np.ndarray, velocity: np.ndarray, duration: float) -> np.ndarray:
+    """Where (5, 3) a hand passes that moves on like that."""
+    return hand + (SHARES * duration)[:, None] * velocity

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,8 @@ class LinkMotion:
             self.names, self.radii = self._links.names, self._links.radii
         else:
             self.names, self.radii = tuple(f"{side}_hand" for side in SIDES), np.zeros(2)
+        self._seen: Observation | None = None
+        self._seen_ends = np.zeros((0, 2, 3))
         self._rows = {side: np.array([name.startswith(side) for name in self.names]) for side in SIDES}
 
     @property
@@ -45,8 +48,14 @@ class LinkMotion:
         return self._rows[side]
 
     def ends(self, seen: Observation, arm_positions: np.ndarray | None = None) -> np.ndarray:
-        """(r, 2, 3) ends of all capsules in the map [m], with other angles (2, 7) [rad] when given."""
-        arms = seen.arm_positions if arm_positions is None else arm_positions
+        """Ends (r, 2, 3) of all capsules in the map [m], with other angles (2, 7) [rad] when given; read-only."""
+        if arm_positions is None:  # asked for several times within one tick
+            if seen is not self._seen:
+                self._seen, self._seen_ends = seen, self._placed(seen, seen.arm_positions)
+            return self._seen_ends
+        return self._placed(seen, arm_positions)
+
+    def _placed(self, seen: Observation, arms: np.ndarray) -> np.ndarray:
         if self._links is not None:
             return self._links.ends(seen.pose_base_in_map, arms, seen.head_pan, seen.gripper_opening)
         base, place = seen.pose_base_in_map, self._kinematics.pose_hand_in_map
@@ -64,11 +73,12 @@ class LinkMotion:
     def after_base(self, seen: Observation, velocity: np.ndarray, duration: float) -> np.ndarray:
         """(r, 2, 3) ends once the base has moved with a velocity (3,) in its frame for `duration` [s]."""
         ends = self.ends(seen)
-        x, y, yaw = seen.pose_base_in_map
-        turn = velocity[2] * duration
-        c, s = np.cos(turn), np.sin(turn)
+        x, y, yaw = seen.pose_base_in_map.tolist()
+        turn = float(velocity[2]) * duration
+        c, s = math.cos(turn), math.sin(turn)
         rotation = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
-        heading = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
+        c, s = math.cos(yaw), math.sin(yaw)
+        heading = np.array(((c, -s), (s, c)))
         foot, moved = np.array((x, y, 0.0)), np.append(heading @ velocity[:2], 0.0) * duration
         return (ends - foot) @ rotation.T + foot + moved
 

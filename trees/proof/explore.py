@@ -10,7 +10,8 @@ begin from what the tree was between these two ticks.  Any other tree is followe
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import gc
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -32,6 +33,7 @@ FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reas
 OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20
+_VALUES = {status: status.value for status in Status}
 ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
 
 
@@ -72,10 +74,21 @@ class Stub(Behaviour):
             return []
         return [bound for name, _ in getattr(leaf, which)() if isinstance(bound := leaf.bindings[name], Key)]
 
+    def tick(self) -> Iterator[Behaviour]:
+        """As any leaf of py_trees, without its log: most of an exploration is ticks of stubs."""
+        if self.status != Status.RUNNING:
+            self.initialise()
+        self.status = self.update()
+        yield self
+
+    def stop(self, new_status: Status = Status.INVALID) -> None:
+        """Take the status; there is nothing to end."""
+        self.status = new_status
+
     def initialise(self) -> None:
         """As a skill does: forget outputs."""
         self.failure = None
-        self._explorer.board -= set(self.writes)
+        self._explorer.board.difference_update(self.writes)
 
     def update(self) -> Status:
         """Read, be decided, write."""
@@ -86,7 +99,7 @@ class Stub(Behaviour):
         if outcome is None or outcome == "later":
             return Status.RUNNING
         if outcome is True:
-            self._explorer.board |= set(self.writes)
+            self._explorer.board.update(self.writes)
             return Status.SUCCESS
         self.failure = Failure(outcome, "", self.name)
         return Status.FAILURE
@@ -97,15 +110,13 @@ class _Point:
     """An execution between two ticks.
 
     Attributes:
-        inner: attributes of each node with children.
-        leaves: status and failure of each leaf.
+        states: of each node, what `_state_of` gave when it last changed; points share what has not changed.
         board: keys written so far.
         time: of the clock [s].
         way: leaves and outcomes so far.
     """
 
-    inner: list[dict[str, Any]]
-    leaves: list[tuple[Status, Failure | None]]
+    states: list[Any]
     board: frozenset[str]
     time: float
     way: tuple[tuple[Stub, Any], ...]
@@ -135,7 +146,7 @@ class Explorer:
         findings: one sentence for each fault, with the way that leads to it.
     """
 
-    def __init__(self, root: Behaviour, limit: int = 50_000) -> None:
+    def __init__(self, root: Behaviour, limit: int = 200_000) -> None:
         self.board: set[str] = set()
         self.executions = 0
         self.complete = False
@@ -151,6 +162,10 @@ class Explorer:
                 node.attempts = min(node.attempts, ATTEMPTS)
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
         self._inner = [node for node in self._nodes if node not in self._options]
+        self._forms = {node: _Form.of(node) for node in self._nodes}
+        self._place = {node: n for n, node in enumerate(self._nodes)}
+        self._states: list[Any] = [None] * len(self._nodes)  # of the nodes that have not changed since
+        self._changed = set(self._nodes)
         self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
         self._resumes = all(_resumes(node) for node in self._inner)
         self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
@@ -164,6 +179,8 @@ class Explorer:
         self._way: list[tuple[Stub, Any]] = []
         self._asked: Stub | None = None  # the leaf that lets a tick go by
         self._hung = False  # some leaf chose in this tick never to end
+        for node in self._nodes:
+            self._watch(node)
         self._point = self._here()
         self._stack = [_Branch(self._point, [], ())]
 
@@ -174,12 +191,18 @@ class Explorer:
 
     def explore(self) -> None:
         """Follow every way."""
-        while self._stack:
-            if self.executions >= self._limit or len(self.findings) >= FINDINGS_MAX:
-                return
-            self.executions += 1
-            self._execute(self._stack.pop())
-        self.complete = True
+        collects = gc.isenabled()
+        gc.disable()  # what is kept of situations is much and forms no circles: looking for some takes a sixth of all
+        try:
+            while self._stack:
+                if self.executions >= self._limit or len(self.findings) >= FINDINGS_MAX:
+                    return
+                self.executions += 1
+                self._execute(self._stack.pop())
+            self.complete = True
+        finally:
+            if collects:
+                gc.enable()
 
     def choose(self, leaf: Stub) -> Any:
         """The outcome of `leaf` in this execution: True, a Reason, None for never, or `later` to be asked again."""
@@ -249,21 +272,45 @@ class Explorer:
         more = "... " if len(self._way) > 6 else ""
         self.findings.append(f"{what}, after {more}{', '.join(steps) or 'nothing'}")
 
+    def _watch(self, node: Behaviour) -> None:
+        """Hear of every tick and stop of a node: nothing else changes one, but for a stage that counts attempts."""
+        counted = [below for below in node.iterate() if isinstance(below, (Retry, RecoverBy))]
+        changing = (node, *counted) if isinstance(node, Stage) else (node,)
+        change, tick, stop = self._changed.update, node.tick, node.stop
+
+        def ticked() -> Iterator[Behaviour]:
+            change(changing)
+            return tick()
+
+        def stopped(new_status: Status = Status.INVALID) -> None:
+            change(changing)
+            stop(new_status)
+
+        node.tick, node.stop = ticked, stopped
+
     def _here(self) -> _Point:
+        for node in self._changed if self._resumes else self._nodes:
+            self._states[self._place[node]] = _state_of(node)
+        self._changed.clear()
         return _Point(
-            inner=[dict(vars(node)) for node in self._inner],
-            leaves=[(leaf.status, leaf.failure) for leaf in self._options],
+            states=self._states.copy(),
             board=frozenset(self.board),
             time=self._clock.time,
             way=tuple(self._way),
         )
 
     def _go_to(self, branch: _Branch) -> None:
-        point = self._point = branch.point
-        for node, attributes in zip(self._inner, point.inner, strict=True):
-            vars(node).update(attributes)
-        for leaf, (status, failure) in zip(self._options, point.leaves, strict=True):
-            leaf.status, leaf.failure = status, failure
+        point = branch.point
+        moved: Iterable[Behaviour] = self._nodes
+        if self._resumes:
+            if point is not self._point:
+                states = zip(self._nodes, self._states, point.states, strict=True)
+                self._changed.update([node for node, now, then in states if now is not then])
+            moved = self._changed
+        for node in moved:
+            _restore(node, point.states[self._place[node]])
+        self._changed.clear()
+        self._point, self._states = point, point.states.copy()
         self.board.clear()
         self.board |= point.board
         self._clock.time, self._way = point.time, list(point.way)
@@ -278,16 +325,18 @@ class Explorer:
 
     def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
-        if node not in active and node.status != Status.RUNNING:
-            return node.status.value
-        state: list[Any] = [node.status.value]
-        if isinstance(node, (Retry, RecoverBy)):
-            state.append(node.tried)
-        if isinstance(node, FailSafe) or (isinstance(node, RecoverBy) and node.recovering is not None):
-            state.append(node.failure.reason if node.failure else None)
-        remembers = isinstance(node, Wrapper) or getattr(node, "memory", False) is True
-        if remembers and isinstance(node, py_trees.composites.Composite):
-            child = node.current_child
+        status = node.status
+        if node not in active and status is not Status.RUNNING:
+            return _VALUES[status]
+        kind: Any = node  # with the attributes that its form says it has
+        form = self._forms[node]
+        state: list[Any] = [_VALUES[status]]
+        if form.counts:
+            state.append(kind.tried)
+        if form.keeps_failure and (not form.recovers or kind.recovering is not None):
+            state.append(kind.failure.reason if kind.failure else None)
+        if form.remembers:
+            child = kind.current_child
             return (*state, child, child and self._state(child, active))
         return (*state, *(self._state(child, active) for child in node.children))
 
@@ -333,6 +382,38 @@ class Explorer:
                 if isinstance(policy, py_trees.common.ParallelPolicy.SuccessOnSelected):
                     policy.children = [stub if each is child else each for each in policy.children]
         return root
+
+
+@dataclass(frozen=True)
+class _Form:
+    """What of a node decides how it goes on; asking its class at every situation takes longer than all else."""
+
+    counts: bool
+    recovers: bool
+    keeps_failure: bool
+    remembers: bool
+
+    @classmethod
+    def of(cls, node: Behaviour) -> _Form:
+        remembers = isinstance(node, Wrapper) or getattr(node, "memory", False) is True
+        return cls(
+            counts=isinstance(node, (Retry, RecoverBy)),
+            recovers=isinstance(node, RecoverBy),
+            keeps_failure=isinstance(node, (FailSafe, RecoverBy)),
+            remembers=remembers and isinstance(node, py_trees.composites.Composite),
+        )
+
+
+def _state_of(node: Behaviour) -> Any:
+    """All that a tick may change of a node."""
+    return (node.status, node.failure) if type(node) is Stub else dict(vars(node))
+
+
+def _restore(node: Behaviour, state: Any) -> None:
+    if type(node) is Stub:
+        node.status, node.failure = state
+    else:
+        vars(node).update(state)
 
 
 def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:

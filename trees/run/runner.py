@@ -141,6 +141,7 @@ class Run:
         self._limit = TimeLimit(limits.tick, self._last_resort)
         self._tell = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
+        self._shown = {node for node in self.root.iterate() if isinstance(node, (Skill, Stage))}
         self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self.interrupted = False
@@ -272,8 +273,9 @@ class Run:
             raise WorldError("the world's clock stands still")
 
     def _progress(self, node: Behaviour) -> None:
-        if not isinstance(node, (Skill, Stage)):
+        if node not in self._shown:
             return
+        assert isinstance(node, (Skill, Stage))
         above, parent = [], node.parent
         while parent is not None:
             above += [parent] if isinstance(parent, Stage) and self._told.get(parent) != Status.RUNNING else []

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -20,6 +21,7 @@ from ...sim.world import BaseVelocity, Command, GripperOpening, HandTwist
 from ...skills.core.reasons import Failure
 
 DECIMALS = 4  # 0.1 ms, 0.1 mm, 0.1 mrad: far below what matters, far above rounding noise
+_STATUS = operator.attrgetter("status")
 FREE_TEXT = ("detail",)  # kept in the trace for the reader, left out of the hash
 
 
@@ -96,11 +98,13 @@ class Trace:
         self, root: Behaviour, now: Callable[[], float], sink: Callable[[dict[str, Any]], None] | None = None
     ) -> None:
         self.paths = paths_of(root)
+        self._nodes = tuple(self.paths)
         self.events: list[dict[str, Any]] = []
         self._now = now
         self._sink = sink
         self._digest = hashlib.sha256()
         self._last: dict[Behaviour, Status] = {}
+        self._swept: list[Status] = []  # of all nodes, as they are noted; empty where that may not be so
 
     def add(self, kind: str, **content: Any) -> None:
         """Append one event, stamped with the world's clock."""
@@ -115,6 +119,7 @@ class Trace:
         if self._last.get(node, Status.INVALID) == node.status:
             return
         self._last[node] = node.status
+        self._swept = []  # it may be stopped again before the next sweep
         failure = getattr(node, "failure", None)
         content: dict[str, Any] = {"node": self.paths.get(node, node.name), "status": node.status.name}
         if node.status == Status.FAILURE and isinstance(failure, Failure):
@@ -123,10 +128,13 @@ class Trace:
 
     def sweep(self) -> None:
         """Note every node that changed without being visited (stopped from outside)."""
-        last = self._last
-        for node in self.paths:  # all of them at every tick, so what has not changed is passed over here
-            if last.get(node, Status.INVALID) is not node.status:
+        statuses = list(map(_STATUS, self._nodes))  # of all nodes at every tick: compared as a whole
+        if statuses == self._swept:
+            return
+        for node in self._nodes:
+            if self._last.get(node, Status.INVALID) is not node.status:
                 self.visit(node)
+        self._swept = statuses
 
     def command(self, command: Command) -> None:
         """Note a command that was really sent."""

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.sim.scripted.linear_arm import LinearArms
-from caretree.sim.scripted.world import ScriptedWorld
+from caretree.sim.scripted.world import ScriptedWorld, _pseudo_inverse
 from caretree.sim.world import BaseVelocity, GripperOpening, HandTwist, JointTrajectory, SensorLost
 
 
@@ -132,3 +132,10 @@ def test_linear_arms_are_consistent():
             np.testing.assert_allclose((after - before)[:3, 3] / 2e-6, jacobian[:3, joint], atol=1e-6)
             spin = (after[:3, :3] - before[:3, :3]) / 2e-6 @ arms.pose_hand_in_map(side, q, base)[:3, :3].T
             np.testing.assert_allclose((spin[2, 1], spin[0, 2], spin[1, 0]), jacobian[3:, joint], atol=1e-6)
+
+
+def test_the_pseudo_inverse_is_that_of_numpy_to_the_last_bit_singular_or_not():
+    rng = np.random.default_rng(5)
+    for rank in (6, 5, 3):
+        jacobian = rng.normal(size=(6, rank)) @ rng.normal(size=(rank, 7))
+        assert (_pseudo_inverse(jacobian) == np.linalg.pinv(jacobian, rcond=1e-3)).all()

@@ -106,7 +106,7 @@ PLANTED = {
     "memory of an array": "def f(seen): return seen.arm_positions.ctypes.data",
     "another process": "from subprocess import run",
 }
-PERCEPTION = ("perception", "sim.errors", "sim.quantity", "sim.robot.gripper", "sim.world")
+PERCEPTION = ("perception", "sim.errors", "sim.quantity", "sim.robot.gripper", "sim.vector", "sim.world")
 ACTING = ("perception", "skills", "trees/nodes", "trees/guard", "trees/tasks")
 # worlds and benches, for rehearsals and tests; scene and judge of a task, which its tree gets no hand on
 NOT_ACTING = ("skills/scripted", "skills/testing", "trees/tasks/wash_arm/room.py")

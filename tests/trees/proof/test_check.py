@@ -1,5 +1,6 @@
 """`caretree check` against trees with one planted fault each: it must name the fault, and nothing else."""
 
+import gc
 import itertools
 
 import numpy as np
@@ -375,3 +376,9 @@ def test_the_quick_part_asks_no_combination():
         "safe/use: input used reads 'k', which is not written on every way to here (written by nobody)"
     ]
     assert report.executions == 0
+
+
+def test_an_exploration_leaves_the_collection_of_garbage_as_it_was():
+    assert gc.isenabled()
+    Explorer(task_of(lambda context: safe(context, Make("n", context, made=Key("k")))).build(_context())).explore()
+    assert gc.isenabled()
