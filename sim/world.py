@@ -32,6 +32,14 @@ class SensorLost(WorldError):  # noqa: N818 it names a state of the robot, as op
     """A sensor gave nothing: no frame, no joint state, no wrench."""
 
 
+class SensorStale(SensorLost):
+    """A sensor gave what it gave long ago."""
+
+
+class EmergencyStop(WorldError):  # noqa: N818 it names a state of the robot, as operators say it
+    """The emergency stop is pressed: nothing moves before a person has released it."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Observation:
     """What the robot measures of itself at one instant.
@@ -48,6 +56,7 @@ class Observation:
         gripper_force: (2,) squeezing force between the fingertips [N].
         wrench_hand_in_map: (2, 6) load on each hand, force [N] then torque [N m], own weight removed.
         pose_hand_in_map: (2, 4, 4) from the joint angles (forward kinematics, not truth).
+        emergency_stop: whether it is pressed, or has been and the robot is not enabled again.
     """
 
     time: float
@@ -61,6 +70,7 @@ class Observation:
     gripper_force: np.ndarray
     wrench_hand_in_map: np.ndarray
     pose_hand_in_map: np.ndarray
+    emergency_stop: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,11 +197,15 @@ class Clock(Protocol):
     """The world's time, the only time anything in the project uses."""
 
     def now(self) -> float:
-        """Seconds since the world started."""
+        """Seconds since the world started; never less than before."""
         ...
 
     def wait_until(self, time: float) -> None:
-        """Return when `now() >= time` [s]; a simulation advances itself, hardware waits."""
+        """Return when `now() >= time` [s]: a simulation advances itself, hardware waits.
+
+        Where time passes by itself this returns within 0.1 s of wall time, whatever the clock does: it may be slow, or
+        stand still, and whoever waits has more to watch.  So it may return early: `waiting.py` asks again.
+        """
         ...
 
 
@@ -215,14 +229,24 @@ class RoomMap:
 
 
 class World(abc.ABC):
-    """A body and its senses.  Simulation and hardware subclass this and nothing else."""
+    """A body and its senses.  Simulation and hardware subclass this and nothing else.
+
+    Calls come from one thread, but for `stop`: the watchdog calls it from its own, at any time, also while another
+    call is under way.  Whether a world keeps the contract, `caretree.sim.testing.check_world` tells.
+
+    Attributes:
+        clock: of this world; a `SteppedClock` stands still until somebody waits, any other one is a wall clock.
+        room: what was mapped beforehand.
+    """
 
     clock: Clock
     room: RoomMap
 
     @abc.abstractmethod
     def observe(self) -> Observation:
-        """Latest proprioception.
+        """Latest proprioception, with the time at which it was measured; its arrays stay as they are.
+
+        An old one may be given again: whoever uses it looks at its time (`freshness.py`).
 
         Raises:
             SensorLost: nothing has arrived.
@@ -230,10 +254,10 @@ class World(abc.ABC):
 
     @abc.abstractmethod
     def look(self, camera: str) -> Frame:
-        """Latest RGB-D frame of one of `CAMERAS`.
+        """Latest RGB-D frame of one of `CAMERAS`, with the time of its exposure.
 
         Raises:
-            SensorLost: the camera is dead.
+            SensorLost: the camera is dead, or there is none of that name.
         """
 
     @abc.abstractmethod
@@ -241,12 +265,19 @@ class World(abc.ABC):
         """Start `command`, replacing what the same joints, hand or base were doing.
 
         Returns:
-            The command as really sent after clipping to the limits.
+            The command as really sent after clipping to the limits: what the robot then does.
+
+        Raises:
+            EmergencyStop: it is pressed.
+            WorldError: this robot cannot do that.
         """
 
     @abc.abstractmethod
     def stop(self) -> None:
-        """End every motion now.  Grippers keep their opening.  Safe to call at any time, twice too."""
+        """End every motion now.  Grippers keep their opening.
+
+        Safe to call at any time, twice too, right after a command, and from another thread.
+        """
 
     def close(self) -> None:  # noqa: B027 most worlds hold nothing
-        """Release what the world holds (processes, files, connections)."""
+        """Release what the world holds (processes, files, connections); twice is once."""

@@ -10,7 +10,7 @@ import numpy as np
 from ..perception.estimates import ArmPosture
 from ..perception.person.arm_fit import turned_about_shoulder
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import Side
+from ..sim.world import SensorLost, Side
 from .belief.person_tracking import watch_arm
 from .control.arm_grip import over_arm, top_down_reachable
 from .control.let_arm_go import LetArmGoTuning, let_arm_go
@@ -83,7 +83,7 @@ class LowerArm(Skill):
         self.note(f"lowers the {self.side} arm")
         try:
             yield from lower_arm(self, self.hand, held, tuning=self.tuning.lowering)
-        except SkillFailure:
+        except (SkillFailure, SensorLost):
             yield from let_arm_go(self, self.hand, "never", tuning=self.tuning.leaving)
             raise
         yield from let_arm_go(self, self.hand, self.ready, tuning=self.tuning.leaving)

@@ -22,7 +22,10 @@ ALLOWED_SIM = {
     "scripted",
     "faults",
     "fence",
+    "freshness",
+    "waiting",
     "record",
+    "remote",
     "world_kind",
     "yaml_text",
 }

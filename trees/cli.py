@@ -14,13 +14,14 @@ from collections.abc import Sequence
 
 from ..sim.command_line import CommandParser, answered, port, seed
 from ..sim.errors import CaretreeError
-from .run.worlds import WORLDS
 
 SELF_PARSED = {
     "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
+    "serve-world": (".commands.serve_world", "offer a world to a tree in another process"),
     "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed and unharmed"),
 }
 # said by --help, which must not import what knows them; a test compares
+WORLDS = ("bullet", "scripted")
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
 WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
@@ -54,9 +55,25 @@ def _kind_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _world_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", default="bullet", choices=WORLDS, help="default: bullet")
+def _world_choice(parser: argparse.ArgumentParser, default: str) -> None:
+    parser.add_argument(
+        "--world",
+        default=default,
+        metavar="WORLD",
+        help=f"{', '.join(WORLDS)}, an installed one, package.module:Class or file.py:Class (default: {default})",
+    )
+    parser.add_argument(
+        "--world-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="what such a class takes; may be repeated",
+    )
     _kind_option(parser)
+
+
+def _world_options(parser: argparse.ArgumentParser) -> None:
+    _world_choice(parser, "bullet")
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
@@ -111,8 +128,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
     inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     inject.add_argument("--seed", type=seed, default=0, metavar="N", help="of every run (default 0)")
-    inject.add_argument("--world", default="scripted", choices=WORLDS, help="default: scripted")
-    _kind_option(inject)
+    _world_choice(inject, "scripted")
     inject.add_argument(
         "--fault",
         action="append",

@@ -298,9 +298,10 @@ class BulletWorld(World):
         self._robot.stop()
 
     def close(self) -> None:
-        """End both physics clients."""
-        self._client.disconnect()
-        self._robot_client.disconnect()
+        """End both physics clients; twice is once."""
+        for client in (self._client, self._robot_client):
+            if client.isConnected():
+                client.disconnect()
 
     def _blocked(self, command: GripperOpening, grip: Grip) -> GripperOpening:
         if grip.kind not in ("arm", "object") or command.opening >= grip.thickness:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -210,9 +210,8 @@ class ScriptedWorld(World):
     # -- motions -----------------------------------------------------------------------------------------
 
     def send(self, command: Command) -> Command:
-        """Start a motion; a real robot's clipping is left to the guard."""
+        """Start a motion; only the fingers have a limit here."""
         now = self.clock.now()
-        self.sent.append(command)
         if isinstance(command, JointTrajectory):
             motion = self._motion(command, now)
             self._drop(set(motion.slots))
@@ -231,8 +230,10 @@ class ScriptedWorld(World):
             self._base_velocity, self._base_until = np.array(command.velocity, float), now + command.duration
         elif isinstance(command, GripperOpening):
             n = SIDES.index(command.side)
-            self._opening_goal[n] = min(max(command.opening, 0.0), STROKE)
+            command = replace(command, opening=min(command.opening, STROKE))
+            self._opening_goal[n] = command.opening
             self._force_limit[n] = command.force_limit
+        self.sent.append(command)
         return command
 
     def stop(self) -> None:

@@ -33,7 +33,7 @@ class SafeWorld(Protocol):
         ...
 
     def look(self, camera: str) -> Frame:
-        """Latest frame; raises SensorLost, or SkillFailure when it is stale."""
+        """Latest frame; raises SensorLost, also when it is too old."""
         ...
 
     def send(self, command: Command, *, retreat: bool = False) -> Command:

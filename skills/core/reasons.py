@@ -5,6 +5,8 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
+from ...sim.world import EmergencyStop, SensorLost, SensorStale
+
 
 class Reason(enum.Enum):
     """Every cause of failure that a tree can react to."""
@@ -29,6 +31,8 @@ class Reason(enum.Enum):
     TIMEOUT = "It took longer than allowed."
     SENSOR_LOST = "A sensor gave nothing."
     SENSOR_STALE = "A sensor repeats old values."
+    WORLD_LOST = "The robot no longer answers, or its clock stands still."
+    EMERGENCY_STOP = "The emergency stop is pressed: the fingers stay as they are."
     COMMAND_LOST = "A command was sent and nothing moved."
     PERSON_MOVED = "The person is no longer where they were seen."
     MOTION_BLOCKED = "A motion did not come to its end or would not stop."
@@ -37,6 +41,13 @@ class Reason(enum.Enum):
     RECORD_LOST = "The record can no longer be written."
     DISPLAY_LOST = "The run can no longer be shown."
     INTERNAL_ERROR = "The program made an error."
+
+
+def reason_of(error: SensorLost | EmergencyStop) -> Reason:
+    """What an error of the world means for a tree."""
+    if isinstance(error, EmergencyStop):
+        return Reason.EMERGENCY_STOP
+    return Reason.SENSOR_STALE if isinstance(error, SensorStale) else Reason.SENSOR_LOST
 
 
 @dataclass(frozen=True)

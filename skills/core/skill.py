@@ -31,11 +31,11 @@ import py_trees
 from py_trees.common import Status
 
 from ...perception.errors import PerceptionFailure
-from ...sim.world import SensorLost
+from ...sim.world import EmergencyStop, SensorLost
 from ..motion.errors import MotionError, PathBlocked, Unreachable
 from .context import Context
 from .ports import Input, Output, bind_ports, ports_of
-from .reasons import Failure, Reason, SkillFailure
+from .reasons import Failure, Reason, SkillFailure, reason_of
 from .scope import Scope
 from .world_handle import WorldHandle
 
@@ -149,8 +149,8 @@ class Skill(py_trees.behaviour.Behaviour):
             self.failure = Failure(reason, str(stop), self.name)
         except MotionError as stop:
             self.failure = Failure(MOTION_REASONS.get(type(stop), Reason.MOTION_BLOCKED), str(stop), self.name)
-        except SensorLost as stop:
-            self.failure = Failure(Reason.SENSOR_LOST, str(stop), self.name)
+        except (SensorLost, EmergencyStop) as stop:
+            self.failure = Failure(reason_of(stop), str(stop), self.name)
         except Exception as error:
             self.context.report(error)
             self.failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", self.name)

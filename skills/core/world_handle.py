@@ -46,7 +46,7 @@ class WorldHandle:
         return self._context.world.observe()
 
     def look(self, camera: str) -> Frame:
-        """Latest frame of a camera; raises SensorLost, or SkillFailure when it is stale."""
+        """Latest frame of a camera; raises SensorLost, also when it is too old."""
         return self._context.world.look(camera)
 
     def send(self, command: Command, *, retreat: bool = False) -> Command:

@@ -22,6 +22,7 @@ MODULES = (  # of caretree, with what is below them
     "sim.abilities",
     "sim.compiled",
     "sim.errors",
+    "sim.freshness",
     "sim.quantity",
     "sim.robot",
     "sim.segments",

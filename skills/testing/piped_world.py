@@ -1,7 +1,7 @@
 """A world in a process of its own: whoever holds this one can reach the contract of `World` and nothing else.
 
-What comes through the pipe is taken apart into plain numbers, texts and arrays and put together anew, so an object can
-bring nothing along that the contract does not declare.
+What comes through the pipe is taken apart and put together anew (`sim/remote/values.py`), so an object can bring
+nothing along that the contract does not declare.
 """
 
 from __future__ import annotations
@@ -9,72 +9,15 @@ from __future__ import annotations
 import importlib
 import multiprocessing
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
 from multiprocessing.connection import Connection
 from typing import Any
 
-import numpy as np
-
 from ...sim.abilities import HandKinematics, SupportsInitialStates
-from ...sim.errors import CaretreeError
-from ...sim.world import (
-    BaseVelocity,
-    Command,
-    Frame,
-    GripperOpening,
-    HandTwist,
-    JointTrajectory,
-    Observation,
-    RoomMap,
-    SensorLost,
-    World,
-    WorldError,
-)
+from ...sim.remote.values import ERRORS, packed, unpacked
+from ...sim.world import Command, Frame, Observation, World, WorldError
 
-DECLARED = {
-    kind.__name__: kind
-    for kind in (Observation, Frame, RoomMap, JointTrajectory, HandTwist, BaseVelocity, GripperOpening)
-}
-ERRORS = {kind.__name__: kind for kind in (SensorLost, WorldError, CaretreeError)}
 CALLS = ("observe", "look", "send", "stop")
 PATIENCE = 10.0  # with which a process is asked to end [s]
-
-
-class UndeclaredError(CaretreeError):
-    """A world gives away what its contract does not declare."""
-
-
-def packed(value: Any) -> Any:
-    """A value of the contract as plain numbers, texts, arrays, tuples and dictionaries.
-
-    Raises:
-        UndeclaredError: of another type, or with an attribute that its class does not declare.
-    """
-    if is_dataclass(value):
-        name, names = type(value).__name__, {field.name for field in fields(value)}
-        if DECLARED.get(name) is not type(value):
-            raise UndeclaredError(f"a world gives a {name}, but its contract knows {', '.join(DECLARED)}")
-        if more := sorted(vars(value).keys() - names):
-            raise UndeclaredError(f"{name} has {', '.join(more)}, which the contract does not declare")
-        return name, {field: packed(getattr(value, field)) for field in sorted(names)}
-    if type(value) is np.ndarray and value.dtype.kind in "bifu":
-        return value
-    if isinstance(value, np.generic):
-        return value.item()
-    if type(value) in (list, tuple):
-        return tuple(packed(each) for each in value)
-    if type(value) is dict:
-        return {str(key): packed(each) for key, each in value.items()}
-    if value is None or type(value) in (bool, int, float, str):
-        return value
-    raise UndeclaredError(f"a world gives a {type(value).__name__}, but its contract declares none")
-
-
-def unpacked(value: Any) -> Any:
-    """The value again that `packed` took apart."""
-    if isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], dict) and value[0] in DECLARED:
-        return DECLARED[value[0]](**{name: unpacked(each) for name, each in value[1].items()})
-    return value
 
 
 class PipedWorld(World):

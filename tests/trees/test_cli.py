@@ -16,6 +16,7 @@ from caretree.sim.record.recorder import Recorder
 from caretree.sim.scene import scene
 from caretree.trees import cli
 from caretree.trees.cli import main
+from caretree.trees.run import worlds
 
 
 @pytest.fixture(autouse=True)
@@ -77,8 +78,8 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
         (["run", "wave", "--seed", "-1"], "'-1' is no seed"),
         (["run", "wave", "--seed", "one"], "'one' is no seed: a whole number from 0"),
         (["run", "wave", "--seed", "4294967296"], "is no seed"),
-        (["run", "wave", "--world", "mars"], "invalid choice: 'mars'"),
-        (["run", "wave", "--world", "ros1"], "invalid choice: 'ros1' (choose from 'bullet', 'scripted')"),
+        (["run", "wave", "--world", "mars"], "unknown world 'mars'; there are bullet, scripted, remote, or give"),
+        (["run", "wave", "--world", "ros1"], "unknown world 'ros1'; there are bullet, scripted, remote"),
         (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
         (["run", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
         (["inject", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
@@ -276,6 +277,7 @@ def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
 
 def test_help_names_what_there_is():
     assert ", ".join(scene.GOWNS) == cli.GOWNS
+    assert cli.WORLDS == worlds.WORLDS
     assert ", ".join(scene.PERSONS) == cli.PERSONS
     assert ", ".join(faults.FAULTS) == cli.FAULTS
     assert ", ".join(("easy", *(f"easy+{one}" for one in world_kind.DIFFICULTIES), "hard")) == cli.WORLD_KINDS

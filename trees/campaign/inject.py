@@ -18,6 +18,7 @@ from py_trees.behaviour import Behaviour
 from ...perception.senses import Senses
 from ...sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld
 from ...sim.record.record import RunResult
+from ...sim.waiting import wait
 from ...sim.world import SIDES, World
 from ...skills.core.context import Phase
 from ...skills.core.reasons import Reason, SkillFailure
@@ -239,7 +240,7 @@ def unsafe_after(run: Run, outcome: str) -> str:
     """What is still wrong after a run: something moves, an arm is held, fingers are closed; empty when nothing is."""
     world = run.world.inner if isinstance(run.world, FaultyWorld) else run.world
     before = world.observe()
-    world.clock.wait_until(world.clock.now() + SETTLE)
+    wait(world.clock, world.clock.now() + SETTLE)
     after = world.observe()
     if np.abs(after.arm_positions - before.arm_positions).max() > MOVED:
         return "an arm still moves"

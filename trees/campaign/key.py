@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ...sim.record.record import versions
+from ..run.open_world import world_file
 from ..run.task import Task
 
 PACKAGE = Path(__file__).parents[2]
@@ -17,14 +19,18 @@ ONLY_TELLS = ("trees/campaign", "trees/commands", "trees/report", "trees/cli.py"
 SOURCES = (".py", ".xml")
 
 
-def campaign_key(task: Task, arguments: Sequence[str]) -> str:
+def campaign_key(task: Task, arguments: Sequence[str], *, world: str | None = None) -> str:
     """Hash (hex) of all that two trials of one seed must share to be the same trial.
 
-    It covers this package's sources, the task's own file with the files beside it that it names, the versions of
-    packages, the arguments, and the files that these name.
+    It covers this package's sources, the task's own file and that of a world that the package does not bring, each
+    with the files beside it that it names, the versions of packages, the arguments, and the files that these name.
     """
     digest = hashlib.sha256(json.dumps([task.name, list(arguments), versions()], sort_keys=True).encode())
-    files = [*package_files(), *own_files(task.file), *(Path(text) for text in arguments if Path(text).is_file())]
+    files = [*package_files(), *own_files(task.file)]
+    if world and (brought := world_file(world)) is not None:
+        installed = brought.resolve().is_relative_to(sys.prefix)  # among the packages, whose versions count
+        files += [brought] if installed else own_files(brought)
+    files += (Path(text) for text in arguments if Path(text).is_file())
     for file in files:
         digest.update(f"{file.name}\0".encode(errors="replace"))
         digest.update(file.read_bytes())

@@ -23,6 +23,7 @@ class Recorded:
         task: name, or path of its file.
         seed: of the run.
         world: name.
+        world_args: what a world that the package does not bring was given, name -> value.
         gown, person, model, stage: as on the command line; None where nothing was given.
         world_kind: name.
         rate_hz: ticks a second.
@@ -44,6 +45,7 @@ class Recorded:
     inject: tuple[str, ...] = ()
     tuning: Mapping[str, Mapping[str, Any]]
     build: Mapping[str, Any]
+    world_args: Mapping[str, Any]
     versions: Mapping[str, str]
 
 
@@ -66,6 +68,7 @@ def recorded(directory: Path) -> Recorded:
         inject=_value(file, given, "inject", tuple, _is_texts, ()),
         tuning=_value(file, given, "tuning", dict, _is_tuning, {}),
         build=_value(file, given, "build", dict, _is_mapping, {}),
+        world_args=_value(file, given, "world_args", dict, _is_mapping, {}),
         versions=_value(file, run, "versions", dict, _is_mapping, {}),
         **optional,
     )

@@ -52,6 +52,7 @@ def replay(directory: Path) -> Replay:
         person=given.person,
         model=given.model,
         kind=given.world_kind,
+        arguments=given.world_args,
     )
     try:
         world = FaultyWorld(inner, faults) if faults else inner

@@ -11,12 +11,18 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ... import skills
-from ..cli import DELEGATED, FAULTS, GOWNS, PERSONS, SELF_PARSED, WORLD_KINDS, build_parser
+from ..cli import DELEGATED, FAULTS, GOWNS, PERSONS, SELF_PARSED, WORLD_KINDS, WORLDS, build_parser
 from ..tasks import task_names
 
 Paths = Literal["", "tasks", "files", "folders"]
 PATHS: dict[str, Paths] = {"": "", "TASK": "tasks", "FILE": "files", "DIR": "folders"}  # by what help calls the value
-NAMED = {"--gown": GOWNS, "--person": PERSONS, "--world-kind": WORLD_KINDS, "--fault": FAULTS}
+NAMED = {
+    "--gown": GOWNS,
+    "--person": PERSONS,
+    "--world": ", ".join(WORLDS),
+    "--world-kind": WORLD_KINDS,
+    "--fault": FAULTS,
+}
 BASH_PATHS: dict[Paths, tuple[str, ...]] = {
     "": (),
     "tasks": ("-f -X '!*.py'", "-f -X '!*.xml'", "-d"),

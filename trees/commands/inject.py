@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..campaign.inject import SIGNS, Campaign, FaultKey, Row, table
 from ..campaign.key import campaign_key
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
-from ..run.worlds import make_world
+from ..run.worlds import make_world, read_world_arguments
 
 ROWS = "inject.jsonl"
 
@@ -36,7 +37,8 @@ def main(options: argparse.Namespace) -> int:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
     kind = WorldKind.named(options.world_kind)
-    world = "-".join((options.world, *kind.difficulties))
+    read_world_arguments(options.world, options.world_arg)
+    world = "-".join((re.sub(r"[^\w.]+", "_", options.world), *kind.difficulties))
     name = "-".join((Path(options.task).stem, *([options.stage] if options.stage else []), world))
     usual = Path("runs") / f"inject-{name}-seed{options.seed}"
     path = Path(options.out or usual) / ROWS
@@ -55,9 +57,10 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
+    arguments = read_world_arguments(options.world, options.world_arg)
     campaign = Campaign(
         task,
-        lambda: make_world(options.world, task, seed=options.seed, kind=options.world_kind),
+        lambda: make_world(options.world, task, seed=options.seed, kind=options.world_kind, arguments=arguments),
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
         stage=options.stage,
@@ -65,7 +68,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
-    key = campaign_key(task, (options.world, options.world_kind, str(options.seed), str(options.stage)))
+    given = (options.world, options.world_kind, str(options.seed), str(options.stage), *options.world_arg)
+    key = campaign_key(task, given, world=options.world)
     rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
     try:

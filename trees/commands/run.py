@@ -30,7 +30,7 @@ from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given
-from ..run.worlds import make_world, prepare_stage
+from ..run.worlds import make_world, prepare_stage, read_world_arguments
 from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
@@ -65,8 +65,10 @@ def main(options: argparse.Namespace) -> int:
     faults = [parse_fault(text) for text in options.inject]
     given = read_given(options.set, options.tuning)
     given = replace(given, parameters=task.values(given.parameters))
+    arguments = read_world_arguments(options.world, options.world_arg)
     parameters = {
         "world_kind": WorldKind.named(options.world_kind).name,
+        "world_args": arguments,
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
@@ -94,6 +96,7 @@ def main(options: argparse.Namespace) -> int:
                     person=options.person,
                     model=options.model,
                     kind=options.world_kind,
+                    arguments=arguments,
                 )
                 try:
                     return _run(options, task, inner, senses, faults, given, parameters, claim, signals, watchers)

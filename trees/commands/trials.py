@@ -54,6 +54,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="NAME=VALUE",
         help="a parameter of the task, or SKILL.NUMBER=VALUE, in every run; may be repeated",
     )
+    parser.add_argument(
+        "--world-arg",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="of the world, in every run; may be repeated",
+    )
     parser.set_defaults(main=main)
 
 
@@ -100,9 +107,10 @@ def main(args: argparse.Namespace) -> int:
     arguments = [part for name, value in given.items() if value for part in (f"--{name}", value)]
     arguments += [part for fault in args.inject for part in ("--inject", fault)]
     arguments += [part for text in args.set for part in ("--set", text)]
+    arguments += [part for text in args.world_arg for part in ("--world-arg", text)]
     plan = Plan(
         task=args.task,
-        key=campaign_key(load_task(args.task), arguments),
+        key=campaign_key(load_task(args.task), arguments, world=args.world),
         seeds=parse_seeds(args.n, args.seeds),
         directory=directory,
         stage=args.stage,

@@ -6,7 +6,7 @@ The runner wraps every world in it, so that a task author cannot leave it out.  
 - keeps every link off the person (`keep_clear.py`);
 - scales pulling down as the cloth load grows, stops at the limit, and then lets only relieving motion pass;
 - caps the grip on an arm and the speed of a hand that holds one;
-- stops the run when the senses are stale, frozen or gone.
+- stops the run when the senses are stale, frozen or gone, or the emergency stop is pressed.
 """
 
 from __future__ import annotations
@@ -18,23 +18,26 @@ from dataclasses import replace
 import numpy as np
 
 from ...sim.abilities import HasKinematics
+from ...sim.freshness import fresh_frame, fresh_observation
 from ...sim.segments import furthest_moved
 from ...sim.vector import length
 from ...sim.world import (
     SIDES,
     BaseVelocity,
     Command,
+    EmergencyStop,
     Frame,
     GripperOpening,
     HandTwist,
     JointTrajectory,
     Observation,
     SensorLost,
+    SensorStale,
     Side,
     World,
 )
 from ...skills.core.context import Grip
-from ...skills.core.reasons import Failure, Reason, SkillFailure
+from ...skills.core.reasons import Failure, Reason, SkillFailure, reason_of
 from ...skills.geometry.person_zone import PersonZone
 from .hand_speed import hand_path, hand_positions_from, near_speed, near_speed_bound, stretched
 from .keep_clear import KeepClear
@@ -57,6 +60,8 @@ class GuardedWorld:
             which is safe and slow, and no link is kept off the person.
         limits: what to enforce.
         on_command: told of every command really sent.
+        before_command: called before each command is sent.
+        on_sample: called for every sample with a new time.
 
     Attributes:
         zone: where the person is, as skills have told.
@@ -68,9 +73,13 @@ class GuardedWorld:
         limits: Limits = DEFAULT,
         *,
         on_command: Callable[[Command], None] | None = None,
+        before_command: Callable[[], None] = lambda: None,
+        on_sample: Callable[[], None] = lambda: None,
     ) -> None:
         self.limits = limits
         self._on_command = on_command
+        self._before_command, self._on_sample = before_command, on_sample
+        self._under_way = -np.inf  # world clock until which what has been sent moves something
         self.clock = inner.clock
         self.room = inner.room
         self._inner = inner
@@ -133,29 +142,48 @@ class GuardedWorld:
             and np.abs(seen.twist_base).max() < self.limits.still_base_speed
         )
 
+    def was_stopped(self, failure: Failure, since: float) -> bool:
+        """Take note that something else has stopped the robot.
+
+        Args:
+            failure: why; held against the running skill where a motion was under way.
+            since: world clock from which on it may have been stopped [s].
+
+        Returns:
+            Whether a motion was under way.
+        """
+        moving = since < self._under_way
+        if moving:
+            self._under_way, self._fault = -np.inf, failure
+        return moving
+
     def check(self) -> Failure | None:
         """Judge the state once per tick.
 
         Returns:
-            What must stop the whole run (dead senses), or None.  An excess of load or speed stops the motion
-            at once and is held against the running skill instead.
+            What must stop the whole run (dead senses, the emergency stop), or None.  An excess of load or speed stops
+            the motion at once and is held against the running skill instead.
         """
         try:
-            self.observe()
+            pressed = self.observe().emergency_stop
         except SensorLost as lost:
-            dead = self._watchdog.judge(self.clock.now())
-            return dead and Failure(Reason.SENSOR_LOST, str(lost), "guard")
+            return self._watchdog.judge(self.clock.now()) and Failure(reason_of(lost), str(lost), "guard")
+        except EmergencyStop:
+            pressed = True
+        if pressed:
+            return Failure(Reason.EMERGENCY_STOP, "", "robot")
         return self._watchdog.judge(self.clock.now())
 
     # -- World -------------------------------------------------------------------------------------------
 
     def observe(self) -> Observation:
-        """Latest proprioception, judged; raises SensorLost."""
-        seen = self._inner.observe()
+        """Latest proprioception, judged; raises SensorLost, also where it is too old."""
+        seen = fresh_observation(self._inner.observe(), self.clock.now(), self.limits.stale_after)
         self._watchdog.sample(seen, self.clock.now())
         self._opening = seen.gripper_opening
         self._judge_load(seen)
         if self._last is None or seen.time > self._last.time:
+            self._on_sample()
             for side, arm in self._held.items():  # it goes with the hand, seen or not
                 self.zone.move_arm(arm, seen.pose_hand_in_map[SIDES.index(side), :3, 3])
             self._judge_speed(seen)
@@ -166,13 +194,11 @@ class GuardedWorld:
         """Latest frame.
 
         Raises:
-            SensorLost: the camera is dead.
-            SkillFailure: the frame is stale or frozen.
+            SensorLost: the camera is dead, its frame too old, or it no longer varies.
         """
-        frame = self._inner.look(camera)
-        fault = self._watchdog.frame(frame, self.clock.now())
-        if fault is not None:
-            raise SkillFailure(fault.reason, fault.detail)
+        frame = fresh_frame(self._inner.look(camera), self.clock.now(), self.limits.frame_stale_after)
+        if fault := self._watchdog.frame(frame):
+            raise SensorStale(fault)
         return frame
 
     def send(self, command: Command, *, retreat: bool = False) -> Command:
@@ -186,9 +212,13 @@ class GuardedWorld:
             What was really sent.
 
         Raises:
+            SensorLost: nobody knows where the robot is.
+            EmergencyStop: it is pressed.
             SkillFailure: the load is at its limit and the motion does not relieve it.
         """
         seen = self.observe()
+        if seen.emergency_stop:
+            raise EmergencyStop("nothing moves before a person has released it")
         if isinstance(command, HandTwist):
             command = self._slow_twist(command, seen, retreat)
         elif isinstance(command, JointTrajectory):
@@ -197,16 +227,21 @@ class GuardedWorld:
             command = self._slow_base(command, seen, retreat)
         else:
             command = self._soft_grip(command, seen)
+        self._before_command()
         sent = self._inner.send(command)
+        self._under_way = max(self._base_until, *self._arm_until.values())
         if self._on_command is not None:
             self._on_command(sent)
         return sent
 
     def stop(self) -> None:
         """End every motion now."""
-        self._base_until = -np.inf
-        self._arm_until = {side: -np.inf for side in SIDES}
+        self._forget_motions()
         self._inner.stop()
+
+    def _forget_motions(self) -> None:
+        self._base_until = self._under_way = -np.inf
+        self._arm_until = {side: -np.inf for side in SIDES}
 
     def close(self) -> None:
         """Release what the world holds."""

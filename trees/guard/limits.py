@@ -37,6 +37,8 @@ class Limits:
         safe_branch: the fail-safe branch may take this long before the runner stops everything itself [s].
         run: no run lasts longer [s].
         tick: one tick lasts no longer, by the wall clock [s].
+        late_tick: without a tick or a new sample for so long the robot is stopped, by the wall clock [s].
+        wait: a world whose time passes by itself is waited for no longer, by the wall clock [s].
     """
 
     hand_speed: float = 0.15
@@ -64,6 +66,8 @@ class Limits:
     safe_branch: float = 60.0
     run: float = 1800.0
     tick: float = 120.0
+    late_tick: float = 0.3
+    wait: float = 5.0
 
     def __post_init__(self) -> None:
         """Reject limits that contradict each other."""
@@ -116,6 +120,8 @@ SOURCES: dict[str, str] = {
     "stop_patience": "choice: longer than the slowest controlled stop of the arm",
     "safe_branch": "choice: release, back off and a 5 s lowering of each arm, three times over",
     "run": "choice: six times the longest run expected",
+    "late_tick": "choice: four ticks at 15 Hz, which leaves 0.2 s of half a second to brake in",
+    "wait": "choice: fifty times what the contract of a clock allows",
     "tick": "choice: six times the longest plan, for a machine that has much else to do",
 }
 

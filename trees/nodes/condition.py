@@ -11,9 +11,10 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.errors import PerceptionFailure
+from ...sim.world import EmergencyStop, SensorLost
 from ...skills.core.context import Context
 from ...skills.core.ports import Key, PortError
-from ...skills.core.reasons import Failure, Reason, SkillFailure
+from ...skills.core.reasons import Failure, Reason, SkillFailure, reason_of
 from .composers import TreeError
 
 
@@ -78,6 +79,8 @@ class Condition(Behaviour):
             self.failure = Failure(self.reason, "", self.name)
         except SkillFailure as stop:
             self.failure = Failure(stop.reason, stop.detail, self.name)
+        except (SensorLost, EmergencyStop) as stop:
+            self.failure = Failure(reason_of(stop), str(stop), self.name)
         except (PortError, PerceptionFailure) as error:
             self.failure = Failure(self.reason, str(error), self.name)
         except Exception as error:

@@ -29,7 +29,7 @@ from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
-FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE)
+FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE, Reason.EMERGENCY_STOP)
 OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20

@@ -4,7 +4,7 @@
 |---|---|---|
 | succeeds | no | `success` |
 | fails | no | `failure` |
-| fails, is interrupted, raises, or the senses die | yes | `safe_stop` |
+| fails, is interrupted, raises, the senses die, or the emergency stop is pressed | yes | `safe_stop` |
 
 Whatever happens, the last things done are: motions cancelled, `world.stop()` until nothing moves, and, where no
 safe branch succeeded, the fingers opened.  Only a world that is lost keeps the safe branch from moving: errors of the
@@ -16,7 +16,7 @@ from __future__ import annotations
 import difflib
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, Protocol
@@ -30,7 +30,9 @@ from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
 from ...sim.fence import fenced, said
 from ...sim.record.record import RunResult
+from ...sim.scripted.clock import SteppedClock
 from ...sim.stopwatch import Stopwatch, timed
+from ...sim.waiting import wait
 from ...sim.world import SIDES, GripperOpening, World, WorldError
 from ...skills.core.context import Context
 from ...skills.core.reasons import Failure, Reason
@@ -38,6 +40,7 @@ from ...skills.core.settings import Settings
 from ...skills.core.skill import Skill
 from ..guard.guard import GuardedWorld
 from ..guard.limits import DEFAULT, Limits
+from ..guard.tick_watchdog import TickWatchdog
 from ..nodes.decorators import FailSafe, Stage
 from ..nodes.failures import failure_of
 from .task import Task
@@ -49,9 +52,8 @@ OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
 OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
 CALM_TICKS = 5
 FEW_NAMES = 12  # so many are listed whole in an error
-DEAD_CLOCK_TICKS = 30  # ticks without any progress of the world's clock
 HANG = 20.0  # [s] wall time without a new tick: longer than any plan takes
-FROM_OUTSIDE = (Reason.INTERRUPTED, Reason.RECORD_LOST, Reason.DISPLAY_LOST)
+FROM_OUTSIDE = (Reason.INTERRUPTED, Reason.EMERGENCY_STOP, Reason.RECORD_LOST, Reason.DISPLAY_LOST)
 
 
 class EventSink(Protocol):
@@ -126,7 +128,15 @@ class Run:
             raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
         self.world = world
         self.limits = limits
-        self.guard = GuardedWorld(world, limits, on_command=lambda command: self.trace.command(command))
+        self._stepped = isinstance(world.clock, SteppedClock)
+        self._watchdog = None if self._stepped else TickWatchdog(world.stop, limits)
+        self.guard = GuardedWorld(
+            world,
+            limits,
+            on_command=lambda command: self.trace.command(command),
+            before_command=self._beat,
+            on_sample=self._watchdog.sampled if self._watchdog else lambda: None,
+        )
         self.context = Context(world=self.guard, guard=self.guard, senses=senses, seed=seed, settings=settings)
         self.context.lease.patience = limits.stop_patience
         self.root = task.build(self.context, **(params or {}))
@@ -192,7 +202,7 @@ class Run:
 
     def run(self) -> RunResult:
         """Tick to the end and make safe."""
-        with self._limit:
+        with self._limit, self._watchdog or nullcontext():
             return self._run()
 
     def _run(self) -> RunResult:
@@ -203,6 +213,8 @@ class Run:
             self.interrupted = True
             self.request_stop()
             failure = self._stop
+        except WorldError as error:
+            failure = Failure(Reason.WORLD_LOST, str(error), "runner")
         except CaretreeError as error:
             failure = Failure(Reason.INTERNAL_ERROR, str(error), "runner")
         except TookTooLongError as error:
@@ -238,6 +250,7 @@ class Run:
 
     @timed("tree")
     def _tick(self, node: Behaviour) -> None:
+        self._beat()
         self._began = time.perf_counter()
         self._ticked = self.context.now()
         self._limit.start()
@@ -248,6 +261,18 @@ class Run:
             self._progress(visited)
         self._limit.pause()
         self._sweep()
+
+    def _beat(self) -> None:
+        """A sign of life to the watchdog; a motion that it has stopped is no longer under way: its skill is told."""
+        if self._watchdog is None:
+            return
+        self._watchdog.ticked()
+        stopped = self._watchdog.take()
+        if stopped is not None and self.guard.was_stopped(stopped, self._ticked):
+            self.trace.add("stopped", by=stopped.node, detail=stopped.detail)
+        if self._watchdog.error is not None:
+            error, self._watchdog.error = self._watchdog.error, None
+            self.context.report(error)
 
     def _advance_lease(self) -> None:
         """Carry what is stopping further; a skill whose `cancel` does not come back is not asked again."""
@@ -262,15 +287,11 @@ class Run:
     @timed("world")
     def _pass_time(self) -> None:
         """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
-        now, due = self.context.now(), self._ticked + self._period
-        if now >= due:
-            return
-        for _ in range(DEAD_CLOCK_TICKS):
-            self.world.clock.wait_until(due)
-            if self.context.now() > now:
-                break
-        else:
-            raise WorldError("the world's clock stands still")
+        self._limit.start(None if self._stepped else self.limits.wait)
+        try:
+            wait(self.world.clock, self._ticked + self._period)
+        finally:
+            self._limit.pause()
 
     def _progress(self, node: Behaviour) -> None:
         if node not in self._shown:
@@ -405,6 +426,7 @@ class Run:
         calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
+            self._beat()
             self._ticked, self._began = self.context.now(), time.perf_counter()
             self._try(self._advance_lease)
             self._try(self.guard.stop)
@@ -412,8 +434,10 @@ class Run:
                 for side in SIDES:
                     self._try(lambda side=side: self.world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
             rests = bool(self._try(self.guard.still, default=False))
-            opening = self._try(lambda: self.world.observe().gripper_opening, default=np.zeros(2))
+            seen = self._try(self.guard.observe)
+            opening = np.zeros(2) if seen is None else seen.gripper_opening
             opened = not release or bool((opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all())
+            opened |= seen is not None and seen.emergency_stop  # then they do not move
             before = opening
             calm = calm + 1 if rests and opened and not self.context.lease.releasing() else 0
             if calm >= wanted or self.context.now() >= ends:

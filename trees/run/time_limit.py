@@ -53,7 +53,7 @@ class TimeLimit:
     """
 
     def __init__(self, seconds: float, on_ignored: Callable[[], object] = lambda: None) -> None:
-        self._seconds = seconds
+        self._seconds = self._allowed = seconds
         self._on_ignored = on_ignored
         self._ends = math.inf
         self._interrupts = 0
@@ -80,9 +80,12 @@ class TimeLimit:
             signal.signal(signal.SIGALRM, self._before)
             signal.setitimer(signal.ITIMER_REAL, *self._timer)
 
-    def start(self) -> None:
-        """Count from now on."""
-        self._ends, self._interrupts = time.perf_counter() + self._seconds, 0
+    def start(self, seconds: float | None = None) -> None:
+        """Count from now on, to another limit [s] where one is given."""
+        self._allowed = self._seconds if seconds is None else seconds
+        self._ends, self._interrupts = time.perf_counter() + self._allowed, 0
+        if self._active and self._allowed < self._seconds:
+            signal.setitimer(signal.ITIMER_REAL, self._allowed)
 
     def pause(self) -> None:
         """What comes now may take as long as it likes."""
@@ -96,7 +99,7 @@ class TimeLimit:
             return
         self._interrupts += 1
         signal.setitimer(signal.ITIMER_REAL, AGAIN)
-        error = TookTooLongError(self._seconds, _place(frame), _node(frame))
+        error = TookTooLongError(self._allowed, _place(frame), _node(frame))
         if self._interrupts > INTERRUPTS_MAX:
             self._end(error)
         raise error

@@ -1,12 +1,17 @@
-"""Worlds by the name given on the command line; what they need is imported only when they are asked for."""
+"""Worlds by the name given on the command line; what they need is imported only when they are asked for.
+
+Besides those of the package there are those of anybody else (`open_world.py`).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ...sim.abilities import SupportsInitialStates
+from ...sim.abilities import SupportsInitialStates, SupportsObjects
 from ...sim.errors import CaretreeError
 from ...sim.world_kind import EASY, WorldKind
+from .open_world import HOW, OpenWorld, installed_worlds
 
 if TYPE_CHECKING:
     from ...perception.senses import Senses
@@ -25,21 +30,38 @@ def make_world(
     person: str | None = None,
     model: str | None = None,
     kind: str = EASY,
+    arguments: Mapping[str, Any] | None = None,
 ) -> tuple[World, Senses | None]:
     """The world called `name`, as hard as `kind` says and furnished by the task; its senses where these are scripted.
+
+    Args:
+        name: one of `WORLDS`, or as `open_world.py` tells.
+        task: furnishes the world, if this takes objects: a real room is as it is.
+        seed: of all that varies.
+        gown: of the bullet world.
+        person: of the bullet world.
+        model: of the bullet world.
+        kind: of the bullet world.
+        arguments: of a world that the package does not bring, name -> value.
 
     Raises:
         CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
     """
-    if name == "scripted":
+    if name != "bullet":
         asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model}
         asked["--world-kind"] = WorldKind.named(kind).difficulties
         given = [flag for flag, value in asked.items() if value]
         if given:
-            raise CaretreeError(f"{given[0]} needs the bullet world: the scripted world has no cloth and no person")
+            why = "the scripted world has no cloth and no person" if name == "scripted" else f"{name} brings its own"
+            raise CaretreeError(f"{given[0]} needs the bullet world: {why}")
+    if name not in WORLDS:
+        world = _open_world(name).make(seed, arguments or {})
+        _furnish(world, task, seed, only_if_taken=True)
+        return world, None
+    if arguments:
+        raise CaretreeError(f"the {name} world takes no --world-arg")
+    if name == "scripted":
         return task.scripted(seed)
-    if name != "bullet":
-        raise CaretreeError(f"unknown world {name!r}; there are {', '.join(WORLDS)}")
     try:
         from ...sim.bullet.world import BulletWorld  # pyright: ignore[reportMissingImports] pulls pybullet and pinocchio
     except ImportError as error:
@@ -47,12 +69,37 @@ def make_world(
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind}
     options = {key: value for key, value in options.items() if value is not None}
     world = BulletWorld(seed=seed, **options)
+    _furnish(world, task, seed)
+    return world, None
+
+
+def read_world_arguments(name: str, texts: Sequence[str]) -> dict[str, Any]:
+    """What `--world-arg` gives the world called `name`, checked before anything is made.
+
+    Raises:
+        CaretreeError: an unknown world, an option that it does not take, or a value that will not do.
+    """
+    if name not in WORLDS:
+        return _open_world(name).read(texts)
+    if texts:
+        raise CaretreeError(f"the {name} world takes no --world-arg")
+    return {}
+
+
+def _open_world(name: str) -> OpenWorld:
+    if ":" not in name and name not in (installed := installed_worlds()):
+        raise CaretreeError(f"unknown world {name!r}; there are {', '.join((*WORLDS, *installed))}, {HOW}")
+    return OpenWorld(name)
+
+
+def _furnish(world: World, task: Task, seed: int, *, only_if_taken: bool = False) -> None:
+    if only_if_taken and not isinstance(world, SupportsObjects):
+        return
     try:
         task.furnish(world, seed)
     except CaretreeError:
         world.close()
         raise
-    return world, None
 
 
 def prepare_stage(world: World, task: Task, stage: str | None) -> None:

@@ -3,7 +3,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.sim.world import HandTwist, SensorLost
+from caretree.sim.world import EmergencyStop, HandTwist, SensorLost, SensorStale
 from caretree.skills.core.context import Context
 from caretree.skills.core.ports import Input, Key, Output, PortError
 from caretree.skills.core.reasons import Failure, Reason, SkillFailure
@@ -74,6 +74,8 @@ def test_outputs_are_unset_on_entry():
     [
         (SkillFailure(Reason.UNREACHABLE, "0.2 m short"), Reason.UNREACHABLE),
         (SensorLost("the head camera is dead"), Reason.SENSOR_LOST),
+        (SensorStale("the head image is 2 s old"), Reason.SENSOR_STALE),
+        (EmergencyStop("the red button"), Reason.EMERGENCY_STOP),
         (PerceptionFailure(Problem.NOTHING_SEEN, "the gown"), Reason.NOTHING_SEEN),
         (PerceptionFailure(Problem.ARM_LOST, "the left arm"), Reason.ARM_LOST),
         (PathBlocked("no way to the rail"), Reason.PATH_BLOCKED),

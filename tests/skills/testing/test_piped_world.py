@@ -9,6 +9,7 @@ from types import FrameType, FunctionType, ModuleType
 import numpy as np
 import pytest
 from caretree.sim.bullet.world import BulletWorld
+from caretree.sim.remote.values import UndeclaredError, packed, unpacked
 from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.scene.scene import Scene
 from caretree.sim.scripted.world import ScriptedWorld
@@ -16,7 +17,7 @@ from caretree.sim.world import CAMERAS, Frame, HandTwist, Observation, RoomMap, 
 from caretree.skills.scripted.rehearsal import RehearsalWorld
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.skills.testing import PipedWorld
-from caretree.skills.testing.piped_world import UndeclaredError, packed, serve, unpacked
+from caretree.skills.testing.piped_world import serve
 from caretree.trees.guard.limits import Limits
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
@@ -36,6 +37,7 @@ OBSERVED = {
     "gripper_force": (2,),
     "wrench_hand_in_map": (2, 6),
     "pose_hand_in_map": (2, 4, 4),
+    "emergency_stop": (),
 }
 PICTURED = {"camera", "stamp", "rgb", "depth", "intrinsics", "pose_camera_in_map"}
 MAPPED = {"free", "origin", "resolution", "waypoints", "bed"}

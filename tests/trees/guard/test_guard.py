@@ -1,11 +1,21 @@
 """The guard against every way of commanding: what passes, what is slowed, what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld
 from caretree.sim.scripted.linear_arm import HOME_IN_BASE, LinearArms
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
-from caretree.sim.world import BaseVelocity, Frame, GripperOpening, HandTwist, JointTrajectory
+from caretree.sim.world import (
+    BaseVelocity,
+    EmergencyStop,
+    Frame,
+    GripperOpening,
+    HandTwist,
+    JointTrajectory,
+    SensorLost,
+)
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.trees.guard.guard import GuardedWorld
 from caretree.trees.guard.limits import DEFAULT
@@ -272,14 +282,12 @@ def test_measured_speed_above_the_limit_fails_the_skill():
 def test_dead_senses_stop_the_run():
     class Frozen(World):
         def observe(self):
-            from dataclasses import replace
 
             seen = super().observe()
             return replace(seen, wrench_hand_in_map=np.zeros((2, 6))) if self.clock.now() > 1.0 else seen
 
     class Late(World):
         def observe(self):
-            from dataclasses import replace
 
             seen = super().observe()
             return replace(seen, time=min(seen.time, 1.0))
@@ -335,13 +343,13 @@ def test_stale_and_frozen_images_fail_whoever_looks():
     world, guard = make(world=Cameras())
     guard.look("head")
     world.clock.wait_until(1.5)
-    with pytest.raises(SkillFailure, match=r"image is 1\.5 s old"):
+    with pytest.raises(SensorLost, match=r"image is 1\.5 s old"):
         guard.look("head")
     for tick in range(5):
         world.clock.wait_until(2.0 + tick / 15)
         guard.look("left_hand")
     world.clock.wait_until(2.5)
-    with pytest.raises(SkillFailure, match="has not varied in 5 frames"):
+    with pytest.raises(SensorLost, match="has not varied in 5 frames"):
         guard.look("left_hand")
 
 
@@ -359,6 +367,7 @@ def test_the_guard_passes_on_the_contract_and_nothing_else():
         "held_arms",
         "take_fault",
         "still",
+        "was_stopped",  # told by the runner
         "check",
         "seen",  # what was observed last, for who watches
         "observe",
@@ -429,3 +438,58 @@ def test_wrong_places_of_the_person_are_refused():
         guard.update_person(np.full((2, 3), np.nan))
     with pytest.raises(Exception, match="radius"):
         guard.update_person(np.zeros((2, 3)), radius=-1.0)
+
+
+class Died(World):
+    """From 1 s on nothing new comes from the robot, nothing reaches it, and its fingers were open."""
+
+    def observe(self):
+        if self.clock.now() <= 1.0 or not hasattr(self, "last"):
+            self.last = super().observe()
+        return self.last
+
+
+def test_what_a_dead_robot_left_behind_is_lost_for_everybody():
+    world, guard = make(world=Died())
+    world.clock.wait_until(1.0)
+    assert guard.still()
+    world.clock.wait_until(1.0 + DEFAULT.stale_after + 0.1)
+    for use in (guard.observe, guard.still, lambda: guard.send(twist(z=0.05))):
+        with pytest.raises(SensorLost, match="no new joint state"):
+            use()
+    assert not world.sent
+
+
+def test_a_wrench_that_is_no_number_is_no_small_load():
+    class Broken(World):
+        def observe(self):
+            seen = super().observe()
+            seen.wrench_hand_in_map[0, 0] = np.nan
+            return seen
+
+    _, guard = make(world=Broken())
+    with pytest.raises(SensorLost, match="wrench_hand_in_map"):
+        guard.send(twist(z=0.05))
+
+
+def test_the_emergency_stop_has_its_own_reason_and_nothing_is_sent():
+    class Pressed(World):
+        def observe(self):
+            return replace(super().observe(), emergency_stop=self.clock.now() > 1.0)
+
+    world, guard = make(world=Pressed())
+    assert guard.check() is None
+    world.clock.wait_until(1.1)
+    assert guard.check().reason == Reason.EMERGENCY_STOP
+    with pytest.raises(EmergencyStop):
+        guard.send(twist(z=0.05))
+    assert not world.sent
+    guard.stop()
+
+
+def test_a_robot_that_answers_nothing_else_while_the_emergency_stop_is_pressed():
+    class Refuses(World):
+        def observe(self):
+            raise EmergencyStop("pressed")
+
+    assert GuardedWorld(Refuses()).check().reason == Reason.EMERGENCY_STOP

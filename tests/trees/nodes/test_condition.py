@@ -1,4 +1,5 @@
 import pytest
+from caretree.sim.world import SensorStale
 from caretree.skills.core.ports import Key
 from caretree.skills.core.reasons import Reason
 from caretree.trees.nodes.composers import TreeError, sequence
@@ -25,6 +26,16 @@ def test_a_test_is_given_constants_and_values_of_keys(least, outcome):
     assert result.outcome == outcome
     if outcome != "success":
         assert run.root.children[1].failure.reason is Reason.GRASP_MISSED
+
+
+def test_a_sense_that_is_lost_is_no_defect_of_a_condition():
+    def sees(context):
+        raise SensorStale("the head image is 2 s old")
+
+    run = run_of(lambda context: Condition("sees", sees))
+    run.run()
+    assert run.root.failure.reason is Reason.SENSOR_STALE
+    assert not run.context.errors
 
 
 def test_check_finds_what_a_condition_reads_unwritten_and_of_another_type():

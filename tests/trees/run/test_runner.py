@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,9 @@ from caretree.sim.errors import CaretreeError, RecordError
 from caretree.sim.record.record import read_run
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.sim.world import GripperOpening, HandTwist, SensorLost
+from caretree.sim.world import EmergencyStop, GripperOpening, HandTwist, SensorLost
 from caretree.skills.core.reasons import Reason
+from caretree.trees.guard.limits import Limits
 from caretree.trees.nodes.composers import fallback, reactive_fallback, sequence
 from caretree.trees.nodes.decorators import FailSafe, Retry, Stage, Timeout
 from caretree.trees.run.runner import run as run_task
@@ -187,6 +189,71 @@ def test_senses_that_die_stop_the_run():
     assert "did not come to rest" in result.reason, "nobody can see whether it stands, so nobody may say so"
 
 
+def test_fingers_of_a_robot_that_died_are_not_seen_to_let_go():
+    class Died(ScriptedWorld):
+        def observe(self):
+            if self.clock.now() <= 0.5 or not hasattr(self, "last"):
+                self.last = super().observe()
+            return self.last
+
+    run = run_of(
+        lambda context: FailSafe("safe", Look("p", context, outcomes=[True], ticks=100), Release("let go", context)),
+        Died(),
+    )
+    result = run.run()
+    assert run.root.made_safe is False
+    assert result.outcome == "safe_stop"
+    assert result.reason.startswith(Reason.SENSOR_STALE.value)
+    assert "did not come to rest" in result.reason
+
+
+def test_the_emergency_stop_ends_the_run_in_the_safe_stop():
+    class Pressed(ScriptedWorld):
+        @property
+        def pressed(self):
+            return self.clock.now() > 0.5
+
+        def observe(self):
+            return replace(super().observe(), emergency_stop=self.pressed)
+
+        def send(self, command):
+            if self.pressed:
+                raise EmergencyStop("the red button on the base")
+            return super().send(command)
+
+    run = run_of(lambda context: guarded_task(context, True, ticks=100), Pressed())
+    result = run.run()
+    assert result.outcome == "safe_stop"
+    assert result.reason == "The emergency stop is pressed: the fingers stay as they are. [robot]"
+    assert result.stopped_from_outside
+    assert result.sim_time_s < 2.0
+
+
+def test_a_wait_of_a_wall_clock_that_never_ends_is_interrupted():
+    class Clock:
+        def __init__(self):
+            self.waits = 0
+
+        def now(self):
+            return 0.0
+
+        def wait_until(self, time):
+            self.waits += 1
+            while True:
+                pass
+
+    class Hangs(ScriptedWorld):
+        def __init__(self):
+            super().__init__()
+            self.clock = Clock()
+
+    run = run_of(lambda context: guarded_task(context, True, ticks=100), Hangs(), limits=Limits(wait=0.05))
+    result = run.run()
+    assert result.outcome == "safe_stop"
+    assert result.reason.startswith(Reason.TIMEOUT.value)
+    assert run.world.clock.waits < 5
+
+
 def test_a_clock_that_stands_still_ends_the_run():
     class Stopped(ScriptedWorld):
         def _advance_to(self, time):
@@ -195,6 +262,7 @@ def test_a_clock_that_stands_still_ends_the_run():
     result = run_of(lambda context: guarded_task(context, True, ticks=100), Stopped()).run()
     assert result.outcome == "safe_stop"
     assert "the world's clock stands still" in result.reason
+    assert result.reason.startswith(Reason.WORLD_LOST.value)
 
 
 def test_a_motion_that_will_not_stop_is_told():

@@ -37,7 +37,7 @@ def test_the_bullet_world_is_as_hard_as_asked_for():
 
 
 def test_an_unknown_world_is_refused_with_those_there_are():
-    with pytest.raises(CaretreeError, match="unknown world 'moon'; there are bullet, scripted"):
+    with pytest.raises(CaretreeError, match="unknown world 'moon'; there are bullet, scripted, remote, or give"):
         make_world("moon", load_task("wave"), seed=0)
 
 

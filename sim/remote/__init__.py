@@ -1,0 +1,1 @@
+"""A world in another process, perhaps on another machine and another Python."""
