@@ -1,4 +1,4 @@
-"""`caretree gap`: find, name, add, show, run, fetch, record and bench."""
+"""`caretree gap`: find, name, add, show, run, export, fetch, record and bench."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ import argparse
 import sys
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ...sim.command_line import CommandParser, answered, seed
 from .errors import GapError
+
+if TYPE_CHECKING:
+    from .findings import Verdict
 
 
 def parser() -> argparse.ArgumentParser:
@@ -18,7 +22,7 @@ def parser() -> argparse.ArgumentParser:
         description="Find where simulation and measurement disagree, name the "
         "missing effect, add it to the model and show that the gap shrinks.",
     )
-    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|fetch|record|bench")
+    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|export|fetch|record|bench")
     for command, text in (
         ("run", "the whole workflow: report.html, verdict.json, model.yaml"),
         ("find", "first step: where model and measurement disagree beyond noise"),
@@ -27,12 +31,19 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument("set", help="folder with measurement.yaml")
         p.add_argument("--out", required=True, help="folder for the results")
         p.add_argument("--alpha", type=float, default=0.05, help="level of the tests (default 0.05)")
+        p.add_argument(
+            "--system", default="", help="a simulator of one's own: path.py:Class, or an installed one's name"
+        )
     for command, text in (
         ("name", "second step: which effect is missing"),
         ("add", "third step: write model.yaml"),
         ("show", "fourth step: held-out gap before and after, report"),
     ):
         sub.add_parser(command, help=text).add_argument("out", help="folder the step before wrote to")
+    p = sub.add_parser("export", help="the named effects in a robot file: friction, damping, armature and mass")
+    p.add_argument("out", help="folder with model.yaml")
+    p.add_argument("--robot", help="URDF or MJCF to start from (default: what model.yaml names)")
+    p.add_argument("--to", required=True, help="file to write")
     p = sub.add_parser("fetch", help="turn a published data set into a measurement set")
     p.add_argument("name", help="data set, or `list`")
     p.add_argument("--out", help="folder for the measurement set")
@@ -95,6 +106,13 @@ def _dispatch(args: argparse.Namespace) -> int:
         for file in record(args.gown, args.model, Path(args.out), args.seed, args.duration, args.noise):
             print(file)
         return 0
+    if args.command == "export":
+        from .export import export
+
+        for what in export(Path(args.out), args.robot, Path(args.to)):
+            _say(f"{what}: not in this format, it stands in model.yaml alone")
+        print(args.to)
+        return 0
     if args.command == "bench":
         from .bench.run import run
 
@@ -109,13 +127,19 @@ def _dispatch(args: argparse.Namespace) -> int:
             args.observer,
             args.follow_up,
         )
+    _step(args)
+    return 0
+
+
+def _step(args: argparse.Namespace) -> None:
+    """One of the steps, or all of them."""
     from . import steps
 
     if args.command in ("find", "run") and not 0.0 < args.alpha < 0.5:
         raise GapError(f"--alpha is {args.alpha:g}, it must lie between 0 and 0.5")
     out = Path(args.out)
     if args.command == "find":
-        study = steps.find(Path(args.set), out, args.alpha, _say)
+        study = steps.find(Path(args.set), out, args.alpha, _say, args.system)
         p = study.find()[0]
         print(f"{'adequate' if p >= args.alpha else 'not adequate'}: p = {p:.3g} ({out / 'find.json'})")
     elif args.command == "name":
@@ -127,18 +151,23 @@ def _dispatch(args: argparse.Namespace) -> int:
     else:
         started = time.monotonic()
         if args.command == "run":
-            study = steps.find(Path(args.set), out, args.alpha, _say)
+            study = steps.find(Path(args.set), out, args.alpha, _say, args.system)
             steps.name(out, _say, study)
             steps.add(out, _say, study)
             verdict = steps.show(out, _say, study, started)
         else:
             verdict = steps.show(out, _say)
-        named = ", ".join(f"{f.name} on {f.target}" for f in verdict.effects) or "none"
-        print(
-            f"{verdict.verdict}: effects {named}; held-out gap {verdict.gap.before:.4g} -> {verdict.gap.after:.4g} "
-            f"{verdict.gap.unit} (floor {verdict.gap.floor:.4g}); {out / 'report.html'}"
-        )
-    return 0
+        _print_verdict(verdict, out)
+
+
+def _print_verdict(verdict: Verdict, out: Path) -> None:
+    named = ", ".join(f"{f.name} on {f.target}" for f in verdict.effects) or "none"
+    changed = ", ".join(f"{f.name} on {f.target}" for f in verdict.recalibration)
+    named += f"; recalibrated {changed}" if changed else ""
+    print(
+        f"{verdict.verdict}: effects {named}; held-out gap {verdict.gap.before:.4g} -> {verdict.gap.after:.4g} "
+        f"{verdict.gap.unit} (floor {verdict.gap.floor:.4g}); {out / 'report.html'}"
+    )
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import yaml
 
 from ...sim.yaml_text import load_yaml
 from .errors import GapError
-from .table import read_table
+from .table import read_table, table_of
 
 SYSTEMS = ("arm", "axis", "fall", "cloth")
 EPISODE_KEYS = ("file", "role", "phases", "pins", "mass")
@@ -99,8 +100,12 @@ class MeasurementSet:
         return float(value)
 
 
-def load_set(folder: Path | str) -> MeasurementSet:
+def load_set(folder: Path | str, own: tuple[str, ...] = ()) -> MeasurementSet:
     """Read and check a measurement set; systems check their own columns when they are built.
+
+    Args:
+        folder: where measurement.yaml is.
+        own: names of the user's own systems.
 
     Raises:
         GapError: anything in it cannot be used; the message names file, column and row.
@@ -122,8 +127,11 @@ def load_set(folder: Path | str) -> MeasurementSet:
     if not isinstance(content, dict) or not content:
         raise GapError(f"{file}: the file is empty, `system` and `episodes` are needed")
     system = content.get("system")
-    if system not in SYSTEMS:
-        raise GapError(f"{file}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
+    if system not in (*SYSTEMS, *own):
+        raise GapError(
+            f"{file}: system is {system!r}, it must be one of {', '.join((*SYSTEMS, *own))} "
+            "(a simulator of one's own is given with --system path.py:Class)"
+        )
     listed = content.get("episodes")
     if not isinstance(listed, list) or not listed:
         raise GapError(f"{file}: `episodes` must list at least two entries with `file`")
@@ -138,6 +146,34 @@ def load_set(folder: Path | str) -> MeasurementSet:
             raise GapError(f"{file}: episode '{name}' is listed twice")
     settings = {k: v for k, v in content.items() if k not in ("system", "episodes", "phases")}
     return MeasurementSet(folder=folder, system=system, settings=settings, episodes=_with_roles(file, episodes))
+
+
+def set_of(
+    system: str, fit: Iterable[Any], heldout: Iterable[Any], repeats: Iterable[Any] = (), **settings: Any
+) -> MeasurementSet:
+    """A measurement set of tables in memory, under the same checks as one of files.
+
+    Args:
+        system: built-in one, or the name of the user's own.
+        fit: tables parameters are fitted to: anything that gives a column by its name, with `t` [s].
+        heldout: tables kept for the comparison.
+        repeats: tables of one motion made again, fitted too.
+        **settings: what measurement.yaml would say beside (`mass`, `robot`, ...).
+
+    Raises:
+        GapError: a table or a setting cannot be used, or one of `fit` and `heldout` is empty.
+    """
+    file = Path("measurement.yaml")
+    _refuse_unknown(file, settings, SET_KEYS)
+    episodes = []
+    for role, tables in (("fit", fit), ("repeat", repeats), ("heldout", heldout)):
+        for k, table in enumerate(tables, start=1):
+            name = f"{role}_{k}"
+            episodes.append(Episode(name=name, file=Path(name), role=role, columns=table_of(table, name)))
+    held = [e for e in episodes if e.role == "heldout"]
+    if not held or len(held) == len(episodes):
+        raise GapError(f"{len(episodes) - len(held)} tables to fit and {len(held)} held out, one of each is needed")
+    return MeasurementSet(folder=Path("."), system=system, settings=settings, episodes=tuple(episodes))
 
 
 def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:

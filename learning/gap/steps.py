@@ -13,15 +13,24 @@ from .errors import GapError
 from .findings import Verdict, plain
 from .measurement import load_set
 from .open_study import open_study
+from .own.find_system import absolute, find_system, installed
 from .report import write_report
 from .study import Study
 
 Say = Callable[[str], None]
 
 
-def find(folder: Path, out: Path, alpha: float, say: Say) -> Study:
-    """Write find.json: whether the model is adequate, the floor, and where not."""
-    study = open_study(load_set(folder), alpha, cache=out / "cache")
+def find(folder: Path, out: Path, alpha: float, say: Say, system: str = "") -> Study:
+    """Write find.json: whether the model is adequate, the floor, and where not.
+
+    Args:
+        folder: the measurement set.
+        out: folder for the results.
+        alpha: level of the tests.
+        say: told what is being done.
+        system: `path.py:Class` or the name of an entry point, for a simulator of one's own.
+    """
+    study = _opened(Path(folder), alpha, out, system)
     say("find: noise floor and places")
     p_value, source, where = study.find()
     _write(
@@ -29,6 +38,7 @@ def find(folder: Path, out: Path, alpha: float, say: Say) -> Study:
         {
             "set": str(Path(folder).resolve()),
             "alpha": alpha,
+            "simulator": study.source,
             "p_value": p_value,
             "floor_source": source,
             "adequate": bool(p_value >= alpha),
@@ -48,6 +58,7 @@ def name(out: Path, say: Say, study: Study | None = None) -> Study:
         {
             "set": str(study.measured.folder.resolve()),
             "alpha": study.alpha,
+            "simulator": study.source,
             "verdict": verdict,
             "effects": [_finding(f) for f in effects],
             "recalibration": [_finding(f) for f in recalibration],
@@ -90,10 +101,17 @@ def _again(out: Path, needed: str) -> Study:
         raise GapError(f"{file}: no such file, run `caretree gap {step} {out}` first")
     try:
         content = json.loads(file.read_text())
-        folder, alpha = content["set"], float(content["alpha"])
+        folder, alpha, system = content["set"], float(content["alpha"]), str(content.get("simulator", ""))
     except (ValueError, KeyError, TypeError):
         raise GapError(f"{file}: not written by `caretree gap`, run the step before it again") from None
-    return open_study(load_set(folder), alpha, cache=out / "cache")
+    return _opened(Path(folder), alpha, out, system)
+
+
+def _opened(folder: Path, alpha: float, out: Path, system: str) -> Study:
+    if not system:
+        return open_study(load_set(folder, tuple(installed())), alpha, cache=out / "cache")
+    own = find_system(system)
+    return open_study(load_set(folder, (own.name,)), alpha, own=own, source=absolute(system))
 
 
 def _write(file: Path, content: dict[str, Any]) -> None:

@@ -11,7 +11,16 @@ from .pictures import Curve
 
 
 class Study(abc.ABC):
-    """The workflow on one set.  Each step uses the ones before it and remembers what it found."""
+    """The workflow on one set.  Each step uses the ones before it and remembers what it found.
+
+    Attributes:
+        measured: the set.
+        alpha: level of the tests.
+        notes: sentences for the end of the report.
+        source: where a simulator of the user's own comes from, or "".
+    """
+
+    source = ""
 
     def __init__(self, measured: MeasurementSet, alpha: float = 0.05) -> None:
         self.measured = measured

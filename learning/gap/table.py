@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -46,6 +47,41 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
             f"({data[back[0], 0]:g} then {data[back[0] + 1, 0]:g})"
         )
     return {name: data[:, j] for j, name in enumerate(header)}
+
+
+def table_of(table: Any, name: str) -> dict[str, np.ndarray]:
+    """Columns of a table in memory, under the rules of `read_table`.
+
+    Args:
+        table: a mapping of names to arrays, or a frame (pandas, polars, a structured array).
+        name: for messages.
+
+    Raises:
+        GapError: it has no `t`, columns of unequal length, too few rows, numbers that are not finite, or time that
+            does not increase.
+    """
+    frame = getattr(table, "columns", getattr(getattr(table, "dtype", None), "names", None))
+    names = [str(c) for c in (table if frame is None else frame)]
+    if "t" not in names:
+        raise GapError(f"{name}: column 't' (time in seconds) is missing, there are {', '.join(names)}")
+    out: dict[str, np.ndarray] = {}
+    for column in ("t", *(c for c in names if c != "t")):
+        try:
+            out[column] = np.array(table[column], dtype=float)
+        except (TypeError, ValueError):
+            raise GapError(f"{name}: column '{column}' does not consist of numbers") from None
+        if out[column].shape != (len(out["t"]),) or len(out["t"]) < FEWEST:
+            raise GapError(
+                f"{name}: column '{column}' has shape {out[column].shape}, every one needs the rows of 't', "
+                f"at least {FEWEST}"
+            )
+        bad = np.flatnonzero(~np.isfinite(out[column]))
+        if len(bad):
+            raise GapError(f"{name}: column '{column}', row {bad[0]} is {out[column][bad[0]]}, not a finite number")
+    back = np.flatnonzero(np.diff(out["t"]) <= 0)
+    if len(back):
+        raise GapError(f"{name}: column 't', row {back[0] + 1}: time does not increase")
+    return out
 
 
 def _lines(path: Path) -> tuple[list[str], list[list[str]]]:

@@ -32,12 +32,14 @@ class Parameter:
         unit: SI; `F` stands for N or N m and `x` for m or rad, as the joint is prismatic or revolute.
         lower: smallest physical value.
         upper: largest physical value.
+        typical: a size that would matter; a simulator of one's own is tried there and around it.
     """
 
     name: str
     unit: str
     lower: float = -np.inf
     upper: float = np.inf
+    typical: float = 1.0
 
     def unit_for(self, prismatic: bool) -> str:
         """The unit spelled out for one kind of joint."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ KEYS = (
     "mass",
     "mesh",
     "physics",
+    "simulator",
     "recalibration",
     "effects",
     "name",
@@ -85,12 +87,13 @@ def load_model(path: Path | str) -> EffectModel:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise EffectError(f"{path}: `format` must be {FORMAT}")
     system = content.get("system")
-    if system not in SYSTEMS:
+    own = system not in SYSTEMS  # then a class of the user's knows what its effects are
+    if own and not (isinstance(content.get("simulator"), str) and isinstance(system, str)):
         raise EffectError(f"{path}: system is {system!r}, it must be one of {', '.join(SYSTEMS)}")
     try:
         _refuse_unknown(content, KEYS)
         effects, recalibration = (_entries(content, key) for key in ("effects", "recalibration"))
-        for e in effects:
+        for e in effects if not own else ():
             check_effect(system, e)
     except EffectError as error:
         raise EffectError(f"{path}: {error}") from None
@@ -126,6 +129,8 @@ def _entry(e: Any) -> EffectEntry:
         values = {str(k): float(v) for k, v in e["parameters"].items()}
     except (TypeError, ValueError, OverflowError):
         raise EffectError(f"effect {e['name']}: parameters must be numbers, they are {e['parameters']!r}") from None
+    if not all(math.isfinite(v) for v in values.values()):
+        raise EffectError(f"effect {e['name']}: parameters must be finite numbers, they are {e['parameters']!r}")
     return EffectEntry(name=e["name"], target=str(e.get("target", "")), parameters=values)
 
 

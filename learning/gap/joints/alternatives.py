@@ -30,15 +30,16 @@ class Alternative:
     replaces: int
 
 
-def alternatives(search: Search, chosen: tuple[int, ...], index: int) -> list[Alternative]:
+def alternatives(search: Search, chosen: tuple[int, ...], index: int, slack: float = SAME) -> list[Alternative]:
     """Explanations that could stand in for one chosen block without a noticeably worse fit.
 
     Args:
         search: knows all blocks and how well any set of them fits.
         chosen: blocks of the explanation.
         index: the one to be replaced, among `chosen`.
+        slack: drop of the Wald statistic that still counts as fitting as well.
     """
-    stand_ins = _StandIns(search, chosen, index)
+    stand_ins = _StandIns(search, chosen, index, slack)
     for i in _other_effects(search, chosen, index):
         stand_ins.consider((i,))
     parts = _friction_parts(search, chosen, index)
@@ -81,11 +82,11 @@ def _friction_parts(search: Search, chosen: tuple[int, ...], index: int) -> tupl
 class _StandIns:
     """Explanations that could stand in for one chosen block, each with how much worse it fits."""
 
-    def __init__(self, search: Search, chosen: tuple[int, ...], index: int) -> None:
+    def __init__(self, search: Search, chosen: tuple[int, ...], index: int, slack: float) -> None:
         self._search, self._index = search, index
         self._base = float(search.rows @ np.log(search.rss(chosen)))
         self._rest = tuple(i for i in chosen if i != index)
-        self._slack = SAME * max(search.widening[index], 1.0)
+        self._slack = slack * max(search.widening[index], 1.0)
         self._found: dict[tuple[str, ...], tuple[float, Alternative]] = {}
 
     def best(self, count: int) -> list[Alternative]:

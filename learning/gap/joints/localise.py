@@ -10,7 +10,6 @@ from ..regions import intervals, phase_of, scan, state_region
 from .block import Block
 from .log import JointLog
 from .outcome import SIGNIFICANT, Outcome
-from .rigid import RigidModel
 from .thresholds import REMAINDER_SIZE
 from .workflow import Named
 
@@ -20,13 +19,22 @@ LOCAL = 0.6  # an effect that acts in less of the time than this is localised
 
 def places(
     measured: MeasurementSet,
-    model: RigidModel,
+    joints: tuple[str, ...],
     logs: list[JointLog],
     named: Named,
     outcome: Outcome,
     channels: tuple[str, ...],
 ) -> list[Where]:
-    """Places of every named effect, burst and unexplained leftover, in all episodes."""
+    """Places of every named effect, burst and unexplained leftover, in all episodes.
+
+    Args:
+        measured: the set.
+        joints: what each channel belongs to.
+        logs: all recordings.
+        named: the effects.
+        outcome: what they leave.
+        channels: names of the columns.
+    """
     out: list[Where] = []
     phases = {e.name: e.phases for e in measured.episodes}
     p_values = _p_values(named)
@@ -35,14 +43,14 @@ def places(
         theta = named.theta[at : at + len(block.parameters)]
         at += len(block.parameters)
         for log in logs:
-            out += _of_effect(block, theta, log, model, outcome, channels, phases[log.name], p_values[k])
+            out += _of_effect(block, theta, log, outcome, channels, phases[log.name], p_values[k])
     for b in outcome.bursts:
         log = next(x for x in logs if x.name == b.episode)
         rows = (log.t >= b.t0) & (log.t <= b.t1)
         out.append(
             Where(
                 channel=channels[b.channel],
-                target=model.joints[b.channel],
+                target=joints[b.channel],
                 episode=b.episode,
                 t0=b.t0,
                 t1=b.t1,
@@ -69,7 +77,7 @@ def places(
                     out.append(
                         Where(
                             channel=channels[r.channel],
-                            target=model.joints[r.channel],
+                            target=joints[r.channel],
                             episode=log.name,
                             t0=a,
                             t1=b,
@@ -105,7 +113,6 @@ def _of_effect(
     block: Block,
     theta: np.ndarray,
     log: JointLog,
-    model: RigidModel,
     outcome: Outcome,
     channels: tuple[str, ...],
     phases,

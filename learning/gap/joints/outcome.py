@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from ..findings import EffectFinding, Value, VerdictName
 from .block import Block
@@ -92,10 +93,28 @@ def judge(
 
 def makes_worse(named: Named, heldout: list[JointLog]) -> bool:
     """Whether held-out logs are farther from the model with the effects, in the load's unit or against the noise."""
-    before = np.mean(np.concatenate([log.residual[log.inner] for log in heldout]) ** 2, axis=0)
-    after = np.mean(np.concatenate(_unexplained(named, heldout)) ** 2, axis=0)
-    weight = 1.0 / named.noise.rms**2
-    return bool(after.sum() > before.sum() or weight @ after > weight @ before)
+    return farther([log.residual[log.inner] for log in heldout], _unexplained(named, heldout), named.noise.rms)
+
+
+def farther(before: list[np.ndarray], after: list[np.ndarray], noise: np.ndarray) -> bool:
+    """Whether what is left afterwards (T, C) is more than before, as it is or against the noise (C,)."""
+    b, a = (np.mean(np.concatenate(x) ** 2, axis=0) for x in (before, after))
+    weight = 1.0 / noise**2
+    return bool(a.sum() > b.sum() or weight @ a > weight @ b)
+
+
+def inadequacy(named: Named, outcome: Outcome, alpha: float) -> float:
+    """p-value of the model as given over every effect tried, or of what the effects leave, if that is smaller."""
+    search = named.search
+    gains = search.gains(())
+    tried = len({b.key for b in search.blocks})
+    single = [
+        min(1.0, tried * b.trials * float(chi2.sf(gains[i] / search.widening[i], b.size)))
+        for i, b in enumerate(search.blocks)
+    ]
+    if outcome.verdict == "adequate":  # a gain that is significant but not material, or does not repeat
+        return max(min(single), alpha) if not named.blocks else min(single)
+    return float(min([*single, outcome.p_value]))
 
 
 def _unexplained(named: Named, logs: list[JointLog]) -> list[np.ndarray]:

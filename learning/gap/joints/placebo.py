@@ -36,13 +36,16 @@ def placebos(named: Named, model: RigidModel, fitted: list[JointLog], heldout: l
                     ratio=_ratio(other, fitted, left, heldout, held),
                 )
             )
-        out.append(
-            Placebo(
-                what=f"{first.name} on {first.target}, shifted by a third of the episode",
-                ratio=_ratio(_shifted(first), fitted, left, heldout, held),
-            )
-        )
+        out.append(shifted(named, first, fitted, heldout))
     return tuple(out)
+
+
+def shifted(named: Named, block: Block, fitted: list[JointLog], heldout: list[JointLog]) -> Placebo:
+    """One of the named effects, of another moment."""
+    return Placebo(
+        what=f"{block.name} on {block.target}, shifted by a third of the episode",
+        ratio=_ratio(_shifted(block), fitted, _left(named, fitted), heldout, _left(named, heldout)),
+    )
 
 
 def _left(named: Named, logs: list[JointLog]) -> list[np.ndarray]:

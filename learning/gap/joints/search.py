@@ -64,10 +64,15 @@ class Search:
         d = np.arange(len(self.ridge))
         self.G[d, d] += self.ridge
         self.fold_G[:, d, d] += self.ridge / len(self.fold_G)
+        self._price_unequal_friction()
+
+    def _price_unequal_friction(self) -> None:
+        """Unequal levels are a level and an offset: the same price, so that the data decides."""
         simple = {b.key: self.price[i] for i, b in enumerate(self.blocks)}
-        for i, b in enumerate(self.blocks):  # unequal levels are a level and an offset: same price, so the data decides
-            if b.name == "asymmetric_friction":
-                self.price[i] = simple.get(("coulomb_friction", b.target), 0.0) + simple.get(("offset", b.target), 0.0)
+        for i, b in enumerate(self.blocks):
+            parts = [(part, b.target) for part in ("coulomb_friction", "offset")]
+            if b.name == "asymmetric_friction" and all(part in simple for part in parts):
+                self.price[i] = sum(simple[part] for part in parts)
 
     def _take_residual(self) -> None:
         """Everything that depends on the residual; the rest depends on the blocks and the noise alone."""
@@ -270,10 +275,16 @@ class Search:
             for i in (int(k) for k in np.argsort(-net)[:6]):
                 if i not in chosen and touched & set(self.blocks[i].channels) and not self.clash(i, rest):
                     out.append((base - net[i], (*rest, i), i))
+        return out + self._splits(chosen)
+
+    def _splits(self, chosen: Set) -> list[tuple[float, Set, int | None]]:
+        """One into two, where one is nearly the sum of two others."""
+        out: list[tuple[float, Set, int | None]] = []
         index = {b.key: i for i, b in enumerate(self.blocks) if not b.shape}
-        for i in chosen:  # one into two, where one is nearly the sum of two others
-            if self.blocks[i].name == "asymmetric_friction":
-                parts = [index[(n, self.blocks[i].target)] for n in ("coulomb_friction", "offset")]
+        for i in chosen:
+            halves = [(n, self.blocks[i].target) for n in ("coulomb_friction", "offset")]
+            if self.blocks[i].name == "asymmetric_friction" and all(half in index for half in halves):
+                parts = [index[half] for half in halves]
                 new = (*(j for j in chosen if j not in (i, parts[1])), *parts)
                 out.append((self.score(new), new, parts[0]))
         return out

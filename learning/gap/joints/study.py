@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where, told_apart
@@ -22,7 +21,7 @@ from .bootstrap import Resampled, confident, resample
 from .detect import smallest_found
 from .localise import places
 from .log import JointColumns, JointLog, read_logs
-from .outcome import Outcome, judge, makes_worse
+from .outcome import Outcome, inadequacy, judge, makes_worse
 from .placebo import placebos
 from .rigid import RigidModel
 from .robot_files import find_urdf
@@ -200,21 +199,10 @@ class JointStudy(Study):
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
-        search = self.named.search
-        gains = search.gains(())
-        tried = len({b.key for b in search.blocks})
-        single = [
-            min(1.0, tried * b.trials * float(chi2.sf(gains[i] / search.widening[i], b.size)))
-            for i, b in enumerate(search.blocks)
-        ]
-        if self.outcome.verdict == "adequate":  # a gain that is significant but not material, or does not repeat
-            p = max(float(min(single)), self.alpha) if not self.named.blocks else float(min(single))
-        else:
-            p = float(min([*single, self.outcome.p_value]))
         return (
-            p,
+            inadequacy(self.named, self.outcome, self.alpha),
             self.named.noise.source,
-            tuple(places(self.measured, self.model, self._logs[1], self.named, self.outcome, self.channels)),
+            tuple(places(self.measured, self.model.joints, self._logs[1], self.named, self.outcome, self.channels)),
         )
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:

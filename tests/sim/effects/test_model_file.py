@@ -1,7 +1,7 @@
 import pytest
 import yaml
 from caretree.sim.effects.effect import EffectError
-from caretree.sim.effects.model_file import load_model, save_model
+from caretree.sim.effects.model_file import EffectEntry, load_model, save_model
 
 GOOD = {
     "system": "axis",
@@ -66,3 +66,24 @@ def test_a_key_that_says_nothing_is_refused_with_the_nearest_that_does(tmp_path,
     file.write_text("format: caretree-model-1\nsystem: axis\n" + text)
     with pytest.raises(EffectError, match=words):
         load_model(file)
+
+
+def test_a_model_of_a_users_simulator_is_checked_by_its_class_and_not_by_the_registry(tmp_path):
+    file = tmp_path / "model.yaml"
+    effect = {"name": "haze", "target": "sky", "parameters": {"depth": 2}}
+    save_model(file, {"system": "weather", "simulator": "weather.py:Weather", "effects": [effect]})
+    model = load_model(file)
+    assert model.base["simulator"] == "weather.py:Weather"
+    assert model.effects == (EffectEntry(name="haze", target="sky", parameters={"depth": 2.0}),)
+    lost = effect | {"parameters": {"depth": float("nan")}}
+    for content, says in (
+        ({"system": "weather", "effects": [effect]}, "must be one of arm"),
+        ({"system": "arm", "simulator": "weather.py:Weather", "effects": [effect]}, "'haze' does not exist"),
+        (
+            {"system": "weather", "simulator": "w.py:W", "effects": [lost]},
+            "nan",
+        ),
+    ):
+        save_model(file, content)
+        with pytest.raises(EffectError, match=says):
+            load_model(file)

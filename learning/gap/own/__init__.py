@@ -1,0 +1,1 @@
+"""A simulator and effects of one's own in the workflow."""
