@@ -42,11 +42,11 @@ class SeatSleeveTuning(Quantities):
     depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the arm is right below it")
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
     drawn_to: tuple[float, float, float] = quantity(
-        (0.03, 0.02, 0.10),
+        (0.10, 0.02, 0.10),
         "m",
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
-        "measured: on two recorded states armholes at 0.64 and 0.66 came to rest at 0.80 and 0.75, and no higher from "
-        "0.10 m inwards; by the strap, 0.65 to 0.75",
+        "measured: the right armholes of 101 and 102 came from 0.57 and 0.58 to 0.81 and 0.83, drawn 0.03 m inwards to "
+        "0.78 and 0.70; by the strap, 0.65 to 0.75",
     )
     above_chest: float = quantity(
         0.04,

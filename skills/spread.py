@@ -70,6 +70,12 @@ class SpreadTuning(Quantities):
         "by which the collar is carried beyond its place, and then drawn back along the body",
         "measured: let go of at its place, it sprang back by 6 to 16 cm; drawn back to it, by less than 3 cm",
     )
+    springs_back: float = quantity(
+        0.06,
+        "m",
+        "across the body, of a collar that was brought to the midline and let go of",
+        "measured: 0.03 to 0.09 m in four spreads on 102 and 105",
+    )
     laid_height: float = quantity(
         0.02,
         "m",
@@ -125,6 +131,8 @@ class Spread(Skill):
         yield from self._take(middle)
         low = hand_now(self, self.hand)[:3, 3]
         way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
+        if abs(aside) >= tuning.lies_well:
+            way[0] -= np.copysign(tuning.springs_back, aside)
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from carry(self, self.hand, low + tuning.lift * UP, tuning.carry)

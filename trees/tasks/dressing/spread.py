@@ -82,7 +82,7 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
     Args:
         context: shared services.
         side: of the sleeve.
-        when: what is added to the names of its nodes.
+        when: what is added to the names of its nodes; another time a sleeve that will do is left as it is.
         then: what follows once the armhole was drawn up by its front.
     """
     sleeve = arm_scope(context, f"{side} sleeve{when}", side)
@@ -118,7 +118,7 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
         "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
     )
     near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
-    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_sits)
+    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_will_do if when else DRESSING.armhole_sits)
     return sequence(
         f"settle the {side} sleeve{when}",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
