@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
@@ -146,12 +147,12 @@ class Spread(Skill):
 
     def _take(self, middle: np.ndarray) -> Iterator[None]:
         """Grasp the cloth below the collar's middle, as near to it as the hand gets."""
-        tuning, tries = self.tuning, Tries(MotionError)
+        tuning, tries = self.tuning, Tries(MotionError, PerceptionFailure)
         for below in tuning.below:
-            point = look_at_collar(self, middle, below)
-            approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
-            place, closing = point.position_in_map, point.closing_in_map
             with tries:
+                point = look_at_collar(self, middle, below)
+                approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
+                place, closing = point.position_in_map, point.closing_in_map
                 yield from reach_in(
                     self, self.hand, place, approach, closing, opening=tuning.opening, depth=tuning.depth
                 )

@@ -36,8 +36,8 @@ def spread(context: Context) -> Stage:
 
     The right sleeve, which the left one has pulled down, comes first.  A sleeve that is drawn up takes the front along,
     and with it the other one down, by about half as much as it gains itself: after the left one both are seen to again.
-    The collar, which is taken along by up to 9 cm, comes last.  Only then is judged whether the sleeves will do: one
-    that seems low is no reason to leave the rest undone.
+    The collar, which is taken along by up to 9 cm, comes last, and is seen from where the last sleeve was drawn up.
+    Only then is judged whether the sleeves will do: one that seems low is no reason to leave the rest undone.
     """
     once_more = [settle_sleeve(context, "right", " again"), settle_sleeve(context, "left", " again")]
     return timed_stage(
@@ -46,8 +46,8 @@ def spread(context: Context) -> Stage:
         settle_sleeve(context, "left", then=once_more),
         straighten_collar(context, "left"),
         will_do(context, "left"),
-        will_do(context, "right"),
         CheckCollar("the collar lies in the middle", Scope(context, "collar"), tuning=MIDDLE),
+        will_do(context, "right"),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
         seconds=DRESSING.spread_timeout,
