@@ -111,6 +111,6 @@ class SeatSleeve(Skill):
         goal = arm[0] - inward * outwards(self.side) + headward * HEADWARD + up * UP
         goal[2] = max(goal[2], chest_top(self) + tuning.above_chest)
         yield from carry(self, self.hand, goal, tuning.carry)
-        drawn_up(self).last = self.side
+        drawn_up(self).add(self.side)
         yield from open_gripper(self, self.hand, tuning.opening)  # wider, a finger would come down to the chest
         yield from withdraw(self, [self.hand], tuning.withdrawal)

@@ -1,12 +1,13 @@
 """Where the collar lies between the shoulders.
 
-A sleeve that is drawn up by its front takes the gown's front along: on its side the neckline lies flat, and what there
-is too much of it hides in a fold at the other shoulder.
+A sleeve that is drawn up by its front takes the gown's front along.  Once both were, the neckline lies flat on the side
+of the second one, and what there is too much of it hides in a fold at the other shoulder; drawing up the first one
+again moves the front back by less than half.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,9 +20,19 @@ from .person_tracking import watch_arm, watch_of
 
 @dataclass
 class DrawnUp:
-    """Which sleeve was drawn up by its front last."""
+    """Which sleeves were drawn up by their front, in the order of their first time."""
 
-    last: Side | None = None
+    sides: list[Side] = field(default_factory=list)
+
+    def add(self, side: Side) -> None:
+        """One more."""
+        if side not in self.sides:
+            self.sides.append(side)
+
+    @property
+    def flat(self) -> Side | None:
+        """Where the neckline lies flat, None where it is not known."""
+        return self.sides[1] if len(self.sides) == len(SIDES) else None
 
 
 def drawn_up(skill: Skill) -> DrawnUp:
@@ -42,7 +53,7 @@ def look_at_collar(skill: Skill, middle: np.ndarray, below: float = 0.0) -> Gras
         SensorLost: the camera is dead.
         SkillFailure: its picture is stale.
     """
-    frame, flat = skill.world.look("head"), drawn_up(skill).last
+    frame, flat = skill.world.look("head"), drawn_up(skill).flat
     return skill.context.senses.collar_middle(frame, near_in_map=middle, below=below, flat=flat)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from ...sim.abilities import HandKinematics, SupportsInitialStates
 from ...sim.remote.values import ERRORS, packed, unpacked
+from ...sim.scripted.clock import SteppedClock
 from ...sim.world import Command, Frame, Observation, World, WorldError
 
 CALLS = ("observe", "look", "send", "stop")
@@ -81,15 +82,15 @@ class PipedWorld(World):
         return unpacked(answer)
 
 
-class _PipedClock:
+class _PipedClock(SteppedClock):
+    """Worlds in pipes are simulated: their time passes when somebody waits."""
+
     def __init__(self, world: PipedWorld) -> None:
         self._ask = world._ask  # one half of the same thing
+        super().__init__(lambda time: self._ask("wait_until", time))
 
     def now(self) -> float:
         return self._ask("now")
-
-    def wait_until(self, time: float) -> None:
-        self._ask("wait_until", time)
 
 
 def _make_and_serve(pipe: Connection, kind: str, begins: str, options: Mapping[str, Any]) -> None:

@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Shift
 from caretree.perception.senses import Senses
 
-RESTS = {"arm_shift": Shift(stamp=0.0, confidence=0.9, share=0.0)}  # nobody moves unless a test says so
+RESTS = {  # unless a test says so, nobody moves, and their chest does not show
+    "arm_shift": Shift(stamp=0.0, confidence=0.9, share=0.0),
+    "chest_front": PerceptionFailure(Problem.OUT_OF_REACH, "chest of the person"),
+}
 
 
 def fake_senses(**answers):

@@ -25,9 +25,11 @@ from .check_collar import CheckCollar, CheckCollarTuning
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
+UNSETTLED = (*LOW, Reason.COLLAR_ASIDE)
 
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_room
 MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown)
+NOT_ASIDE = CheckCollarTuning(max_headward=DRESSING.collar_room[2], max_footward=DRESSING.collar_room[2])
 ROOM = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
 
 
@@ -39,7 +41,7 @@ def spread(context: Context) -> Stage:
     The collar, which is taken along by up to 9 cm, comes last, and is seen from where the last sleeve was drawn up.
     Only then is judged whether the sleeves will do: one that seems low is no reason to leave the rest undone.
     """
-    once_more = [settle_sleeve(context, "right", " again"), settle_sleeve(context, "left", " again")]
+    once_more = [settle_sleeve(context, "right", " 2"), settle_sleeve(context, "left", " 2")]
     return timed_stage(
         "spread",
         settle_sleeve(context, "right"),
@@ -54,14 +56,14 @@ def spread(context: Context) -> Stage:
     )
 
 
-def straighten_collar(context: Context, side: Side, when: str = "") -> Behaviour:
+def straighten_collar(context: Context, side: Side, name: str = "collar") -> Behaviour:
     """From beside one shoulder, bring the collar's middle over the breastbone.
 
     Where the hand cannot bring it there, it may lie well enough all the same, which is looked at in the end.
     """
-    collar = Scope(context, f"{side} collar{when}", side=side, hand=PULLING[side])
+    collar = Scope(context, f"{side} {name}", side=side, hand=PULLING[side])
     return sequence(
-        f"straighten the collar{when}",
+        "straighten the collar",
         Navigate("go round to its side", collar, goal=f"bed_{side}"),
         Navigate("stand there", collar, goal=stance(side, "collar")),
         LookAtPerson("look", collar),
@@ -104,8 +106,8 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
             CheckCollar("the collar leaves room", sleeve, tuning=ROOM),
             sequence(
                 "make room",
-                straighten_collar(context, side, f"{when} for the sleeve"),
-                *go("come back from the collar"),
+                straighten_collar(context, side, f"room{when}"),
+                *go("then return"),
                 CheckCollar("leaves room now", sleeve, tuning=ROOM),
             ),
         )
@@ -119,6 +121,8 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
     )
     near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
     sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_will_do if when else DRESSING.armhole_sits)
+    if when and side == "right":  # the left one has drawn the collar to this side
+        sits = sequence("sits well", sits, CheckCollar("takes it back", sleeve, tuning=NOT_ASIDE))
     return sequence(
         f"settle the {side} sleeve{when}",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
@@ -127,10 +131,15 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
         fallback("near the shoulder", near, draw_up, back_off("leave it there", sleeve, DRESSING.back_off_distance)),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, seat), attempts=DRESSING.settle_attempts),
+            RecoverBy(
+                "until the sleeve sits",
+                sits,
+                dict.fromkeys((*LOW, Reason.COLLAR_ASIDE), seat),
+                attempts=DRESSING.settle_attempts,
+            ),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
-        put_down("in the end", sleeve),
+        put_down("at last", sleeve),
     )
 
 
