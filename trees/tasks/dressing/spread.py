@@ -25,7 +25,6 @@ from .check_collar import CheckCollar, CheckCollarTuning
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
-UNSETTLED = (*LOW, Reason.COLLAR_ASIDE)
 
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_room
 MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown)
@@ -121,7 +120,9 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
     )
     near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
     sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_will_do if when else DRESSING.armhole_sits)
+    unsettled: tuple[Reason, ...] = LOW
     if when and side == "right":  # the left one has drawn the collar to this side
+        unsettled = (*LOW, Reason.COLLAR_ASIDE)
         sits = sequence("sits well", sits, CheckCollar("takes it back", sleeve, tuning=NOT_ASIDE))
     return sequence(
         f"settle the {side} sleeve{when}",
