@@ -132,12 +132,7 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
         fallback("near the shoulder", near, draw_up, back_off("leave it there", sleeve, DRESSING.back_off_distance)),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy(
-                "until the sleeve sits",
-                sits,
-                dict.fromkeys((*LOW, Reason.COLLAR_ASIDE), seat),
-                attempts=DRESSING.settle_attempts,
-            ),
+            RecoverBy("until the sleeve sits", sits, dict.fromkeys(unsettled, seat), attempts=DRESSING.settle_attempts),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
         put_down("at last", sleeve),
