@@ -30,12 +30,12 @@ class LowSleeves(ScriptedSenses):
         return replace(seen, position_in_map=seen.position_in_map - np.array((0.0, self.headward, 0.0)))
 
 
-def rehearsed(reach, headward=0.0):
+def rehearsed(reach, headward=0.0, kind=LowSleeves):
     """How the stage ends, and which armholes were taken by their front edge, in turn."""
     task = load_task("dressing")
     world, _ = task.scripted(1)
     prepare_stage(world, task, "spread")
-    senses = LowSleeves(world, reach, headward)
+    senses = kind(world, reach, headward)
     result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"))
     return result.outcome, senses.taken
 
@@ -51,3 +51,14 @@ def test_no_sleeve_is_drawn_up_where_the_collar_is_on_the_throat():
     outcome, taken = rehearsed(0.75, headward=0.20)
     assert taken == []
     assert outcome == "safe_stop"
+
+
+def test_the_right_sleeve_takes_the_collar_back_that_the_left_one_has_taken_along():
+    class Taken(LowSleeves):
+        def collar_middle(self, frame, *, near_in_map, below=0.0, flat=None):
+            seen = super().collar_middle(frame, near_in_map=near_in_map, below=below, flat=flat)
+            aside = 0.12 if self.taken[-1:] == ["left"] else 0.0  # [m]
+            place = np.array((near_in_map[0] + aside, *seen.position_in_map[1:]))
+            return replace(seen, position_in_map=place)
+
+    assert rehearsed(0.70, kind=Taken) == ("success", ["right", "left", "right"])
