@@ -38,6 +38,18 @@ class HasKinematics(Protocol):
 
 
 @runtime_checkable
+class TakesJointVelocities(Protocol):
+    """A simulated robot whose arms can be driven joint by joint, as drivers of real ones are."""
+
+    def send_joint_velocities(self, side: Side, velocities: np.ndarray, duration: float) -> None:
+        """Move the joints of an arm with `velocities` (n,) [rad/s] for `duration` [s], and then hold them.
+
+        It replaces what the arm was doing.
+        """
+        ...
+
+
+@runtime_checkable
 class HasTiming(Protocol):
     """A world that keeps account of its time."""
 

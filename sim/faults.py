@@ -94,6 +94,7 @@ class FaultyWorld(World):
         self.inner = inner
         self.clock = inner.clock
         self.room = inner.room
+        self.robot = inner.robot
         self.kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
         self.faults = tuple(faults)
         self.begun: list[tuple[FaultSpec, float]] = []

@@ -10,18 +10,17 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass, field
-from typing import Literal, Protocol, get_args
+from typing import Literal, Protocol
 
 import numpy as np
 
 from .errors import CaretreeError
+from .mechanics.robot_model import RobotModel
 
 Side = Literal["left", "right"]
 Hands = Literal["left", "right", "both"]  # of the robot
 SIDES: tuple[Side, Side] = ("left", "right")
 CAMERAS = ("head", "left_hand", "right_hand")
-ArmJoint = Literal["s0", "s1", "e0", "e1", "w0", "w1", "w2"]  # Baxter's names, shoulder to wrist
-ARM_JOINTS: tuple[ArmJoint, ...] = get_args(ArmJoint)
 
 
 class WorldError(CaretreeError):
@@ -42,13 +41,13 @@ class EmergencyStop(WorldError):  # noqa: N818 it names a state of the robot, as
 
 @dataclass(frozen=True, kw_only=True)
 class Observation:
-    """What the robot measures of itself at one instant.
+    """What the robot measures of itself at one instant; each of its arms has n joints.
 
     Attributes:
         time: world clock when the sample was taken [s].
-        arm_positions: (2, 7) joint angles, left then right, order `ARM_JOINTS` [rad].
-        arm_velocities: (2, 7) [rad/s].
-        arm_efforts: (2, 7) [N m].
+        arm_positions: (2, n) joint angles, left then right, order `robot.arm_joints` [rad].
+        arm_velocities: (2, n) [rad/s].
+        arm_efforts: (2, n) [N m].
         head_pan: angle of the head [rad].
         pose_base_in_map: (3,) x [m], y [m], yaw [rad].
         twist_base: (3,) velocity in the base frame [m/s, m/s, rad/s].
@@ -96,12 +95,12 @@ class Frame:
 
 @dataclass(frozen=True, kw_only=True)
 class JointTrajectory:
-    """Timed joint motion.  `joints` are arm joints (`"left_s0"` ...) or `"head_pan"`.
+    """Timed joint motion.
 
     Attributes:
-        joints: (n,) names.
+        joints: (m,) names out of the robot's `commanded_joints`; the world checks that.
         times: (k,) from the start of the motion, k >= 2, increasing, first is 0 [s].
-        positions: (k, n) [rad].
+        positions: (k, m) [rad].
     """
 
     joints: tuple[str, ...]
@@ -110,11 +109,9 @@ class JointTrajectory:
 
     def __post_init__(self) -> None:
         """Refuse what no robot can do."""
-        known = {"head_pan", *(f"{side}_{joint}" for side in SIDES for joint in ARM_JOINTS)}
-        if not self.joints or len(set(self.joints)) < len(self.joints) or not set(self.joints) <= known:
+        if not self.joints or len(set(self.joints)) < len(self.joints):
             raise WorldError(
-                f"a trajectory moves {', '.join(self.joints) or 'nothing'}, but different joints out of "
-                f"head_pan and left_ or right_ with {', '.join(ARM_JOINTS)} are asked for"
+                f"a trajectory moves {', '.join(self.joints) or 'nothing'}, but different joints are asked for"
             )
         count = len(np.atleast_1d(self.times))
         _check_numbers("times of a trajectory", self.times, (count,))
@@ -124,6 +121,19 @@ class JointTrajectory:
             raise WorldError(
                 f"times of a trajectory are {shown}, but two and more that begin at 0 and grow are asked for"
             )
+
+    def check_joints(self, robot: RobotModel) -> None:
+        """Refuse what a robot cannot do.
+
+        Raises:
+            WorldError: it does not have one of the joints.
+        """
+        for joint in self.joints:
+            if joint not in robot.commanded_joints:
+                raise WorldError(
+                    f"the robot {robot.name} has no joint {joint!r}; it has {robot.head_joint} and left_ or right_ "
+                    f"with {', '.join(robot.arm_joints)}"
+                )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -237,10 +247,12 @@ class World(abc.ABC):
     Attributes:
         clock: of this world; a `SteppedClock` stands still until somebody waits, any other one is a wall clock.
         room: what was mapped beforehand.
+        robot: what it is made of; skills plan with it.
     """
 
     clock: Clock
     room: RoomMap
+    robot: RobotModel
 
     @abc.abstractmethod
     def observe(self) -> Observation:

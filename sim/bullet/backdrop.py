@@ -3,27 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
 
-from ..render.appearance import draw_appearance, gown_colours
+from ..mechanics.kinematics import Kinematics
+from ..render.appearance import Appearance, gown_colours
 from ..render.camera import Renderer
 from ..render.diorama import Diorama, Furniture, along
 from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
-from ..robot.kinematics import Kinematics
 from ..robot.visual import visual_meshes
-from ..scene.person_spec import ARM_SEGMENTS
+from ..scene.person_spec import ARM_SEGMENTS, Capsule
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
-from .cloth import Cloth
-from .person import Person
+
+
+class Lying(Protocol):
+    """What is drawn of a person: `Person` has it."""
+
+    @property
+    def trunk(self) -> Mapping[str, Capsule]:
+        """Ends and radius of every capsule but the arms', by name [m]."""
+        ...
+
+    def radii(self) -> np.ndarray:
+        """(2, 3) of the arms' segments [m]."""
+        ...
+
+    def arms(self) -> np.ndarray:
+        """(2, 4, 3) shoulder, elbow, wrist, fingertip [m]."""
+        ...
 
 
 class Backdrop:
     """Keeps a `Renderer` in step with the bodies of one world.
 
     Args:
-        scene: what was drawn for this run.
-        cloth: the gown.
+        scene: what was drawn for this run, with its gown.
+        look: its colours and light.
         person: the manikin.
         kinematics: of the robot.
 
@@ -32,16 +48,16 @@ class Backdrop:
         diorama: what people watch.
     """
 
-    def __init__(self, scene: Scene, cloth: Cloth, person: Person, kinematics: Kinematics) -> None:
-        look = draw_appearance(np.random.default_rng([scene.seed, 1]))
-        self.renderer, self.person, self.kinematics = Renderer(look.light), person, kinematics
+    def __init__(self, scene: Scene, look: Appearance, person: Lying, kinematics: Kinematics) -> None:
+        self.renderer, self.person, self.kinematics = Renderer(look.light, look.on_cloth), person, kinematics
         self._colours = look.colours
         self._room(scene)
         self._body(scene)
         for name, (vertices, faces, rgb) in visual_meshes().items():
-            self.renderer.add_rigid(f"robot_{name}", vertices, faces, 255.0 * np.asarray(rgb))
+            colour = 255.0 * np.asarray(rgb) * look.tint
+            self.renderer.add_rigid(f"robot_{name}", vertices, faces, colour)
         self._links = list(visual_meshes())
-        self.renderer.set_cloth(cloth.mesh.vertices, cloth.mesh.faces, *gown_colours(cloth.mesh, look))
+        self.renderer.set_cloth(scene.mesh.vertices, scene.mesh.faces, *gown_colours(scene.mesh, look))
         furniture = Furniture(bed_xy=scene.bed_xy, bed_top=BED_TOP, rail=(*scene.rail_xy, RAIL_HEIGHT))
         lengths = np.tile(scene.person.arm_lengths, (2, 1))
         self.diorama = Diorama(look, furniture, person.trunk, person.radii(), lengths)

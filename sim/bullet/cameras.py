@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..mechanics.kinematics import Kinematics
 from ..render.camera import CAMERA_VIEWS, camera_intrinsics
 from ..robot.body import JointReading
-from ..robot.kinematics import Kinematics
 from ..sensors.sensor_errors import SensorErrors
 from ..world import CAMERAS, Frame, SensorLost
 from .backdrop import Backdrop

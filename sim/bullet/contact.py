@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..mechanics.capsules import RobotCapsules
 from ..robot.body import JointReading, RobotBody
-from ..robot.capsules import RobotCapsules
 from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from ..world import SIDES
 from .contact_law import ContactLaw

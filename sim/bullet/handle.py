@@ -28,6 +28,7 @@ _AXES = (
     ("revolute", "1 0 0"),
 )
 _LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
+_CARRIED = MASS + LINK_MASS * np.array((5.0, 4.0, 3.0))  # what the motors along x, y and z move [kg]
 _ROUND = 2 * math.pi  # [rad]
 _JOINTS = tuple(range(6))
 _POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
@@ -59,7 +60,7 @@ class Handle:
                 angularDamping=0.0,
                 jointDamping=0.0,
             )
-        self._load = np.zeros(3)
+        self._load, self._speed = np.zeros(3), np.zeros(3)
         self._turn_at_reset = np.eye(3)
         self.reset(pose_in_map)
 
@@ -69,7 +70,7 @@ class Handle:
         self._target = np.concatenate([pose_in_map[:3, 3], np.zeros(3)])
         for joint, value in enumerate(self._target):
             self.client.resetJointState(self.body, joint, float(value))
-        self._load = np.zeros(3)
+        self._load, self._speed = np.zeros(3), np.zeros(3)
 
     def follow(self, pose_in_map: np.ndarray) -> None:
         """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
@@ -85,10 +86,20 @@ class Handle:
             forces=_FORCES,
         )
 
-    def feel(self) -> None:
-        """Take a load reading; once per physics step, after it."""
-        motor = np.array([state[3] for state in self.client.getJointStates(self.body, (0, 1, 2))]) / ROOM.force(1.0)
+    def feel(self, duration: float | None = None) -> None:
+        """Take a load reading; once per physics step, after it.
+
+        Args:
+            duration: of the step [s]; what speeds the handle itself up is then not felt.  It weighs more than a thing
+                that is carried through the room; an arm is moved slowly.
+        """
+        states = self.client.getJointStates(self.body, (0, 1, 2))
+        motor = np.array([state[3] for state in states]) / ROOM.force(1.0)
         motor[2] -= _LIFTED * GRAVITY
+        if duration is not None:
+            speed = np.array([state[1] for state in states]) / ROOM.rate(1.0)
+            motor -= _CARRIED * (speed - self._speed) / duration
+            self._speed = speed
         self._load += _SMOOTHING * (-motor - self._load)
 
     @property

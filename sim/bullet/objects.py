@@ -106,6 +106,7 @@ class RoomObjects:
             )
             c.changeDynamics(body, link, activationState=c.ACTIVATION_STATE_DISABLE_SLEEPING)
         if isinstance(item, Box) and item.stiffness is not None:
+            self._person.give_skin()
             damping = 2.0 * SOFT_DAMPING * np.sqrt(item.stiffness * max(item.mass, 0.01))
             c.changeDynamics(
                 body, -1, contactStiffness=ROOM.force(item.stiffness), contactDamping=ROOM.rate(float(damping))

@@ -26,6 +26,7 @@ from ..scene.person_spec import (
     trunk_capsules,
 )
 from ..world import SIDES, Side
+from .contact_law import TUNING
 from .units import ROOM
 
 BRACED = 60.0  # torque that keeps an arm which somebody carries before a run [N m]
@@ -104,6 +105,17 @@ class Person:
             velocityGains=[1.0] * 8,
             forces=[ROOM.force(t) for t in torques],
         )
+
+    def give_skin(self) -> None:
+        """Let the arms be as soft in contact as skin is; only where something soft may touch them.
+
+        Bullet adds the damping of both partners, and a body that was told nothing has 0.1 in Bullet's own units: 1 kN
+        s/m here, 100 times what a sponge has.
+        """
+        skin = (TUNING.upper_arm, TUNING.forearm, TUNING.hand)
+        for side in SIDES:
+            for link, stiffness in zip(self.links[side], skin, strict=True):
+                self.client.changeDynamics(self.body, link, contactStiffness=ROOM.force(stiffness), contactDamping=0.0)
 
     def bend_arm(self, side: Side, angles: tuple[float, float, float, float]) -> None:
         """Put an arm somewhere else at once, where its friction then holds it; only before a run.

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ..mechanics.capsules import RobotCapsules
 from ..record.truth import TruthFrame, TruthStatic
 from ..robot.body import RobotBody
-from ..robot.capsules import RobotCapsules
 from ..scene.person_spec import PERSON_PARTS, face
 from ..scene.scene import BED_TOP, Scene
 from ..world import SIDES

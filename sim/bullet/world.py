@@ -19,12 +19,14 @@ import numpy as np
 
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
+from ..mechanics.capsules import RobotCapsules
+from ..mechanics.kinematics import kinematics_of
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
 from ..render.camera import Renderer
+from ..render.looks import TAPED, draw_look
+from ..robot.baxter import BAXTER
 from ..robot.body import JointReading, RobotBody
-from ..robot.capsules import RobotCapsules
-from ..robot.kinematics import default_kinematics
 from ..scene.gown import without_cloth
 from ..scene.initial_state import InitialState
 from ..scene.objects import RoomObject
@@ -69,6 +71,7 @@ class BulletWorld(World):
         person: name of the person; drawn from the seed when omitted.
         model: model file of the gap workflow whose effects act on the gown.
         kind: how hard the world is made, see `sim/world_kind.py`.
+        look: of gown, person and room, see `sim/render/looks.py`.
 
     Attributes:
         scene: what was drawn; truth, not for skills.
@@ -78,8 +81,8 @@ class BulletWorld(World):
         initial_states: names of the states in which a run may begin.
 
     Raises:
-        CaretreeError: an unknown gown, person or kind, a negative seed, an unusable model or gown file, a gown too
-            stiff for the time step.
+        CaretreeError: an unknown gown, person, kind or look, a negative seed, an unusable model or gown file, a gown
+            too stiff for the time step.
     """
 
     initial_states = tuple(InitialState)
@@ -92,7 +95,9 @@ class BulletWorld(World):
         person: str | None = None,
         model: str | None = None,
         kind: str = EASY,
+        look: str = TAPED,
     ) -> None:
+        appearance = draw_look(look, np.random.default_rng([seed, 1]))
         self._effects = None if model is None else gown_effects(model)
         self.scene = draw_scene(seed, gown, person, WorldKind.named(kind))
         if self.scene.gown.air_drag > 0:
@@ -100,7 +105,8 @@ class BulletWorld(World):
         self.room = room_map()
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
-        self.kinematics = default_kinematics()
+        self.robot = BAXTER
+        self.kinematics = kinematics_of(BAXTER)
         self.stopwatch = Stopwatch()
         self._noise = np.random.default_rng([seed, 2])
         self._errors = SensorErrors(seed, self.scene.kind)
@@ -124,7 +130,7 @@ class BulletWorld(World):
             Grip(self._client, side, self._handles[n], self._cloth, self._person) for n, side in enumerate(SIDES)
         ]
         self._force_limit = np.full(2, 30.0)
-        self._backdrop = Backdrop(self.scene, self._cloth, self._person, self.kinematics)
+        self._backdrop = Backdrop(self.scene, appearance, self._person, self.kinematics)
         self._cameras = Cameras(self._expose, self._backdrop, self.kinematics, self._errors, self._noise)
         self._truth = self._truth_source()
         self._watchers = Watchers(self.truth_frame, self._draw, self._backdrop.diorama, self._cameras.last)
@@ -293,6 +299,11 @@ class BulletWorld(World):
             grip.release()
         return self._robot.command(self._blocked(command, grip))
 
+    def send_joint_velocities(self, side: Side, velocities: np.ndarray, duration: float) -> None:
+        """Move an arm joint by joint (7,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
+        self._advance_to(self.time.time)
+        self._robot.move_joints(side, velocities, duration)
+
     def stop(self) -> None:
         """Brake arms and base; the grippers keep their opening."""
         self._robot.stop()
@@ -371,7 +382,7 @@ class BulletWorld(World):
             self._client.stepSimulation()
         for n in held:
             if self._grips[n].kind in ("arm", "object"):
-                self._handles[n].feel()
+                self._handles[n].feel(TIME_STEP if self._grips[n].kind == "object" else None)
 
     def _apply_effects(self) -> None:
         """Let the effects of a model file act."""

@@ -116,6 +116,7 @@ class JointEffect(abc.ABC):
     systems: ClassVar[frozenset[str]] = frozenset({"arm", "axis"})
     contains: ClassVar[frozenset[str]] = frozenset()  # effects that are special cases of this one
     memoryless: ClassVar[bool] = True  # the load depends on this instant alone
+    sharp: ClassVar[bool] = False  # the load jumps or has a kink where the motion is smooth
     sentence: ClassVar[str]
 
     @abc.abstractmethod

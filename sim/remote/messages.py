@@ -15,7 +15,7 @@ import numpy as np
 
 from ..world import WorldError
 
-VERSION = 1
+VERSION = 2
 LARGEST = 64 * 2**20  # [bytes] of one message: an image of 12 million pixels
 SENDING = 5.0  # [s] that the other end may take to take a message
 CHUNK = 2**16  # [bytes]

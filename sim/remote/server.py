@@ -76,7 +76,9 @@ class WorldServer:
             sentence = f"this world speaks version {VERSION} of the messages, the tree {version}"
             connection.send((WorldError.__name__, sentence, 0.0))
             raise WorldError(sentence)
-        told = {"name": type(self._world).__name__, "stepped": self._stepped, "room": packed(self._world.room)}
+        world = self._world
+        told = {"name": type(world).__name__, "stepped": self._stepped, "robot": world.robot.name}
+        told["room"] = packed(world.room)
         connection.send(("", told, float(self._world.clock.now())))
 
     def _next(self, connection: Connection) -> tuple[str, tuple[Any, ...]]:

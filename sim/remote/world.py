@@ -10,6 +10,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ..abilities import HandKinematics
+from ..errors import CaretreeError
+from ..known_robots import robot_named
 from ..scripted.clock import SteppedClock
 from ..world import Command, Frame, Observation, SensorLost, World, WorldError
 from .messages import VERSION, Connection
@@ -26,11 +28,13 @@ class RemoteWorld(World):
     Args:
         address: `host:port`, or the host alone.
         patience: how long a robot may take to answer [s]; a simulation may take `SLOW`.
-        kinematics: the robot's own model, where the guard shall have one.
+        robot: name of its model, as `--robot` has it; the one that the other side names by default.
+        kinematics: what the guard shall know of where the hands are; nothing by default.
         now: the wall clock [s].
 
     Raises:
         WorldError: nobody is there, or it speaks another version.
+        RobotError: its robot is not known here.
     """
 
     def __init__(
@@ -38,6 +42,7 @@ class RemoteWorld(World):
         address: str = f"127.0.0.1:{PORT}",
         *,
         patience: float = 1.0,
+        robot: str | None = None,
         kinematics: HandKinematics | None = None,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -56,7 +61,8 @@ class RemoteWorld(World):
             raise WorldError(f"no world is served at {address}: {error.strerror or error}") from error
         try:
             told = self._request("hello", VERSION)
-        except WorldError:
+            self.robot = robot_named(robot or told["robot"])
+        except CaretreeError:
             self.close()
             raise
         self._patience = SLOW if told["stepped"] else patience

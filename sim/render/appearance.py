@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.gown import ARMHOLE, COLLAR, CUFF, FABRIC, GownMesh
-from .raster import Light
+from .raster import DOTS, Light, Print
 
 Colour = tuple[float, float, float]  # red, green, blue, 0-255
 
@@ -43,10 +43,14 @@ class Appearance:
     Attributes:
         colours: name -> red, green, blue.
         light: lamp and ambient light.
+        on_cloth: what is printed on the gown's outside.
+        tint: colour of the light, which `colours` hold already: a factor of red, green and blue.
     """
 
     colours: dict[str, Colour]
     light: Light
+    on_cloth: Print = DOTS
+    tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
 
 def draw_appearance(rng: np.random.Generator) -> Appearance:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import CaretreeError
-from .raster import Light, Picture, Triangles, add_sensor_noise, rasterise
+from .raster import DOTS, Light, Picture, Print, Triangles, add_sensor_noise, rasterise
 
 CLOTH_ID = 0
 FIELD_OF_VIEW = np.deg2rad(69.0)  # horizontal, of the hand cameras and the video
@@ -67,8 +67,8 @@ class Renderer:
     `add_rigid`, the cloth is `CLOTH_ID`.
     """
 
-    def __init__(self, light: Light) -> None:
-        self.light = light
+    def __init__(self, light: Light, on_cloth: Print = DOTS) -> None:
+        self.light, self.on_cloth = light, on_cloth
         self.ids: dict[str, int] = {}
         self._local: dict[str, np.ndarray] = {}
         self._faces: dict[str, np.ndarray] = {}  # of each body alone
@@ -189,7 +189,8 @@ class Renderer:
         intrinsics: tuple[float, float, float, float] | None = None,
     ) -> Picture:
         """Draw a noiseless picture; default intrinsics are `intrinsics_of(size)`."""
-        return rasterise(self.triangles(), self.light, intrinsics or intrinsics_of(size), pose_camera_in_map, size)
+        lens = intrinsics or intrinsics_of(size)
+        return rasterise(self.triangles(), self.light, lens, pose_camera_in_map, size, self.on_cloth)
 
     def photograph(
         self, camera: str, pose_camera_in_map: np.ndarray, rng: np.random.Generator

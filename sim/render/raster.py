@@ -31,7 +31,7 @@ class Triangles:
         back: (m, 3) colour seen from the other side.
         ids: (m,) int32, which body a face belongs to; never leaves `sim`.
         uv: (n, 2) coordinates of the print on the cloth [m].
-        printed: (m,) bool, faces whose front carries the dotted print.
+        printed: (m,) bool, faces whose front carries the print.
     """
 
     vertices: np.ndarray
@@ -41,6 +41,27 @@ class Triangles:
     ids: np.ndarray
     uv: np.ndarray
     printed: np.ndarray
+
+
+PATTERNS = ("dots", "stripes", "checks", "diamonds")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Print:
+    """What is printed on the cloth.
+
+    Attributes:
+        pattern: one of `PATTERNS`.
+        pitch: distance between two of its marks [m].
+        ink: what a mark leaves of the cloth's red, green and blue.
+    """
+
+    pattern: str = "dots"
+    pitch: float = 0.035
+    ink: tuple[float, float, float] = (0.62, 0.62, 0.62)
+
+
+DOTS = Print()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,10 +147,27 @@ def _clip_near(points, uv, light, faces, f, shade, near, closed, corner):
     return count
 
 
+@njit(inline="always", nogil=True)
+def _marked(u, v, pattern, pitch):
+    """Whether a place (u, v) [m] of the cloth carries ink."""
+    row = np.floor(v / pitch)
+    dv = v / pitch - row - 0.5
+    if pattern == 0:  # dots of every other row are shifted
+        du = (u / pitch + 0.5 * (row % 2)) % 1 - 0.5
+        return du * du + dv * dv < 0.07
+    du = (u / pitch) % 1 - 0.5
+    if pattern == 1:
+        return abs(du) < 0.2
+    if pattern == 2:
+        return (abs(du) < 0.25) != (abs(dv) < 0.25)
+    return abs(du) + abs(dv) < 0.3
+
+
 @njit(nogil=True)
 def _draw(
-    points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pitch, closed, rgb, depth, owner, cosine
-):
+    points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pattern, pitch, ink, closed, rgb, depth,
+    owner, cosine,
+):  # fmt: skip
     """Fill the buffers; `points` are in the optical frame."""
     height, width = depth.shape
     corner = np.empty((4, 6))  # x, y, z, u, v, light of the clipped polygon
@@ -178,16 +216,13 @@ def _draw(
                     cosine[y, x] = distance / (z * np.sqrt(rx * rx + ry * ry + 1))
                     b0, b1, b2 = w0 * i0 * z, w1 * i1 * z, w2 * i2 * z
                     lit = b0 * corner[p, 5] + b1 * corner[q, 5] + b2 * corner[r, 5]
+                    marked = False
                     if outside and printed[f]:
                         u = b0 * corner[p, 3] + b1 * corner[q, 3] + b2 * corner[r, 3]
                         v = b0 * corner[p, 4] + b1 * corner[q, 4] + b2 * corner[r, 4]
-                        row = np.floor(v / pitch)
-                        du = (u / pitch + 0.5 * (row % 2)) % 1 - 0.5  # dots of every other row are shifted
-                        dv = v / pitch - row - 0.5
-                        if du * du + dv * dv < 0.07:
-                            lit *= 0.62
+                        marked = _marked(u, v, pattern, pitch)
                     for d in range(3):
-                        value = lit * (front[f, d] if outside else back[f, d])
+                        value = lit * (ink[d] if marked else 1.0) * (front[f, d] if outside else back[f, d])
                         rgb[y, x, d] = 255 if value > 255 else int(value)
 
 
@@ -197,7 +232,7 @@ def rasterise(
     intrinsics: tuple[float, float, float, float],
     pose_camera_in_map: np.ndarray,
     size: tuple[int, int],
-    print_pitch: float = 0.035,
+    on_cloth: Print = DOTS,
     closed: bool = False,
 ) -> Picture:
     """Draw `triangles` as a pinhole camera sees them.
@@ -208,7 +243,7 @@ def rasterise(
         intrinsics: (fx, fy, cx, cy) [px].
         pose_camera_in_map: (4, 4), optical frame: x right, y down, z forward.
         size: (width, height) [px].
-        print_pitch: distance between the dots of the print [m].
+        on_cloth: the print.
         closed: all but body 0, the cloth, are closed bodies: their far sides need not be drawn.
     """
     width, height = size
@@ -242,7 +277,9 @@ def rasterise(
         float(cx),
         float(cy),
         NEAR,
-        print_pitch,
+        PATTERNS.index(on_cloth.pattern),
+        on_cloth.pitch,
+        np.array(on_cloth.ink),
         closed,
         rgb,
         depth,

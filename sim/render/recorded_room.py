@@ -10,9 +10,10 @@ import numpy as np
 from ..errors import CaretreeError
 from ..scene.scene import RAIL_HEIGHT, Scene, draw_scene
 from ..world_kind import EASY, WorldKind
-from .appearance import draw_appearance, gown_colours
+from .appearance import gown_colours
 from .camera import Renderer
 from .diorama import Diorama, Furniture
+from .looks import LOOKS, TAPED, draw_look
 
 NEEDED = ("t", "vertices", "arms", "faces", "arm_radii")  # of truth.npz
 OPTIONAL = ("robot_capsules", "robot_capsule_names", "person_capsules", "person_capsule_names", "bed_top")
@@ -50,7 +51,7 @@ class RecordedRoom:
             bed_top=float(arrays.get("bed_top", 0.6)),
             rail=(*scene.rail_xy, RAIL_HEIGHT) if scene else None,
         )
-        look = draw_appearance(np.random.default_rng([abs(int(run.get("seed") or 0)), 1]))
+        look = draw_look(_look(run), np.random.default_rng([abs(int(run.get("seed") or 0)), 1]))
         self.diorama = Diorama(look, furniture, trunk, arrays["arm_radii"], lengths)
         faces = np.asarray(arrays["faces"])
         if scene is not None and np.array_equal(scene.mesh.faces, faces):
@@ -69,6 +70,12 @@ class RecordedRoom:
         if self._capsules is not None:
             self.diorama.move_capsules(self._names, self._capsules[index])
         return self.diorama.renderer
+
+
+def _look(run: Mapping[str, Any]) -> str:
+    parameters = run.get("parameters")
+    look = parameters.get("look") if isinstance(parameters, Mapping) else None
+    return str(look) if look in LOOKS else TAPED
 
 
 def _scene(run: Mapping[str, Any]) -> Scene | None:

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..bullet_client import pybullet
+from ..mechanics.kinematics import Kinematics, kinematics_of
+from ..mechanics.servo import PERIOD, Servo
 from ..world import SIDES, Command, Side
 from . import model
-from .kinematics import Kinematics, default_kinematics
-from .servo import PERIOD, Servo
+from .baxter import BAXTER
 from .urdf import urdf_path
 
 # PyBullet lets two bodies collide when either one's group is in the other's mask, and every mask defaults to all:
@@ -92,7 +93,7 @@ class RobotBody:
         kinematics: Kinematics | None = None,
     ) -> None:
         self._client = client
-        self.kinematics = kinematics or default_kinematics()
+        self.kinematics = kinematics or kinematics_of(BAXTER)
         arms = model.READY if arm_positions is None else np.asarray(arm_positions, float)
         self.servo = Servo(self.kinematics, pose_base_in_map, arms, head_pan, time)
         self.servo.gripper_opening = np.full(2, gripper_opening)
@@ -134,6 +135,10 @@ class RobotBody:
     def command(self, command: Command) -> Command:
         """Start a command; returns it as clipped (see `Servo.command`)."""
         return self.servo.command(command)
+
+    def move_joints(self, side: Side, velocities: np.ndarray, duration: float) -> None:
+        """Move an arm's joints (7,) [rad/s] for `duration` [s] (see `Servo.move_joints`)."""
+        self.servo.move_joints(side, velocities, duration)
 
     def stop(self) -> None:
         """End every motion now, braking at the acceleration limits; the grippers keep their opening."""

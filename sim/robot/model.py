@@ -1,4 +1,4 @@
-"""What the robot is made of: names, sizes, mounting and limits, as data.
+"""What Baxter, as it stands here, is made of: names, sizes, mounting and limits (`baxter.py` puts them together).
 
 Baxter's own links and joint limits come from `example-robot-data` when the URDF is composed
 (`urdf.py`).  This file holds what that package does not know: the base, the grippers, the cameras
@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..world import ARM_JOINTS, SIDES, Side
-from .gripper import GRIPPER
+from ..mechanics.gripper import GRIPPER
+from ..world import SIDES, Side
 
+ARM_JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")  # shoulder to wrist
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 HEAD_JOINT = "head_pan"
 

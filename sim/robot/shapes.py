@@ -2,42 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
+from ..mechanics.shape import Shape
 from ..world import SIDES
 from . import model
 
-
-@dataclass(frozen=True, kw_only=True)
-class Shape:
-    """A primitive fixed to a link.
-
-    Attributes:
-        kind: `box` or `capsule` (along the local z axis).
-        size: box edges (x, y, z) [m]; capsule radius and length between the centres of its caps [m].
-        xyz: centre in the link frame [m].
-        rpy: orientation in the link frame, URDF convention [rad].
-        rgb: colour of the visual made from it, or None when it is a collision shape only.
-    """
-
-    kind: Literal["box", "capsule"]
-    size: tuple[float, ...]
-    xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rgb: tuple[float, float, float] | None = None
-
-
+LIMBS = ("upper_elbow", "lower_elbow", "upper_forearm", "lower_forearm", "wrist", "gripper")
+_DISTAL = ("upper_forearm", "lower_forearm", "wrist", "gripper")  # these can meet the robot's own body
+_FIXED = ("torso", "base", "head")
 DARK, STEEL, RED, BLACK = (0.20, 0.21, 0.23), (0.45, 0.46, 0.48), (0.55, 0.10, 0.10), (0.08, 0.08, 0.09)
 
 
-def _base() -> tuple[Shape, ...]:
+def base_box() -> tuple[Shape, ...]:
+    """The base without what stands on it."""
     length, width, top = model.BASE_SIZE
     deck = top - model.BASE_CLEARANCE
+    return (Shape(kind="box", size=(length, width, deck), xyz=(0.0, 0.0, model.BASE_CLEARANCE + deck / 2), rgb=DARK),)
+
+
+def _base() -> tuple[Shape, ...]:
+    top = model.BASE_SIZE[2]
     column = model.TORSO_IN_BASE[2] - 0.06 - top  # Baxter's torso ends 6 cm below its frame
     cx, cy = model.COLUMN_SIZE
     return (
-        Shape(kind="box", size=(length, width, deck), xyz=(0.0, 0.0, model.BASE_CLEARANCE + deck / 2), rgb=DARK),
+        *base_box(),
         Shape(kind="box", size=(cx, cy, column), xyz=(model.TORSO_IN_BASE[0] - 0.05, 0.0, top + column / 2), rgb=STEEL),
     )
 
@@ -49,13 +36,17 @@ _ARM: dict[str, tuple[Shape, ...]] = {
     "upper_forearm": (Shape(kind="capsule", size=(0.07, 0.26), xyz=(0.0, 0.0, 0.10)),),
     "lower_forearm": (Shape(kind="capsule", size=(0.06, 0.06)),),
     "wrist": (Shape(kind="capsule", size=(0.055, 0.08), xyz=(0.0, 0.0, 0.05)),),
-    "gripper": (
-        Shape(kind="box", size=tuple(model.PALM_SIZE), xyz=(0.0, 0.0, float(model.PALM_SIZE[2]) / 2), rgb=BLACK),
-    ),
 }
 
 
-def _finger(sign: float) -> tuple[Shape, ...]:
+def palm_shapes() -> tuple[Shape, ...]:
+    """The palm of a gripper."""
+    size = model.PALM_SIZE
+    return (Shape(kind="box", size=tuple(size), xyz=(0.0, 0.0, float(size[2]) / 2), rgb=BLACK),)
+
+
+def finger_shapes(sign: float) -> tuple[Shape, ...]:
+    """One finger, on the side of the closing direction that `sign` tells."""
     _, thick, long = model.FINGER_SIZE
     return (Shape(kind="box", size=tuple(model.FINGER_SIZE), xyz=(0.0, sign * thick / 2, -long / 2), rgb=STEEL),)
 
@@ -72,6 +63,21 @@ def collision_shapes() -> dict[str, tuple[Shape, ...]]:
     }
     for side in SIDES:
         shapes |= {f"{side}_{name}": value for name, value in _ARM.items()}
-        shapes[f"{side}_finger_a_link"] = _finger(1.0)
-        shapes[f"{side}_finger_b_link"] = _finger(-1.0)
+        shapes[f"{side}_gripper"] = palm_shapes()
+        shapes[f"{side}_finger_a_link"] = finger_shapes(1.0)
+        shapes[f"{side}_finger_b_link"] = finger_shapes(-1.0)
     return shapes
+
+
+def own_pairs() -> tuple[tuple[str, str], ...]:
+    """Links that could touch each other."""
+    pairs = [(f"left_{a}", f"right_{b}") for a in LIMBS for b in LIMBS]
+    for side in SIDES:
+        other = SIDES[1 - SIDES.index(side)]
+        pairs += [(f"{side}_{a}", b) for a in _DISTAL for b in _FIXED]
+        pairs += [(f"{side}_{a}", f"{other}_upper_shoulder") for a in _DISTAL]
+        pairs += [
+            (f"{side}_{a}", f"{side}_{b}") for a in ("wrist", "gripper") for b in ("upper_shoulder", "upper_elbow")
+        ]
+        pairs += [(f"{side}_lower_elbow", b) for b in ("torso", "head")]
+    return tuple(pairs)

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanics.shape import Shape
 from ..render.solids import box_mesh
 from ..world import SIDES
-from .shapes import BLACK, DARK, RED, STEEL, Shape, collision_shapes
+from .shapes import BLACK, DARK, RED, STEEL, collision_shapes
 from .urdf import baxter_folder, cache_folder, write_atomically
 
 Mesh = tuple[np.ndarray, np.ndarray, tuple[float, float, float]]

@@ -83,6 +83,15 @@ GOWNS: dict[str, GownSpec] = {
         GownSpec(name="light", spacing=0.054, mass=0.41, elastic=40.0, damping=0.005, friction=0.45),
     )
 }
+# Cuts that no seed draws and nothing is trained on: they are asked for by name.
+HELD_OUT_GOWNS: dict[str, GownSpec] = {
+    spec.name: spec
+    for spec in (
+        GownSpec(name="wide", spacing=0.056, front=17, back=4, hole=(3, 4), length=17),
+        GownSpec(name="narrow", spacing=0.053, front=14, back=2, hole=(3, 5), length=19, sleeve=4),
+        GownSpec(name="long_sleeved", front=15, back=3, hole=(4, 4), length=16, sleeve=5),
+    )
+}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ from ..world import RoomMap
 from ..world_kind import EASY_KIND, WorldKind
 from .difficulties import stream
 from .falling_arms import with_falling_arms
-from .gown import GOWNS, GownMesh, GownSpec, build_gown
+from .gown import GOWNS, HELD_OUT_GOWNS, GownMesh, GownSpec, build_gown
 from .gown_file import read_gown
 from .person_spec import LYING_ELEVATION, LYING_ROTATION, PERSONS, PersonSpec
 
@@ -57,14 +57,14 @@ def _named(kind: str, name: str, table: dict) -> object:
 
 
 def named_gown(name: str) -> GownSpec:
-    """The gown called `name` in `GOWNS`; a name that ends in .yaml is a gown file.
+    """The gown called `name` in `GOWNS` or `HELD_OUT_GOWNS`; a name that ends in .yaml is a gown file.
 
     Raises:
         CaretreeError: no such gown, or a file that cannot be used.
     """
     if name.endswith((".yaml", ".yml")):
         return read_gown(name).spec
-    spec = _named("gown", name, GOWNS)
+    spec = HELD_OUT_GOWNS.get(name) or _named("gown", name, GOWNS)
     assert isinstance(spec, GownSpec)
     return spec
 

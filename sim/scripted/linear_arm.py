@@ -25,10 +25,10 @@ def _turn(axis: int, angle: float) -> np.ndarray:
 
 
 class LinearArms:
-    """Both arms; the same questions as sim.robot.kinematics.Kinematics answers for the real ones."""
+    """Both arms; the same questions as sim.mechanics.kinematics.Kinematics answers for the real ones."""
 
     def pose_hand_in_map(self, side: Side, q: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
-        """Pose (4, 4) of one hand for its seven angles (7,) [rad] and a base pose (3,)."""
+        """Pose (4, 4) of one hand for its n angles (n,), of which the first six count, [rad] and a base pose (3,)."""
         x, y, yaw = np.asarray(pose_base_in_map, float)
         base = np.eye(4)
         base[:3, :3], base[:3, 3] = _turn(2, yaw), (x, y, 0.0)
@@ -38,10 +38,10 @@ class LinearArms:
         return base @ hand
 
     def jacobian_hand_in_map(self, side: Side, q: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
-        """Jacobian (6, 7) of the hand: linear, then angular velocity, along the axes of the map."""
+        """Jacobian (6, n) of the hand: linear, then angular velocity, along the axes of the map."""
         assert side in SIDES
         yaw = _turn(2, float(pose_base_in_map[2]))
-        jacobian = np.zeros((6, 7))
+        jacobian = np.zeros((6, len(q)))
         jacobian[:3, :3] = GAIN * yaw
         first, second = _turn(0, q[3]), _turn(1, q[4])
         jacobian[3:, 3:6] = yaw @ np.stack((np.eye(3)[0], first[:, 1], (first @ second)[:, 2]), axis=1)

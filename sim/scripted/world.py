@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanics.robot_model import RobotModel
+from ..robot.baxter import BAXTER
 from ..scene.objects import ObjectError, RoomObject
 from ..world import (
-    ARM_JOINTS,
     CAMERAS,
     SIDES,
     BaseVelocity,
@@ -37,7 +38,6 @@ STEP = 0.02  # [s] longest step of the integration
 FINGER_SPEED = 0.1  # [m/s]
 WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
 DEPTH_NOISE = 0.001  # [m]
-STROKE = 0.085  # [m]
 SINGULAR = 1e-3  # share of the greatest singular value below which a hand does not move in a direction
 # Every camera looks straight down from above the middle of the bed, whose mattress is all that shows.
 FROM_ABOVE = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
@@ -92,8 +92,10 @@ class ScriptedWorld(World):
         seed: of the sensor noise.
         frames: `(camera, time) -> Frame`; flat grey pictures by default.
         room: map; `scripted_room()` by default.
-        kinematics: anything with `pose_hand_in_map` and `jacobian_hand_in_map`; linear arms by default.
-        arm_positions: (2, 7) where the arms are at first [rad]; zeros by default.
+        robot: that skills plan with; Baxter by default.
+        kinematics: what moves the hands, with `pose_hand_in_map` and `jacobian_hand_in_map`: the robot's own where
+            planned motions shall end where they should, linear arms by default.
+        arm_positions: (2, n) where the arms are at first [rad]; zeros by default.
         stopping_time: how long arms and base run on after a stop, slowing down evenly [s].
 
     Attributes:
@@ -112,6 +114,7 @@ class ScriptedWorld(World):
         seed: int = 0,
         frames: Callable[[str, float], Frame] | None = None,
         room: RoomMap | None = None,
+        robot: RobotModel = BAXTER,
         kinematics: Any = None,
         stopping_time: float = 0.15,
         arm_positions: np.ndarray | None = None,
@@ -119,7 +122,9 @@ class ScriptedWorld(World):
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
         self.room = room or scripted_room()
+        self.robot = robot
         self.kinematics = kinematics or LinearArms()
+        shape = (2, robot.dof)
         self.load: dict[Side, np.ndarray] = {side: np.zeros(6) for side in SIDES}
         self.between_fingers: dict[Side, float] = {"left": 0.0, "right": 0.0}
         self.person_offset = np.zeros(3)
@@ -128,18 +133,19 @@ class ScriptedWorld(World):
         self.has_gown = True
         self._rng = np.random.default_rng(seed)
         self._frames = frames or self._flat_frame
-        self._q = np.zeros((2, 7)) if arm_positions is None else np.array(arm_positions, float).reshape(2, 7)
-        self._dq = np.zeros((2, 7))
+        self._q = np.zeros(shape) if arm_positions is None else np.array(arm_positions, float).reshape(shape)
+        self._dq = np.zeros(shape)
         self._head = 0.0
         self._base = np.array(self.room.waypoints.get("start", (0.0, 0.0, 0.0)), float)
         self._base_velocity, self._base_until = np.zeros(3), 0.0
         self._twists: dict[Side, HandTwist] = {}
         self._twist_until: dict[Side, float] = {}
         self._motions: list[_Motion] = []
+        self._rates: dict[int, tuple[np.ndarray, float]] = {}  # of an arm's joints, and until when
         self._stopping_time = stopping_time
-        self._coast_start, self._coast_q, self._coast_base = -np.inf, np.zeros((2, 7)), np.zeros(3)
-        self._opening = np.full(2, STROKE)
-        self._opening_goal = np.full(2, STROKE)
+        self._coast_start, self._coast_q, self._coast_base = -np.inf, np.zeros(shape), np.zeros(3)
+        self._opening = np.full(2, robot.gripper.stroke)
+        self._opening_goal = np.full(2, robot.gripper.stroke)
         self._force_limit = np.zeros(2)
         self._posed, self._poses = b"", np.zeros((2, 4, 4))
 
@@ -171,7 +177,7 @@ class ScriptedWorld(World):
             time=now,
             arm_positions=self._q.copy(),
             arm_velocities=self._dq.copy(),
-            arm_efforts=np.zeros((2, 7)),
+            arm_efforts=np.zeros_like(self._q),
             head_pan=self._head,
             pose_base_in_map=self._base.copy(),
             twist_base=moving.copy(),
@@ -210,7 +216,11 @@ class ScriptedWorld(World):
     # -- motions -----------------------------------------------------------------------------------------
 
     def send(self, command: Command) -> Command:
-        """Start a motion; only the fingers have a limit here."""
+        """Start a motion; only the fingers have a limit here.
+
+        Raises:
+            WorldError: the robot does not have one of the joints.
+        """
         now = self.clock.now()
         if isinstance(command, JointTrajectory):
             motion = self._motion(command, now)
@@ -221,30 +231,41 @@ class ScriptedWorld(World):
             for n, side in enumerate(SIDES):
                 if any(arm == n for arm, _ in motion.slots):
                     self._twists.pop(side, None)
+                    self._rates.pop(n, None)
         elif isinstance(command, HandTwist):
-            self._drop({(SIDES.index(command.side), joint) for joint in range(7)})
+            self._drop({(SIDES.index(command.side), joint) for joint in range(self.robot.dof)})
             self._end_coasting(SIDES.index(command.side))
+            self._rates.pop(SIDES.index(command.side), None)
             self._twists[command.side], self._twist_until[command.side] = command, now + command.duration
         elif isinstance(command, BaseVelocity):
             self._end_coasting(-1)
             self._base_velocity, self._base_until = np.array(command.velocity, float), now + command.duration
         elif isinstance(command, GripperOpening):
             n = SIDES.index(command.side)
-            command = replace(command, opening=min(command.opening, STROKE))
+            command = replace(command, opening=min(command.opening, self.robot.gripper.stroke))
             self._opening_goal[n] = command.opening
             self._force_limit[n] = command.force_limit
         self.sent.append(command)
         return command
 
+    def send_joint_velocities(self, side: Side, velocities: np.ndarray, duration: float) -> None:
+        """Move an arm joint by joint (7,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
+        arm = SIDES.index(side)
+        self._drop({(arm, joint) for joint in range(7)})
+        self._twists.pop(side, None)
+        self._end_coasting(arm)
+        self._rates[arm] = np.array(velocities, float), self.clock.now() + duration
+
     def stop(self) -> None:
         """End every motion, which takes the stopping time; the fingers go on holding."""
         now = self.clock.now()
         driving = now < self._base_until
-        if self._motions or self._twists or driving:
+        if self._motions or self._twists or self._rates or driving:
             self._coast_start, self._coast_q = now, self._dq.copy()
             self._coast_base = self._base_velocity.copy() if driving else np.zeros(3)
         self._motions.clear()
         self._twists.clear()
+        self._rates.clear()
         self._base_until = now
 
     def _slowing(self, time: float) -> float:
@@ -261,10 +282,8 @@ class ScriptedWorld(World):
             self._coast_q[arm] = 0.0
 
     def _motion(self, command: JointTrajectory, now: float) -> _Motion:
-        slots: list[tuple[int, int]] = []
-        for joint in command.joints:
-            side, _, name = joint.partition("_")
-            slots.append((-1, 0) if joint == "head_pan" else (SIDES.index(side), ARM_JOINTS.index(name)))
+        command.check_joints(self.robot)
+        slots = [self.robot.place_of(joint) or (-1, 0) for joint in command.joints]
         return _Motion(now, np.asarray(command.times, float), np.asarray(command.positions, float), slots)
 
     def _drop(self, slots: set[tuple[int, int]]) -> None:
@@ -274,7 +293,7 @@ class ScriptedWorld(World):
     def _advance_to(self, time: float) -> None:
         while self.time.time < time - 1e-9:
             if self._rests():
-                self._dq = np.zeros((2, 7))
+                self._dq = np.zeros_like(self._q)
                 break
             self._step(min(STEP, time - self.time.time))
         self.time.time = max(self.time.time, time)  # without the rounding of the sum
@@ -282,7 +301,7 @@ class ScriptedWorld(World):
     def _rests(self) -> bool:
         """Whether nothing moves until the next command, however much time passes."""
         now = self.time.time
-        if self._motions or self._twists or now < self._base_until or self._slowing(now) > 0.0:
+        if self._motions or self._twists or self._rates or now < self._base_until or self._slowing(now) > 0.0:
             return False
         return self._opening.tolist() == self._fingers_goal()
 
@@ -309,6 +328,12 @@ class ScriptedWorld(World):
                 continue
             jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
             self._q[arm] += _pseudo_inverse(jacobian) @ np.asarray(twist.twist_in_map, float) * moved
+        for arm, (rates, until) in list(self._rates.items()):
+            moved = min(until, now) - self.time.time
+            if moved <= 1e-9:
+                del self._rates[arm]
+                continue
+            self._q[arm] += rates * moved
         left = self._slowing(now)
         if left > 0.0:
             self._q += self._coast_q * left * dt

@@ -11,6 +11,7 @@ from .world_trial import Breaks, WorldLawBroken, WorldTrial
 
 Law = Callable[[WorldTrial], None]
 LAWS: tuple[Law, ...] = (
+    senses_laws.it_says_what_its_robot_is_made_of,
     time_laws.the_clock_goes_on_and_never_back,
     time_laws.a_wait_for_the_past_is_over_at_once,
     time_laws.a_wait_comes_back_within_a_tenth_of_a_second,
@@ -27,6 +28,7 @@ LAWS: tuple[Law, ...] = (
     motion_laws.the_base_drives_for_its_duration,
     motion_laws.fingers_go_where_they_are_sent_and_stay,
     motion_laws.what_was_really_sent_comes_back,
+    motion_laws.a_joint_that_the_robot_does_not_have_is_refused,
     senses_laws.frames_are_whole_new_and_in_place,
     senses_laws.an_unknown_camera_is_lost,
     motion_laws.closing_twice_is_closing_once,

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 
-from ..world import ARM_JOINTS, SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory, WorldError
+from ..world import SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory, WorldError
 from .world_trial import STOPPED_WITHIN, WorldTrial, is_still, joint_motion
 
 REACHED = 0.03  # [rad] from the end of a trajectory
@@ -16,15 +16,14 @@ TURN = 0.15  # [rad]
 HELD = 0.02  # [rad], [m] that may still move after a stop
 OPENING_ERROR = 0.006  # [m]
 STOPPABLE = 0.06  # [rad], [m] that may move where a stop follows a command at once
-JOINTS = (ARM_JOINTS[-1], ARM_JOINTS[0])
 
 
 def a_trajectory_ends_where_it_should(trial: WorldTrial) -> None:
     """The joint that was named is half way at half time and there at the end, and no other joint moves."""
     for side in SIDES:
-        for joint in JOINTS:
+        for joint in (trial.joints[-1], trial.joints[0]):
             start = trial.rest().arm_positions
-            n, k = SIDES.index(side), ARM_JOINTS.index(joint)
+            n, k = SIDES.index(side), trial.joints.index(joint)
             sent = trial.turn(side, joint, TURN, 1.2)
             goal, lasts = float(sent.positions[-1, 0]), float(sent.times[-1])
             middle = trial.let_pass(0.5 * lasts)[-1]
@@ -41,10 +40,21 @@ def a_trajectory_ends_where_it_should(trial: WorldTrial) -> None:
             trial.hold(is_still(end), f"the robot still moves {SETTLE:g} s after the end of a trajectory")
 
 
+def a_joint_that_the_robot_does_not_have_is_refused(trial: WorldTrial) -> None:
+    """In one sentence, before anything moves."""
+    try:
+        trial.world.send(joint_motion("third_elbow", 0.0, TURN, 1.0))
+    except WorldError:
+        return
+    except Exception as error:
+        trial.hold(False, f"it raised {type(error).__name__}, but WorldError is asked for")
+    trial.hold(False, "a trajectory of a joint 'third_elbow' was taken")
+
+
 def the_head_turns_as_it_is_told(trial: WorldTrial) -> None:
-    """`head_pan` is a joint like the others."""
+    """Its joint is one like the others."""
     start = trial.rest().head_pan
-    sent = trial.send(joint_motion("head_pan", start, start + TURN, 1.2))
+    sent = trial.send(joint_motion(trial.world.robot.head_joint, start, start + TURN, 1.2))
     assert isinstance(sent, JointTrajectory)
     off = abs(trial.let_pass(float(sent.times[-1]) + SETTLE)[-1].head_pan - float(sent.positions[-1, 0]))
     trial.hold(off < REACHED, f"it ended {off:.3f} rad from where it was sent")
@@ -64,7 +74,7 @@ def what_was_really_sent_comes_back(trial: WorldTrial) -> None:
         trial.hold(off < OPENING_ERROR, said)
     start = float(trial.rest().arm_positions[0, -1])
     try:
-        quick = trial.send(joint_motion(f"left_{ARM_JOINTS[-1]}", start, start - TURN, 0.02))
+        quick = trial.send(joint_motion(f"left_{trial.joints[-1]}", start, start - TURN, 0.02))
     except WorldError:
         return
     assert isinstance(quick, JointTrajectory)
@@ -111,7 +121,7 @@ def the_base_drives_for_its_duration(trial: WorldTrial) -> None:
 
 def a_new_command_replaces_the_old_one(trial: WorldTrial) -> None:
     """Of the same joints; the other arm goes on."""
-    joint, start = JOINTS[0], trial.rest().arm_positions
+    joint, start = trial.joints[-1], trial.rest().arm_positions
     trial.turn("left", joint, 2.0 * TURN, 2.0)
     other = trial.turn("right", joint, TURN, 2.0)
     here = float(trial.let_pass(0.6)[-1].arm_positions[0, -1])
@@ -125,7 +135,7 @@ def a_new_command_replaces_the_old_one(trial: WorldTrial) -> None:
 
 def stopping_ends_every_motion(trial: WorldTrial) -> None:
     """In the middle of motions, twice, and where nothing moves; the robot then stays where it is."""
-    trial.turn("left", JOINTS[0], 2.0 * TURN, 3.0)
+    trial.turn("left", trial.joints[-1], 2.0 * TURN, 3.0)
     trial.send(HandTwist(side="right", twist_in_map=0.03 * np.eye(6)[2], duration=3.0))
     trial.send(BaseVelocity(velocity=np.array((-0.04, 0.0, 0.0)), duration=3.0))
     trial.let_pass(0.5)
@@ -143,7 +153,7 @@ def stopping_ends_every_motion(trial: WorldTrial) -> None:
 def stopping_right_after_a_command_ends_it(trial: WorldTrial) -> None:
     """A command that is still on its way is stopped too."""
     start = trial.rest()
-    trial.turn("left", JOINTS[0], 2.0 * TURN, 1.0)
+    trial.turn("left", trial.joints[-1], 2.0 * TURN, 1.0)
     _stop(trial, times=1)
     end = trial.let_pass(1.5)[-1]
     moved = np.abs(end.arm_positions - start.arm_positions).max()
@@ -164,7 +174,7 @@ def stopping_works_from_another_thread(trial: WorldTrial) -> None:
         except BaseException as error:
             errors.append(error)
 
-    trial.turn("left", JOINTS[0], 2.0 * TURN, 3.0)
+    trial.turn("left", trial.joints[-1], 2.0 * TURN, 3.0)
     trial.let_pass(0.4)
     thread = threading.Thread(target=stop, daemon=True)
     thread.start()

@@ -7,6 +7,7 @@ from dataclasses import fields
 import numpy as np
 
 from ..freshness import fresh_frame
+from ..mechanics.robot_model import RobotModel
 from ..world import CAMERAS, SIDES, Frame, Observation, SensorLost, SensorStale
 from .world_trial import FRAME_STALE, PERIOD, STALE, WorldTrial
 
@@ -15,9 +16,6 @@ WATCHED = 1.5  # [s]
 AHEAD = 1e-3  # [s] by which a stamp may be ahead of the clock
 SHAPES: dict[str, tuple[int, ...]] = {
     "time": (),
-    "arm_positions": (2, 7),
-    "arm_velocities": (2, 7),
-    "arm_efforts": (2, 7),
     "head_pan": (),
     "pose_base_in_map": (3,),
     "twist_base": (3,),
@@ -29,10 +27,17 @@ SHAPES: dict[str, tuple[int, ...]] = {
 }
 
 
+def it_says_what_its_robot_is_made_of(trial: WorldTrial) -> None:
+    """Skills plan with that."""
+    robot = getattr(trial.world, "robot", None)
+    trial.hold(isinstance(robot, RobotModel), f"robot is {robot!r}, but a RobotModel is asked for")
+
+
 def an_observation_is_whole(trial: WorldTrial) -> None:
     """It has every number, finite and of the right shape, and poses that are poses."""
     seen = trial.world.observe()
-    for name, shape in SHAPES.items():
+    arms = dict.fromkeys(("arm_positions", "arm_velocities", "arm_efforts"), (2, trial.world.robot.dof))
+    for name, shape in (SHAPES | arms).items():
         value = getattr(seen, name)
         trial.hold(np.shape(value) == shape, f"{name} has shape {np.shape(value)}, but {shape} is asked for")
         trial.hold(np.isfinite(value).all(), f"{name} holds a number that is not finite")
@@ -61,7 +66,7 @@ def observations_are_new_and_vary(trial: WorldTrial) -> None:
 
 def an_observation_stays_as_it_is(trial: WorldTrial) -> None:
     """What was seen does not change with the robot."""
-    trial.turn("left", "w2", 0.15, 1.0)
+    trial.turn("left", trial.joints[-1], 0.15, 1.0)
     seen = trial.world.observe()
     kept = {field.name: np.array(getattr(seen, field.name)) for field in fields(Observation)}
     trial.let_pass(0.5)

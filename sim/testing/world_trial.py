@@ -11,7 +11,7 @@ import numpy as np
 from ..freshness import fresh_observation
 from ..scripted.clock import SteppedClock
 from ..waiting import wait
-from ..world import ARM_JOINTS, SIDES, Command, JointTrajectory, Observation, Side, World
+from ..world import SIDES, Command, JointTrajectory, Observation, Side, World
 
 PERIOD = 1.0 / 15.0  # [s] between two looks, as trees are ticked
 STALE, FRAME_STALE = 0.5, 1.0  # [s] as the guard has it
@@ -56,6 +56,11 @@ class WorldTrial:
         self.stepped = isinstance(world.clock, SteppedClock)
         self.law = ""
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Those of an arm, shoulder to wrist."""
+        return self.world.robot.arm_joints
+
     def hold(self, holds: bool | np.bool_, sentence: str) -> None:
         """Say that the law is broken unless `holds`.
 
@@ -93,7 +98,7 @@ class WorldTrial:
 
     def turn(self, side: Side, joint: str, angle: float, seconds: float) -> JointTrajectory:
         """Send a trajectory of one joint [rad] over `seconds`, the other way where a limit is near; what was sent."""
-        start = float(self.observe().arm_positions[SIDES.index(side), ARM_JOINTS.index(joint)])
+        start = float(self.observe().arm_positions[SIDES.index(side), self.joints.index(joint)])
         for goal in (start + angle, start - angle):
             command = joint_motion(f"{side}_{joint}", start, goal, seconds)
             sent = self.send(command)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...sim.robot.capsules import RobotCapsules
-from ...sim.robot.collision import CollisionChecker
+from ...sim.mechanics.capsules import RobotCapsules
+from ...sim.mechanics.collision import CollisionChecker
 from ...sim.segments import any_nearer
 from ...sim.world import Observation, Side
 from ..geometry.clearance import CLEARANCE, LinkClearance
@@ -37,6 +37,7 @@ class ClearOfPerson(CollisionChecker):
         held: Mapping[Side, str],
         begins: Observation,
     ) -> None:
+        self.robot = checker.robot
         self._checker, self._links, self._zone, self._held = checker, links, zone, held
         self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
@@ -45,7 +46,7 @@ class ClearOfPerson(CollisionChecker):
         self._least_gaps = self._clearance.least_gaps(zone.names, held) + planned
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
-        """Whether arms (2, 7) at these angles touch nothing and come near nobody, with room for a smooth motion."""
+        """Whether arms (2, n) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, head_pan, self._opening)
         assert len(zone.names) == self._least.shape[1], "one checker serves one plan: the person must not change"
         near = any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)

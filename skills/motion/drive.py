@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.compiled import fma, njit
+from ...sim.mechanics.robot_model import MotionLimits
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
 from ...sim.vector import length
 from ...sim.world import BaseVelocity
 
@@ -47,7 +47,8 @@ class PathFollower:
     Args:
         path: (k, 2) corner points in the map, as from `plan_path` [m].
         yaw: final heading [rad].
-        speed: greatest speed [m/s].
+        limits: of the robot's motion.
+        speed: greatest speed, that of the robot by default [m/s].
         turn_from: distance to the end at which turning to `yaw` begins [m]; before that the heading is kept.
         tuning: numbers of the controller.
 
@@ -59,8 +60,9 @@ class PathFollower:
         self,
         path: np.ndarray,
         yaw: float,
+        limits: MotionLimits,
         *,
-        speed: float = float(model.BASE_VELOCITY[0]),
+        speed: float | None = None,
         turn_from: float = np.inf,
         tuning: DriveTuning = DRIVE,
     ) -> None:
@@ -70,7 +72,9 @@ class PathFollower:
             raise ValueError(f"a path is corner points (k, 2), got {np.shape(path)}")
         steps = np.linalg.norm(np.diff(self._path, axis=0), axis=1)
         self._marks = np.append(0.0, np.cumsum(steps))  # distance along the path of each corner
-        self._yaw, self._speed, self._turn_from = float(yaw), float(speed), turn_from
+        self._limits = limits
+        self._speed = float(limits.base_velocity[0] if speed is None else speed)
+        self._yaw, self._turn_from = float(yaw), turn_from
         self._progress = 0.0
 
     def done(self, pose_base_in_map: np.ndarray) -> bool:
@@ -92,10 +96,10 @@ class PathFollower:
         distance = length(offset)
         to_go = max(left, length(self._path[-1] - here))
         # Brake as half the acceleration limit allows, then settle exponentially.
-        speed = min(self._speed, math.sqrt(model.BASE_ACCELERATION[0] * to_go), self._tuning.gain * to_go)
+        speed = min(self._speed, math.sqrt(self._limits.base_acceleration[0] * to_go), self._tuning.gain * to_go)
         velocity = offset / max(distance, 1e-9) * speed
         error = _wrap(self._yaw - yaw) if left <= self._turn_from else 0.0
-        fastest = float(model.BASE_VELOCITY[1])
+        fastest = float(self._limits.base_velocity[1])
         turn = min(max(self._tuning.turn_gain * error, -fastest), fastest)
         c, s = math.cos(yaw), math.sin(yaw)
         return BaseVelocity(

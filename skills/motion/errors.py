@@ -17,7 +17,7 @@ class Unreachable(MotionError):  # noqa: N818 - an outcome, as the operator read
     Attributes:
         position_residual: distance left at the best configuration found [m].
         rotation_residual: angle left there [rad].
-        q: that configuration (7,) [rad].
+        q: that configuration (n,) [rad].
     """
 
     def __init__(self, message: str, position_residual: float, rotation_residual: float, q: np.ndarray) -> None:

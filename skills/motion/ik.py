@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
+from ...sim.mechanics.kinematics import Kinematics
+from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import Kinematics, planar_pose
 from ...sim.vector import cross, length
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
@@ -88,23 +88,23 @@ def solve_ik(
         side: which hand.
         pose_hand_in_map: (4, 4) wanted pose.
         pose_base_in_map: (3,) where the base stands.
-        q_seed: (7,) start of the search, usually where the arm is [rad].
+        q_seed: (n,) start of the search, usually where the arm is [rad].
         free: hand axis about which the orientation does not matter: `none`, `approach` (z), `closing` (y),
             or `any` (position only).
         seeds: how many starting points to try before giving up.
         iterations: steps from each starting point.
-        accept: optional predicate on (7,) angles, for instance a collision check; a solution it refuses is skipped.
+        accept: optional predicate on (n,) angles, for instance a collision check; a solution it refuses is skipped.
         tuning: numbers of the search.
 
     Returns:
-        (7,) angles within the limits; the hand is within 1 mm and 0.3 degrees.
+        (n,) angles within the limits; the hand is within 1 mm and 0.3 degrees.
 
     Raises:
         Unreachable: no starting point led there; carries the best residual.
     """
     target = pin.SE3(np.linalg.inv(planar_pose(pose_base_in_map)) @ np.asarray(pose_hand_in_map, float))
     best, refused = (np.inf, np.inf, np.asarray(q_seed, float)), 0
-    ready = model.READY[SIDES.index(side)]
+    ready = kinematics.robot.ready[SIDES.index(side)]
     for n, start in enumerate(_starts(kinematics, side, np.asarray(q_seed, float), seeds, tuning)):
         posture = ready if n else start
         q, position, rotation = _descend(kinematics, side, target, start, posture, free, iterations, tuning)
@@ -159,7 +159,7 @@ def _starts(
 ) -> Iterator[np.ndarray]:
     """The seed, the ready posture and its elbow variants, then seeded random postures around the middle."""
     limits = kinematics.limits[side]
-    ready = model.READY[SIDES.index(side)]
+    ready = kinematics.robot.ready[SIDES.index(side)]
     yield limits.clip(q_seed)
     yield ready
     generator = np.random.default_rng(tuning.random_seed)
@@ -207,13 +207,13 @@ def _descend(
         last = size
         J = weight[:, None] * jacobian[rows]
         # Joints at a limit that the step would push further are taken out of the solve.
-        free_joints = np.ones(7, bool)
-        step_q = np.zeros(7)
+        free_joints = np.ones(len(q), bool)
+        step_q = np.zeros(len(q))
         for _ in range(tuning.active_set_rounds):
             Jf = J[:, free_joints]
             A = Jf @ Jf.T + damping * np.eye(len(rows))
             drift = tuning.posture_gain * (posture - q)[free_joints]  # in the null space
-            step_q = np.zeros(7)
+            step_q = np.zeros(len(q))
             step_q[free_joints] = drift + Jf.T @ np.linalg.solve(A, e - Jf @ drift)
             blocked = ((q <= limits.lower) & (step_q < 0)) | ((q >= limits.upper) & (step_q > 0))
             if not blocked.any():

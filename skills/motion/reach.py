@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.collision import CollisionChecker
+from ...sim.mechanics.kinematics import Kinematics
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.collision import CollisionChecker
-from ...sim.robot.kinematics import Kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked, Unreachable
 from .ik import FreeAxis, solve_ik
@@ -54,7 +54,7 @@ def plan_hand_line(
     Args:
         kinematics: the robot.
         goals: by side, pose (4, 4) in the map.
-        arm_positions: (2, 7) where the arms are now [rad].
+        arm_positions: (2, n) where the arms are now [rad].
         pose_base_in_map: (3,) where the base stands.
         free: hand axis about which the orientation does not matter (see `solve_ik`).
         speed_scale: share of the joint limits to use.
@@ -152,8 +152,8 @@ def plan_arms(
 
     Args:
         kinematics: the robot.
-        target: (2, 7) where the arms are to go [rad]; only the rows of `sides` count.
-        arm_positions: (2, 7) where the arms are now [rad].
+        target: (2, n) where the arms are to go [rad]; only the rows of `sides` count.
+        arm_positions: (2, n) where the arms are now [rad].
         pose_base_in_map: (3,) where the base stands.
         sides: that move.
         speed_scale: share of the joint limits to use.
@@ -169,8 +169,10 @@ def plan_arms(
     other = None if len(moving) == 2 else arm_positions[1 - index[0]]
     start, goal = np.concatenate([arm_positions[n] for n in index]), np.concatenate([target[n] for n in index])
 
+    dof = kinematics.robot.dof
+
     def timed(points: np.ndarray) -> JointTrajectory:
-        waypoints: dict[Side, np.ndarray] = {side: points[:, 7 * n : 7 * n + 7] for n, side in enumerate(moving)}
+        waypoints: dict[Side, np.ndarray] = {side: points[:, dof * n : dof * (n + 1)] for n, side in enumerate(moving)}
         return plan_joint_motion(
             kinematics,
             waypoints,

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ...sim.mechanics.collision import CollisionChecker
+from ...sim.mechanics.kinematics import Kinematics
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.collision import CollisionChecker
-from ...sim.robot.kinematics import Kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked
 
@@ -56,16 +55,16 @@ def plan_joint_motion(
 
     Args:
         kinematics: the robot.
-        waypoints: by side, (k, 7) joint angles with the current ones first [rad]; both sides need the same k.
+        waypoints: by side, (k, n) joint angles with the current ones first [rad]; both sides need the same k.
         pose_base_in_map: (3,) where the base stands; needed with `checker` or a `hand_speed` that depends on place.
         speed_scale: share of the velocity limits to use; accelerations scale with its square.
         hand_speed: greatest speed of each hand [m/s], or a function of the hand's position in the map.
         checker: when given, every sample is tested.
-        other_arm: (7,) angles of the arm that does not move, for `checker`; the ready posture when omitted.
+        other_arm: (n,) angles of the arm that does not move, for `checker`; the ready posture when omitted.
         tuning: numbers of the timing.
 
     Returns:
-        One trajectory with 7 or 14 joints, sampled evenly.
+        One trajectory with n or 2 n joints, sampled evenly.
 
     Raises:
         MotionBlocked: a sample collides, or no timing exists.
@@ -73,14 +72,15 @@ def plan_joint_motion(
     """
     sides: list[Side] = [side for side in SIDES if side in waypoints]
     paths = [np.atleast_2d(np.asarray(waypoints[side], float)) for side in sides]
-    if not paths or any(path.shape != (len(paths[0]), 7) for path in paths):
+    robot = kinematics.robot
+    if not paths or any(path.shape != (len(paths[0]), robot.dof) for path in paths):
         shapes = ", ".join(f"{side} {np.shape(waypoints[side])}" for side in sides)
-        raise ValueError(f"waypoints are (k, 7) for each side with the same k, got {shapes or 'none'}")
+        raise ValueError(f"waypoints are (k, {robot.dof}) for each side with the same k, got {shapes or 'none'}")
     if not 0.0 < speed_scale <= 1.0:
         raise ValueError(f"speed_scale must be over 0 and at most 1, got {speed_scale}")
     base = np.zeros(3) if pose_base_in_map is None else np.asarray(pose_base_in_map, float)
     points = _distinct(np.hstack(paths))
-    joints = tuple(name for side in sides for name in model.arm_joints(side))
+    joints = tuple(name for side in sides for name in robot.joints_of(side))
     if len(points) == 1:  # already there
         times = np.array((0.0, tuning.sample_period))
         return JointTrajectory(joints=joints, times=times, positions=np.repeat(points, 2, 0))
@@ -106,15 +106,16 @@ def check_motion(
     Args:
         checker: of the arms against the robot and what stands around it.
         sides: that move.
-        samples: (k, 7 or 14) joint angles of those arms [rad].
+        samples: (k, n or 2 n) joint angles of those arms [rad].
         pose_base_in_map: (3,) where the base stands.
-        other_arm: (7,) angles of the arm that does not move [rad]; the ready posture when omitted.
+        other_arm: (n,) angles of the arm that does not move [rad]; the ready posture when omitted.
         tuning: how many samples are tested.
 
     Raises:
         MotionBlocked: names the first pair that would touch.
     """
-    arms = model.READY.copy()
+    robot = checker.robot
+    arms = robot.ready.copy()
     if other_arm is not None and len(sides) == 1:
         arms[1 - SIDES.index(sides[0])] = other_arm
     leaving: set[tuple[str, str]] = set()
@@ -123,7 +124,7 @@ def check_motion(
     chosen = np.unique(np.append(np.arange(0, len(samples), step), len(samples) - 1))
     for k in chosen:
         for n, side in enumerate(sides):
-            arms[SIDES.index(side)] = samples[k, 7 * n : 7 * n + 7]
+            arms[SIDES.index(side)] = samples[k, robot.dof * n : robot.dof * (n + 1)]
         if given is None:
             given = standing_contacts(checker, sides, pose_base_in_map, arms)
         touching = (
@@ -146,7 +147,7 @@ def standing_contacts(
         checker: of the arms against the robot and what stands around it.
         moving: sides that move.
         pose_base_in_map: (3,) where the base stands.
-        arms: (2, 7) joint angles of both arms [rad].
+        arms: (2, n) joint angles of both arms [rad].
     """
     if len(moving) == len(SIDES):
         return set()
@@ -160,20 +161,20 @@ def standing_contacts(
 def free_postures(
     checker: CollisionChecker, moving: Side | list[Side], pose_base_in_map: np.ndarray, arms: np.ndarray
 ) -> Callable[[np.ndarray], bool]:
-    """A test of postures, (7,) of one arm or (14,) of both [rad]: whether they make no new contact.
+    """A test of postures, (n,) of one arm or (2 n,) of both [rad]: whether they make no new contact.
 
     Args:
         checker: of the arms against the robot and what stands around it.
         moving: side or sides of the arms that move.
         pose_base_in_map: (3,) where the base stands.
-        arms: (2, 7) joint angles of both arms, of which those that do not move stay [rad].
+        arms: (2, n) joint angles of both arms, of which those that do not move stay [rad].
     """
     sides: list[Side] = moving if isinstance(moving, list) else [moving]
     rows, given = [SIDES.index(side) for side in sides], standing_contacts(checker, sides, pose_base_in_map, arms)
 
     def accept(q: np.ndarray) -> bool:
         trial = np.array(arms, float)
-        trial[rows] = q.reshape(-1, 7)
+        trial[rows] = q.reshape(-1, trial.shape[1])
         if given:
             return given.issuperset(checker.collisions(pose_base_in_map, trial))
         return checker.free(pose_base_in_map, trial)
@@ -232,12 +233,14 @@ def _hand_speed_constraint(
     """A toppra constraint: path speed such that no hand exceeds its limit there."""
     from toppra.constraint import ConstraintType, DiscretizationType, LinearConstraint
 
+    count = kinematics.robot.dof
+
     class HandSpeedConstraint(LinearConstraint):
         """sdot^2 <= (limit / |d hand / d s|)^2 at every grid point."""
 
         def __init__(self) -> None:
             super().__init__()
-            self.dof = 7 * len(sides)
+            self.dof = count * len(sides)
             self.discretization_type = DiscretizationType.Collocation
             self._format_string = "    hand speed limit"
             self.constraint_type = ConstraintType.CanonicalLinear
@@ -246,7 +249,7 @@ def _hand_speed_constraint(
             bounds = np.full((len(gridpoints), 2), (0.0, 1e6))
             for n, (q, slope) in enumerate(zip(path(gridpoints), path(gridpoints, 1), strict=True)):
                 for k, side in enumerate(sides):
-                    arm, rate = q[7 * k : 7 * k + 7], slope[7 * k : 7 * k + 7]
+                    arm, rate = q[count * k : count * (k + 1)], slope[count * k : count * (k + 1)]
                     limit = hand_speed
                     if callable(limit):
                         limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])

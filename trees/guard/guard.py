@@ -83,11 +83,12 @@ class GuardedWorld:
         self.clock = inner.clock
         self.room = inner.room
         self._inner = inner
+        self.robot = inner.robot
         self.zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
         kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
         self._hand_positions = hand_positions_from(kinematics)
-        self._links = None if kinematics is None else LinkMotion(kinematics)
+        self._links = None if kinematics is None else LinkMotion(inner.robot, kinematics)
         self._clear = None if self._links is None else KeepClear(self._links, self.zone)
         self._held: dict[Side, str] = {}  # hand -> the arm that it holds
         self._ends: np.ndarray | None = None
@@ -373,7 +374,7 @@ class GuardedWorld:
                     factor = max(factor, speed / self._speed_limit(side))
                     fastest[side] = self._speed_limit(side)
                 continue
-            walked = hand_path(command, side, seen, self._hand_positions)
+            walked = hand_path(self.robot, command, side, seen, self._hand_positions)
             if walked is None:
                 continue
             times, path = walked

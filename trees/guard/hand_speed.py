@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from ...sim.abilities import HandKinematics
-from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation, Side
+from ...sim.mechanics.robot_model import RobotModel
+from ...sim.world import SIDES, JointTrajectory, Observation, Side
 from ...skills.geometry.person_zone import PersonZone
 
-# hand_positions(side, joint_positions (k, 7) [rad], base_pose (3,)) -> (k, 3) in the map [m]
+# hand_positions(side, joint_positions (k, n) [rad], base_pose (3,)) -> (k, 3) in the map [m]
 HandPositions = Callable[[Side, np.ndarray, np.ndarray], np.ndarray]
 SAMPLE = 0.05  # [s] between the places where a trajectory is checked
 SAMPLES_MAX = 2000
@@ -38,10 +39,10 @@ def sampled(trajectory: JointTrajectory) -> tuple[np.ndarray, np.ndarray]:
 
 
 def hand_path(
-    trajectory: JointTrajectory, side: Side, observation: Observation, hand_positions: HandPositions
+    robot: RobotModel, trajectory: JointTrajectory, side: Side, observation: Observation, hand_positions: HandPositions
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Times (m,) and hand positions (m, 3) of one side, or None when the trajectory does not move that arm."""
-    names = [f"{side}_{joint}" for joint in ARM_JOINTS]
+    names = robot.joints_of(side)
     if not set(names) & set(trajectory.joints):
         return None
     times, positions = sampled(trajectory)

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ...sim.abilities import HandKinematics
-from ...sim.robot.capsules import RobotCapsules
-from ...sim.robot.kinematics import Kinematics
-from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation, Side
+from ...sim.mechanics.capsules import RobotCapsules
+from ...sim.mechanics.kinematics import Kinematics
+from ...sim.mechanics.robot_model import RobotModel
+from ...sim.world import SIDES, JointTrajectory, Observation, Side
 from .hand_speed import sampled
 
 DAMPING = 0.02  # [m] of the step from a hand's motion to its joints', so that it stays small at a stretched arm
@@ -20,14 +21,16 @@ class LinkMotion:
     """The links of a robot as capsules, now and after a command.
 
     Args:
-        kinematics: of the robot; of another than the real one only the points between the fingertips are known.
+        robot: what it is made of.
+        kinematics: of the robot; of another than its own only the points between the fingertips are known.
 
     Attributes:
         names: (r,) of the capsules.
         radii: (r,) [m].
     """
 
-    def __init__(self, kinematics: HandKinematics) -> None:
+    def __init__(self, robot: RobotModel, kinematics: HandKinematics) -> None:
+        self._robot = robot
         self._kinematics: Any = kinematics
         self._links = RobotCapsules(kinematics) if isinstance(kinematics, Kinematics) else None
         if self._links is not None:
@@ -48,7 +51,7 @@ class LinkMotion:
         return self._rows[side]
 
     def ends(self, seen: Observation, arm_positions: np.ndarray | None = None) -> np.ndarray:
-        """Ends (r, 2, 3) of all capsules in the map [m], with other angles (2, 7) [rad] when given; read-only."""
+        """Ends (r, 2, 3) of all capsules in the map [m], with other angles (2, n) [rad] when given; read-only."""
         if arm_positions is None:  # asked for several times within one tick
             if seen is not self._seen:
                 self._seen, self._seen_ends = seen, self._placed(seen, seen.arm_positions)
@@ -87,7 +90,6 @@ class LinkMotion:
         times, positions = sampled(trajectory)
         arms = np.tile(np.asarray(seen.arm_positions, float), (len(times), 1, 1))
         for column, joint in enumerate(trajectory.joints):
-            side, _, name = joint.partition("_")
-            if side in SIDES and name in ARM_JOINTS:
-                arms[:, SIDES.index(side), ARM_JOINTS.index(name)] = positions[:, column]
+            if (place := self._robot.place_of(joint)) is not None:
+                arms[:, place[0], place[1]] = positions[:, column]
         return times, np.array([self.ends(seen, each) for each in arms])

@@ -25,13 +25,17 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import yaml
 
 from ...sim.errors import CaretreeError
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import World
 from ...sim.yaml_text import load_yaml
 from .parameters import PLAIN, BuildParameter, Parameter, ParameterError
 from .time_limit import LOADING, TimeLimit, TookTooLongError
 
 GROUP = "caretree.worlds"
-OWN = {"remote": "caretree.sim.remote.world:RemoteWorld"}  # made like any other
+OWN = {  # made like any other
+    "remote": "caretree.sim.remote.world:RemoteWorld",
+    "ros1": "caretree.sim.ros1.world:Ros1World",
+}
 HOW = "or give package.module:Class or file.py:Class"
 FROM_ITS_CODE = (Exception, SystemExit, GeneratorExit, TookTooLongError)
 REQUIRED: Any = inspect.Parameter.empty
@@ -132,6 +136,11 @@ class OpenWorld:
             raise CaretreeError(f"world {self.name} cannot be made: {_said(error)}") from error
         if not isinstance(world, World):
             raise CaretreeError(f"world {self.name} makes a {type(world).__name__}, but a World is asked for")
+        if not isinstance(getattr(world, "robot", None), RobotModel):
+            raise CaretreeError(
+                f"world {self.name} does not say what its robot is made of: its `robot` has to be a RobotModel, for "
+                "instance caretree.sim.known_robots.robot_named('baxter')"
+            )
         return world
 
     def _there(self) -> str:

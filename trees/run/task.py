@@ -3,7 +3,7 @@
 A module may also have
 
 - `scripted(seed) -> (ScriptedWorld, Senses or None)`: the world on which `caretree check`, `caretree inject` and
-  `--world scripted` try the task;
+  `--world scripted` try the task; where it takes `robot` too, it is given that of `--robot`;
 - `STAGES`, a dictionary of `TaskStage` by name and in order: `--stage` then runs some of them alone, and `build` is
   given their names as `stages`;
 - `senses(context) -> Senses`: what sees, unless the run was given others; called before `build`;
@@ -24,7 +24,7 @@ import inspect
 import sys
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
@@ -35,6 +35,8 @@ from ...perception.senses import Senses
 from ...sim.abilities import SupportsObjects
 from ...sim.errors import CaretreeError
 from ...sim.evaluate.run_record import Judgement, RunRecord
+from ...sim.known_robots import robot_named
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import World
 from ...skills.core.context import Context
@@ -66,25 +68,28 @@ class Task:
         name: as given on the command line.
         function: `build(context, **params)` of its module.
         file: where it is written.
-        script: `scripted(seed)` of its module, if it has one: the scripted world and senses to try it on.
+        script: `scripted(seed)` or `scripted(seed, robot)` of its module, if it has one: the scripted world and senses
+            to try it on.
         stages: by name and in order, if its module names any.
         senses: `senses(context)` of its module, if it has one.
         module: that it is written in, which has its own skills and conditions.
         scene: `scene(world, seed)` of its module, if it has one.
         judge: `judge(record)` of its module, if it has one.
         declared: parameters of `function`, by name.
+        robot: to rehearse with; the usual one where that is None.
     """
 
     name: str
     function: Callable[..., Behaviour]
     file: Path
-    script: Callable[[int], tuple[World, Senses | None]] | None = None
+    script: Callable[..., tuple[World, Senses | None]] | None = None
     stages: Mapping[str, TaskStage] = field(default_factory=dict)
     senses: Callable[[Context], Senses] | None = None
     module: ModuleType | None = None
     scene: Callable[[SupportsObjects, int], None] | None = None
     judge: Callable[[RunRecord], Judgement] | None = None
     declared: Mapping[str, BuildParameter] = field(default_factory=dict)
+    robot: RobotModel | None = None
 
     def values(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The value of each parameter of the task: the given one, or its default.
@@ -159,12 +164,15 @@ class Task:
         Raises:
             TaskError: the file's own code fails, or its senses lack some that skills may ask for.
         """
+        chosen: dict[str, Any] = {} if self.robot is None else {"robot": self.robot}
         if self.script is None:
-            world, senses = ScriptedWorld(seed=seed), None
+            world, senses = ScriptedWorld(seed=seed, **chosen), None
         else:
+            if chosen and "robot" not in inspect.signature(self.script).parameters:
+                raise TaskError(f"task {self.name!r} has its own robot: its scripted(seed) takes none")
             try:
                 with TimeLimit(LOADING):
-                    world, senses = self.script(seed)
+                    world, senses = self.script(seed, **chosen)
             except FROM_ITS_CODE as error:
                 raise TaskError(_located(self.file, error)) from error
         self.furnish(world, seed)
@@ -204,12 +212,18 @@ class Task:
         return f"{self.file}:{_first_line(self.function)}"
 
 
-def load_task(name: str) -> Task:
-    """The task called `name`, or written in the file of that path.
+def load_task(name: str, *, robot: str | None = None) -> Task:
+    """The task called `name`, or written in the file of that path, to be rehearsed with the robot of a name.
 
     Raises:
         TaskError: there is none, or its file is broken.
+        RobotError: there is no such robot, or it is none that skills can move.
     """
+    task = _load(name)
+    return task if robot is None else replace(task, robot=robot_named(robot))
+
+
+def _load(name: str) -> Task:
     path = Path(name)
     if path.suffix == ".xml":
         return _load_xml(path)

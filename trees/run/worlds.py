@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...sim.abilities import SupportsInitialStates, SupportsObjects
 from ...sim.errors import CaretreeError
+from ...sim.known_robots import DEFAULT
 from ...sim.world_kind import EASY, WorldKind
 from .open_world import HOW, OpenWorld, installed_worlds
 
@@ -30,6 +31,7 @@ def make_world(
     person: str | None = None,
     model: str | None = None,
     kind: str = EASY,
+    look: str | None = None,
     arguments: Mapping[str, Any] | None = None,
 ) -> tuple[World, Senses | None]:
     """The world called `name`, as hard as `kind` says and furnished by the task; its senses where these are scripted.
@@ -42,13 +44,17 @@ def make_world(
         person: of the bullet world.
         model: of the bullet world.
         kind: of the bullet world.
+        look: of the bullet world; None leaves it as it is.
         arguments: of a world that the package does not bring, name -> value.
 
     Raises:
         CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
     """
+    if task.robot is not None and name != "scripted" and (name != "bullet" or task.robot.name != DEFAULT):
+        why = f"the bullet world has {DEFAULT}" if name == "bullet" else f"{name} brings its own"
+        raise CaretreeError(f"--robot {task.robot.name} needs the scripted world: {why}")
     if name != "bullet":
-        asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model}
+        asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model, "--look": look}
         asked["--world-kind"] = WorldKind.named(kind).difficulties
         given = [flag for flag, value in asked.items() if value]
         if given:
@@ -66,11 +72,26 @@ def make_world(
         from ...sim.bullet.world import BulletWorld  # pyright: ignore[reportMissingImports] pulls pybullet and pinocchio
     except ImportError as error:
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
-    options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind}
+    options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind, "look": look}
     options = {key: value for key, value in options.items() if value is not None}
     world = BulletWorld(seed=seed, **options)
     _furnish(world, task, seed)
     return world, None
+
+
+def senses_for(choice: str, task: Task, world: World, seed: int) -> Senses | None:
+    """What sees on a world that brings no senses of its own: `own`, the task's, or `scripted`, made up.
+
+    Raises:
+        CaretreeError: the task has no scripted senses that another world could use.
+    """
+    if choice != "scripted":
+        return None
+    model, senses = task.scripted(seed)
+    model.close()
+    if not hasattr(senses, "on"):
+        raise CaretreeError(f"task {task.name!r} has no scripted senses for another world")
+    return senses.on(world)  # type: ignore[union-attr]
 
 
 def read_world_arguments(name: str, texts: Sequence[str]) -> dict[str, Any]:

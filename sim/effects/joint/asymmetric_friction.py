@@ -14,6 +14,7 @@ class AsymmetricFriction(JointEffect):
     name = "asymmetric_friction"
     linear = (Parameter(name="forward", unit="F", lower=0.0), Parameter(name="backward", unit="F", lower=0.0))
     optional = (WIDTH,)
+    sharp = True
     contains = frozenset({"coulomb_friction"})
     sentence = "dry friction that differs between forward and backward motion"
 

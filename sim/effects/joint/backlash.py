@@ -10,16 +10,18 @@ from ..effect import JointEffect, JointMotion, Parameter, Shape, Spread
 def distance_since_reversal(q: np.ndarray, dead: float) -> np.ndarray:
     """How far the joint has moved since it last turned, (T,); turns smaller than `dead` do not count."""
     out = np.full(len(q), np.inf)  # before the first reversal the gap is taken as closed
-    turn, best, sign = q[0], q[0], 0.0
+    turn, best, sign, at = q[0], q[0], 0.0, 0
     seen = False
     for i, x in enumerate(q):
         if sign == 0.0:
             if abs(x - turn) > dead:
-                sign, best = np.sign(x - turn), x
+                sign, best, at = np.sign(x - turn), x, i
         elif sign * (x - best) >= 0:
-            best = x
+            best, at = x, i
         elif abs(x - best) > dead:
-            turn, sign, best, seen = best, -sign, x, True
+            # the rows since the turn are known to be beyond it only now; slow as they are, they are many
+            out[at + 1 : i] = np.abs(q[at + 1 : i] - best)
+            turn, sign, best, at, seen = best, -sign, x, i, True
         if seen:
             out[i] = abs(x - turn)
     return out
@@ -32,6 +34,7 @@ class Backlash(JointEffect):
     linear = (Parameter(name="fraction", unit="1", lower=0.0, upper=1.5),)
     shape = (Parameter(name="width", unit="x", lower=0.0),)
     memoryless = False
+    sharp = True
     sentence = "play: the load is not carried just after a reversal"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

@@ -13,6 +13,7 @@ class Contact(JointEffect):
     name = "contact"
     linear = (Parameter(name="stiffness", unit="F/x", lower=0.0),)
     shape = (Parameter(name="threshold", unit="x"), Parameter(name="side", unit="1", lower=-1.0, upper=1.0))
+    sharp = True
     sentence = "contact beyond a position"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

@@ -18,6 +18,7 @@ class CoulombFriction(JointEffect):
     name = "coulomb_friction"
     linear = (Parameter(name="level", unit="F", lower=0.0),)
     optional = (WIDTH,)
+    sharp = True
     sentence = "dry friction of constant size"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

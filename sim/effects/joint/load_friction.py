@@ -12,6 +12,7 @@ class LoadFriction(JointEffect):
 
     name = "load_friction"
     linear = (Parameter(name="ratio", unit="1", lower=0.0, upper=10.0),)
+    sharp = True
     sentence = "friction that grows with the load carried"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

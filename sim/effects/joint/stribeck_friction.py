@@ -14,6 +14,7 @@ class StribeckFriction(JointEffect):
     linear = (Parameter(name="level", unit="F", lower=0.0), Parameter(name="excess", unit="F", lower=0.0))
     shape = (Parameter(name="speed", unit="x/s", lower=0.0),)
     contains = frozenset({"coulomb_friction"})
+    sharp = True
     sentence = "dry friction with extra grip near standstill"
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
-from caretree.sim.world import ARM_JOINTS, CAMERAS, BaseVelocity, HandTwist, JointTrajectory, SensorLost
+from caretree.sim.robot.baxter import BAXTER
+from caretree.sim.world import CAMERAS, BaseVelocity, HandTwist, JointTrajectory, SensorLost
 from caretree.sim.world_kind import DIFFICULTIES
 
 SENSES = [one for one in DIFFICULTIES if one not in ("falling_arms", "thinking_time")]
@@ -65,7 +66,7 @@ def test_a_late_image_is_the_one_of_its_time_with_the_pose_of_that_time(easy):
 
 def test_commands_are_off_as_the_senses_are():
     world = BulletWorld(seed=100, kind="easy+encoders+localisation")
-    joints = tuple(f"left_{joint}" for joint in ARM_JOINTS)
+    joints = BAXTER.joints_of("left")
     start = world.observe()
     goal = start.arm_positions[0] + 0.1
     sent = world.send(

@@ -10,8 +10,9 @@ from caretree.sim.bullet.contact import Contact
 from caretree.sim.bullet.contact_law import TUNING
 from caretree.sim.bullet.person import Person
 from caretree.sim.bullet.soft_world import GRAVITY, SoftWorld
-from caretree.sim.robot.capsules import RobotCapsules
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.mechanics.capsules import RobotCapsules
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scene.person_spec import PERSON_PARTS, PERSONS, PersonSpec, arm_part
 from caretree.sim.world import SIDES
 
@@ -28,7 +29,7 @@ class Room:
     def __init__(self, spec: PersonSpec = PERSONS["average"]) -> None:
         self.soft = SoftWorld(STEP)
         self.person = Person(self.soft.client, spec, BED_TOP)
-        self.capsules = RobotCapsules(default_kinematics())
+        self.capsules = RobotCapsules(kinematics_of(BAXTER))
         self.contact = Contact(self.capsules, self.person, 2 * STEP, STEP)
         self.ends = np.full((len(self.capsules.names), 2, 3), FAR)
         self.holds = list(NOBODY)
@@ -273,7 +274,7 @@ def test_it_happens_the_same_way_twice():
 
 
 def test_every_capsule_of_the_robot_belongs_to_a_link_that_can_be_pushed(room):
-    known = {frame.name for frame in default_kinematics().model.frames}
+    known = {frame.name for frame in kinematics_of(BAXTER).model.frames}
     assert set(room.contact._links) <= known
     assert not any("finger" in link for link in room.contact._links)
     assert [room.contact._hand[n].sum() for n in range(len(SIDES))] == [4, 4]  # two palms, two fingers

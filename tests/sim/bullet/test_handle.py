@@ -66,3 +66,28 @@ def test_angles_are_those_of_the_rotation_and_never_jump():
         if abs(np.cos(angles[1])) > 0.5:  # near the pole they turn fast
             assert np.abs(angles - last).max() < 1.0
         last = angles
+
+
+@pytest.mark.parametrize(("free", "felt"), [(True, 0.3 * 2.0), (False, 8.3 * 2.0)])
+def test_what_is_carried_quickly_is_felt_without_the_handle_if_asked(world, free, felt):
+    pose = np.eye(4)
+    pose[:3, 3] = (0.0, 0.0, 1.0)
+    handle, c = Handle(world.client, pose), world.client
+    body = c.createMultiBody(0.3, c.createCollisionShape(c.GEOM_SPHERE, radius=0.03), basePosition=(0.0, 0.0, 1.0))
+    c.changeDynamics(body, -1, linearDamping=0.0, angularDamping=0.0)
+    place = c.getLinkState(handle.body, handle.link, computeForwardKinematics=1)
+    here = c.multiplyTransforms(*c.invertTransform((0, 0, 1), (0, 0, 0, 1)), place[4], place[5])
+    c.createConstraint(
+        *(handle.body, handle.link, body, -1, c.JOINT_FIXED, (0, 0, 0)),
+        *((0, 0, 0), here[0], (0, 0, 0, 1), here[1]),
+    )
+    loads = []
+    for k in range(200):  # 2 m/s^2 along x
+        pose[0, 3] = 0.5 * 2.0 * (0.0025 * k) ** 2
+        handle.follow(pose)
+        world.step()
+        handle.feel(0.0025 if free else None)
+        loads.append(handle.load)
+    mean = np.mean(loads[100:], axis=0)
+    assert mean[0] == pytest.approx(-felt, rel=0.15)
+    assert mean[2] == pytest.approx(-0.3 * GRAVITY, rel=0.05)

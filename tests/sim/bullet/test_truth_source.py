@@ -11,9 +11,10 @@ from caretree.sim.bullet.grip import Grip
 from caretree.sim.bullet.person import Person
 from caretree.sim.bullet.truth_source import TruthSource
 from caretree.sim.bullet_client import direct_client
+from caretree.sim.mechanics.capsules import RobotCapsules
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.body import RobotBody
-from caretree.sim.robot.capsules import RobotCapsules
-from caretree.sim.robot.kinematics import default_kinematics
 from caretree.sim.scene.person_spec import PERSON_PARTS
 from caretree.sim.scene.scene import BED_TOP, draw_scene
 from caretree.sim.world import SIDES
@@ -27,7 +28,7 @@ def source():
     scene, room, client = draw_scene(101), direct_client(), direct_client()
     person = Person(room, scene.person, BED_TOP, scene.bed_xy)
     hook = SimpleNamespace(load=lambda vertices: np.array((0.0, 0.0, -9.81 * scene.gown.mass)))
-    capsules = RobotCapsules(default_kinematics())
+    capsules = RobotCapsules(kinematics_of(BAXTER))
     grips = [Grip(room, side, SimpleNamespace(load=np.zeros(3)), SimpleNamespace(), person) for side in SIDES]
     contact = Contact(capsules, person, 0.005, 0.0025)
     robot = RobotBody(client, np.array((2.0, 0.5, 1.0)))

@@ -142,7 +142,7 @@ def test_a_world_that_does_not_answer_is_given_up():
     def answer_hello():
         line = Connection(listener.accept()[0])
         line.receive()
-        line.send(("", {"name": "Silent", "stepped": False, "room": None}, 0.0))
+        line.send(("", {"name": "Silent", "stepped": False, "robot": "baxter", "room": None}, 0.0))
         lines.append(line)
 
     lines = []

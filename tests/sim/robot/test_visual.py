@@ -1,11 +1,12 @@
 import numpy as np
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import urdf, visual
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 
 
 def test_every_mesh_belongs_to_a_link_and_is_light():
     meshes = visual.visual_meshes()
-    poses = default_kinematics().link_poses(np.zeros(default_kinematics().model.nq))
+    poses = kinematics_of(BAXTER).link_poses(np.zeros(kinematics_of(BAXTER).model.nq))
     assert set(meshes) <= set(poses)
     assert {"base", "torso", "left_wrist", "right_finger_a_link"} <= set(meshes)
     for vertices, faces, rgb in meshes.values():

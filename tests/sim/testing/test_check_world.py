@@ -146,6 +146,21 @@ class GoalArrivesLate(ScriptedWorld):
         super()._advance_to(time)
 
 
+class SaysNoRobot(ScriptedWorld):
+    def __init__(self):
+        super().__init__()
+        self.robot = "baxter"
+
+    def observe(self):
+        raise AssertionError("it is asked for its robot first")
+
+
+class TakesAnyJoint(ScriptedWorld):
+    def send(self, command):
+        known = getattr(command, "joints", self.robot.commanded_joints[:1])
+        return super().send(command) if known[0] in self.robot.commanded_joints else command
+
+
 class LateClock(ScriptedWorld):
     def _advance_to(self, time):
         super()._advance_to(time + 0.5 if time > self.time.time else time)
@@ -268,6 +283,8 @@ class AnyCamera(ScriptedWorld):
             GoalArrivesLate,
             r"stopping right after a command ends it: a trajectory that was stopped at once moved 0\.\d+",
         ),
+        (SaysNoRobot, "it says what its robot is made of: robot is 'baxter', but a RobotModel is asked for"),
+        (TakesAnyJoint, "a joint that the robot does not have is refused: .* 'third_elbow' was taken"),
         (LateClock, r"the clock goes on and never back: a wait came back 0\.50 s too late"),
         (DeadClock, "the clock goes on and never back: the world's clock stands still"),
         (ClockGoesBack, r"a wait for the past is over at once: it turned the clock back by 1\.00 s"),

@@ -4,10 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.capsules import RobotCapsules
+from caretree.sim.mechanics.collision import CollisionChecker
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.capsules import RobotCapsules
-from caretree.sim.robot.collision import CollisionChecker
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.skills.geometry.person_zone import PersonZone
 from caretree.skills.motion.clear_of_person import ClearOfPerson
 from caretree.skills.motion.errors import MotionBlocked
@@ -23,7 +24,7 @@ def zone():
 
 
 def checker(zone, held=None, opening=0.085, arms=AWAY):
-    robot = default_kinematics()
+    robot = kinematics_of(BAXTER)
     begins = SimpleNamespace(
         pose_base_in_map=BASE, arm_positions=arms, head_pan=0.0, gripper_opening=np.full(2, opening)
     )
@@ -31,7 +32,7 @@ def checker(zone, held=None, opening=0.085, arms=AWAY):
 
 
 def hand():
-    return default_kinematics().pose_hand_in_map("left", model.READY[0], BASE)
+    return kinematics_of(BAXTER).pose_hand_in_map("left", model.READY[0], BASE)
 
 
 def test_a_posture_in_the_head_is_not_free_and_says_what_touches(zone):
@@ -58,8 +59,12 @@ def test_a_line_through_the_head_is_blocked_and_another_way_goes_round(zone):
     goal[:3, 3] += (0.0, 0.30, 0.05)
     zone.update((start[:3, 3] + (0.02, 0.15, -0.02))[None], part="head", radius=0.05)
     with pytest.raises(MotionBlocked, match="the person's head"):
-        plan_hand_line(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY))
-    found = plan_reach(default_kinematics(), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY))
+        plan_hand_line(
+            kinematics_of(BAXTER), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY)
+        )
+    found = plan_reach(
+        kinematics_of(BAXTER), {"left": goal}, model.READY, BASE, checker=checker(zone, arms=model.READY)
+    )
     arms, made = model.READY.copy(), checker(zone, arms=model.READY)
     for q in found.positions[:: max(1, len(found.positions) // 40)]:
         arms[0] = q

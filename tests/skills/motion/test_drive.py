@@ -1,16 +1,17 @@
 import numpy as np
 import pytest
-from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.mechanics.kinematics import Kinematics
+from caretree.sim.mechanics.servo import Servo
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.model import READY
-from caretree.sim.robot.servo import Servo
 from caretree.skills.motion.drive import PathFollower
 
 
 @pytest.mark.parametrize("tick", [0.05, 0.1])
 def test_the_follower_arrives_within_two_centimetres_and_two_degrees(tick):
     path = np.array(((1.5, -1.0), (1.3, 1.6), (-1.2, 1.6), (-1.2, 0.3)))
-    servo = Servo(Kinematics(), np.array((1.5, -1.0, np.pi)), READY)
-    follower = PathFollower(path, 0.0)
+    servo = Servo(Kinematics(BAXTER), np.array((1.5, -1.0, np.pi)), READY)
+    follower = PathFollower(path, 0.0, BAXTER.limits)
     now, last = 0.0, np.inf
     for _ in range(round(60 / tick)):
         if follower.done(servo.pose_base_in_map):
@@ -28,7 +29,7 @@ def test_the_follower_arrives_within_two_centimetres_and_two_degrees(tick):
 
 
 def test_the_follower_is_done_only_with_the_right_heading():
-    follower = PathFollower(np.array(((0.0, 0.0), (1.0, 0.0))), np.pi)
+    follower = PathFollower(np.array(((0.0, 0.0), (1.0, 0.0))), np.pi, BAXTER.limits)
     assert not follower.done(np.array((1.0, 0.0, 0.0)))
     assert follower.done(np.array((0.99, 0.01, -np.pi + 0.01)))
     turning = follower.command(np.array((1.0, 0.0, 0.0)))
@@ -36,7 +37,7 @@ def test_the_follower_is_done_only_with_the_right_heading():
 
 
 def test_it_turns_only_near_the_end_when_told_so():
-    follower = PathFollower(np.array(((0.0, 0.0), (2.0, 0.0))), 1.0, turn_from=0.5)
+    follower = PathFollower(np.array(((0.0, 0.0), (2.0, 0.0))), 1.0, BAXTER.limits, turn_from=0.5)
     assert follower.command(np.array((0.0, 0.0, 0.0))).velocity[2] == 0.0
     for x in np.linspace(0.0, 1.7, 18):
         last = follower.command(np.array((x, 0.0, 0.0)))
@@ -44,11 +45,11 @@ def test_it_turns_only_near_the_end_when_told_so():
 
 
 def test_the_velocity_is_that_of_the_base_frame():
-    follower = PathFollower(np.array(((0.0, 0.0), (2.0, 0.0))), np.pi / 2, speed=0.3)
+    follower = PathFollower(np.array(((0.0, 0.0), (2.0, 0.0))), np.pi / 2, BAXTER.limits, speed=0.3)
     velocity = follower.command(np.array((0.0, 0.0, np.pi / 2))).velocity
     np.testing.assert_allclose(velocity, (0.0, -0.3, 0.0), atol=1e-9)
 
 
 def test_a_path_that_is_none_is_refused():
     with pytest.raises(ValueError, match="corner points"):
-        PathFollower(np.zeros(3), 0.0)
+        PathFollower(np.zeros(3), 0.0, BAXTER.limits)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import Kinematics
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import Unreachable
 from caretree.skills.motion.ik import half_turned, hand_pose, solve_ik
@@ -11,7 +12,7 @@ BASE = np.array((1.0, -0.2, np.pi))
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 def angle(a, b):

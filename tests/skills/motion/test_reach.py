@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from caretree.sim.mechanics.collision import CollisionChecker
+from caretree.sim.mechanics.kinematics import Kinematics
 from caretree.sim.robot import model
-from caretree.sim.robot.collision import CollisionChecker
-from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import MotionBlocked, Unreachable
 from caretree.skills.motion.ik import hand_pose
@@ -14,7 +15,7 @@ BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 def hand_path(kinematics, trajectory, side):

@@ -360,6 +360,7 @@ def test_the_guard_passes_on_the_contract_and_nothing_else():
         "limits",
         "clock",
         "room",
+        "robot",
         "update_person",
         "declare_grip",
         "grip",

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.capsules import RobotCapsules
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.capsules import RobotCapsules
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
-from caretree.sim.world import ARM_JOINTS, BaseVelocity, HandTwist, JointTrajectory
+from caretree.sim.world import BaseVelocity, HandTwist, JointTrajectory
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.clearance import CLEARANCE
 from caretree.trees.guard.guard import GuardedWorld
@@ -18,7 +19,7 @@ def beside(offset, part="head"):
     """A guarded robot with ready arms, and a ball that is a part of the person, `offset` (3,) from its left hand."""
     room = scripted_room()
     room.waypoints["start"] = (2.5, -2.5, 0.0)
-    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
     place = world.observe().pose_hand_in_map[0, :3, 3] + offset
     guard.update_person(np.array(((0.0, 0.0, -5.0),)), part="person", radius=0.0)  # the rest is far away
@@ -29,7 +30,7 @@ def beside(offset, part="head"):
 def least_gap(world, place):
     """Between any link and the ball [m]."""
     seen = world.observe()
-    links = RobotCapsules(default_kinematics())
+    links = RobotCapsules(kinematics_of(BAXTER))
     ends = links.ends(seen.pose_base_in_map, seen.arm_positions, seen.head_pan, seen.gripper_opening)
     shares = np.linspace(0.0, 1.0, 50)[:, None, None]
     points = ends[:, 0] + shares * (ends[:, 1] - ends[:, 0])
@@ -79,7 +80,7 @@ def test_a_link_that_is_too_near_already_may_leave_but_come_no_nearer():
 
 
 def trajectory_to(world, positions):
-    joints = tuple(f"left_{joint}" for joint in ARM_JOINTS)
+    joints = BAXTER.joints_of("left")
     start = world.observe().arm_positions[0]
     return JointTrajectory(joints=joints, times=np.array((0.0, 4.0)), positions=np.array((start, positions)))
 
@@ -107,7 +108,7 @@ def test_the_base_carries_no_link_into_the_head():
 def test_the_elbow_counts_as_the_hand_does():
     world, guard, _ = beside(np.zeros(3))
     seen = world.observe()
-    links = RobotCapsules(default_kinematics())
+    links = RobotCapsules(kinematics_of(BAXTER))
     ends = links.ends(seen.pose_base_in_map, seen.arm_positions)
     elbow = ends[links.names.index("left_elbow")].mean(axis=0) + (0.0, 0.25, 0.0)
     guard.update_person(elbow[None], part="head", radius=HEAD_RADIUS)

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import Kinematics
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import HandTwist, JointTrajectory
 from caretree.trees.guard.guard import GuardedWorld
@@ -14,7 +15,7 @@ from caretree.trees.run.task import load_task
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 def test_a_task_runs(kinematics):

@@ -14,7 +14,7 @@ def test_the_scripted_world_comes_with_what_is_seen_there():
     assert senses.hook(frame).stamp == frame.stamp
 
 
-@pytest.mark.parametrize("option", [{"gown": "large"}, {"person": "small"}, {"model": "model.yaml"}])
+@pytest.mark.parametrize("option", [{"gown": "large"}, {"person": "small"}, {"model": "model.yaml"}, {"look": "plain"}])
 def test_the_scripted_world_has_no_cloth_and_no_person(option):
     with pytest.raises(CaretreeError, match=f"--{next(iter(option))} needs the bullet world"):
         make_world("scripted", load_task("wave"), seed=0, **option)
@@ -37,7 +37,7 @@ def test_the_bullet_world_is_as_hard_as_asked_for():
 
 
 def test_an_unknown_world_is_refused_with_those_there_are():
-    with pytest.raises(CaretreeError, match="unknown world 'moon'; there are bullet, scripted, remote, or give"):
+    with pytest.raises(CaretreeError, match="unknown world 'moon'; there are bullet, scripted, remote, ros1, or give"):
         make_world("moon", load_task("wave"), seed=0)
 
 

@@ -28,3 +28,8 @@ def test_distance_counts_from_the_last_turn():
 def test_a_tremble_is_no_reversal():
     q = np.array((0.0, 0.5, 0.499, 0.6))
     assert np.isinf(distance_since_reversal(q, 0.01)).all()
+
+
+def test_the_slow_start_after_a_turn_counts():
+    q = np.array((0.0, 0.5, 1.0, 0.999, 0.996, 0.98, 0.9))
+    assert distance_since_reversal(q, 0.01)[3:] == pytest.approx([0.001, 0.004, 0.02, 0.1])

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import Kinematics
+from caretree.sim.mechanics.servo import PERIOD, Servo
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import Kinematics
-from caretree.sim.robot.servo import PERIOD, Servo
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import BaseVelocity, GripperOpening, HandTwist, JointTrajectory, WorldError
 
 BASE = np.array((0.9, -0.2, np.pi))
@@ -10,7 +11,7 @@ BASE = np.array((0.9, -0.2, np.pi))
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Does the robot hit itself or a box in the room?  Capsules and boxes of `shapes.py`, tested by coal."""
+"""Does the robot hit itself or a box in the room?  Its capsules and boxes, tested by coal."""
 
 from __future__ import annotations
 
@@ -8,11 +8,7 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cm
 
 from ..world import SIDES
 from .kinematics import Kinematics
-from .shapes import Shape, collision_shapes
-
-_LIMB = ("upper_elbow", "lower_elbow", "upper_forearm", "lower_forearm", "wrist", "gripper")
-_DISTAL = ("upper_forearm", "lower_forearm", "wrist", "gripper")  # these can meet the robot's own body
-_FIXED = ("torso", "base", "head")
+from .shape import Shape
 
 
 class CollisionChecker:
@@ -26,6 +22,9 @@ class CollisionChecker:
             enter, for instance the bed [m].
         margin: closest approach that is no collision [m].
         room: more than that asked of a free posture, so that a smooth motion may cut the corners of a free path [m].
+
+    Attributes:
+        robot: whose arms these are.
     """
 
     def __init__(
@@ -36,15 +35,18 @@ class CollisionChecker:
         self._geometry = pin.GeometryModel()
         self._names: list[str] = []
         ids: dict[str, list[int]] = {}
-        for link, shapes in collision_shapes().items():
-            if link.endswith("_link"):  # fingers
+        self.robot = robot = kinematics.robot
+        tested = {link for pair in robot.own_pairs for link in pair}
+        tested |= {f"{side}_{link}" for side in SIDES for link in robot.limbs}
+        for link, shapes in robot.shapes.items():
+            if link not in tested:
                 continue
             frame = model.frames[model.getFrameId(link)]
             ids[link] = [self._add(link, frame.parentJoint, frame.placement, shape) for shape in shapes]
         self._pairs: list[tuple[int, int]] = []
-        for a, b in _own_pairs():
+        for a, b in robot.own_pairs:
             self._pairs += [(m, n) for m in ids[a] for n in ids[b]]
-        limbs = [n for side in SIDES for link in _LIMB for n in ids[f"{side}_{link}"]]
+        limbs = [n for side in SIDES for link in robot.limbs for n in ids[f"{side}_{link}"]]
         for k, (lower, upper) in enumerate(np.zeros((0, 2, 3)) if boxes is None else np.asarray(boxes, float)):
             shape = Shape(kind="box", size=tuple(upper - lower), xyz=tuple((lower + upper) / 2))
             box = self._add(f"box {k}", 0, pin.SE3.Identity(), shape)
@@ -58,7 +60,7 @@ class CollisionChecker:
                 request.security_margin = closest
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
-        """Whether arms (2, 7) at these angles touch nothing, with some room."""
+        """Whether arms (2, n) at these angles touch nothing, with some room."""
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
         return not self._compute(q, self._roomy, stop_at_first=True)
 
@@ -83,16 +85,3 @@ class CollisionChecker:
         entry = pin.GeometryObject(f"{name} {len(self._names)}", joint, placement * local, solid)
         self._names.append(name)
         return self._geometry.addGeometryObject(entry)
-
-
-def _own_pairs() -> list[tuple[str, str]]:
-    pairs = [(f"left_{a}", f"right_{b}") for a in _LIMB for b in _LIMB]
-    for side in SIDES:
-        other = SIDES[1 - SIDES.index(side)]
-        pairs += [(f"{side}_{a}", b) for a in _DISTAL for b in _FIXED]
-        pairs += [(f"{side}_{a}", f"{other}_upper_shoulder") for a in _DISTAL]
-        pairs += [
-            (f"{side}_{a}", f"{side}_{b}") for a in ("wrist", "gripper") for b in ("upper_shoulder", "upper_elbow")
-        ]
-        pairs += [(f"{side}_lower_elbow", b) for b in ("torso", "head")]
-    return pairs

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from caretree.sim.mechanics.collision import CollisionChecker
+from caretree.sim.mechanics.kinematics import Kinematics
 from caretree.sim.robot import model
-from caretree.sim.robot.collision import CollisionChecker
-from caretree.sim.robot.kinematics import Kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 
 BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
@@ -11,7 +12,7 @@ BASE = np.array((1.0, 0.0, np.pi))
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 def test_ready_and_stretched_postures_are_free(kinematics):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.capsules import RobotCapsules
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.capsules import RobotCapsules, link_capsules
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 
 BASE = np.array((0.9, -0.4, np.pi))
@@ -14,11 +15,11 @@ BASE = np.array((0.9, -0.4, np.pi))
 
 @pytest.fixture(scope="module")
 def robot():
-    return RobotCapsules(default_kinematics())
+    return RobotCapsules(kinematics_of(BAXTER))
 
 
 def test_names_tell_side_and_part_and_are_unique():
-    names = [capsule.name for capsule in link_capsules()]
+    names = [capsule.name for capsule in BAXTER.capsules]
     assert len(names) == len(set(names))
     assert {"left_palm_1", "right_finger_2", "left_forearm", "right_wrist_2", "head"} <= set(names)
     assert all(name.startswith(("left_", "right_", "torso_", "head")) for name in names)
@@ -32,13 +33,13 @@ def test_fingers_end_at_the_fingertips_and_stand_as_far_apart_as_the_gripper_is_
         tips = ends[[one, two], 1]
         radius = robot.radii[one]
         assert np.linalg.norm(tips[0] - tips[1]) == pytest.approx(opening[n] + 2 * radius, abs=1e-6)
-        hand = default_kinematics().pose_hand_in_map(side, model.READY[n], BASE)
+        hand = kinematics_of(BAXTER).pose_hand_in_map(side, model.READY[n], BASE)
         assert (tips.mean(axis=0) + radius * hand[:3, 2]) == pytest.approx(hand[:3, 3], abs=1e-6)
 
 
 def test_the_palm_fills_its_box(robot):
     across, closing, height = model.PALM_SIZE
-    for capsule in link_capsules():
+    for capsule in BAXTER.capsules:
         if "palm" in capsule.name:
             low, high = capsule.ends.min(axis=0) - capsule.radius, capsule.ends.max(axis=0) + capsule.radius
             assert low == pytest.approx((-across / 2, -closing / 2, low[2]))
@@ -57,7 +58,7 @@ def test_capsules_go_along_with_the_base(robot):
 
 
 def test_asking_twice_for_one_posture_gives_two_arrays():
-    capsules = RobotCapsules(default_kinematics())
+    capsules = RobotCapsules(kinematics_of(BAXTER))
     base, arms = np.array((0.3, -0.2, 0.5)), np.full((2, 7), 0.1)
     first = capsules.ends(base, arms)
     kept = first.copy()

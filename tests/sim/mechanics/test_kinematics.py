@@ -1,13 +1,17 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import Kinematics, kinematics_of
+from caretree.sim.mechanics.planar import planar_pose
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import Kinematics, planar_pose
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import CAMERAS, SIDES
 
 
 @pytest.fixture(scope="module")
 def kinematics():
-    return Kinematics()
+    return Kinematics(BAXTER)
 
 
 def random_arms(kinematics, count, seed=0):
@@ -110,3 +114,10 @@ def test_the_margin_is_that_of_the_joint_nearest_to_its_limit(kinematics):
     assert limits.margin(q) == pytest.approx(0.12)
     q[5] = limits.lower[5] - 0.01
     assert limits.margin(q) == pytest.approx(-0.01)
+
+
+def test_there_is_one_for_each_robot():
+    assert kinematics_of(BAXTER) is kinematics_of(BAXTER)
+    other = replace(BAXTER, name="other")
+    assert kinematics_of(other) is not kinematics_of(BAXTER)
+    assert kinematics_of(other).robot is other

@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
 from ..world import SIDES, HandTwist, Side
-from . import model
-from .kinematics import Kinematics, planar_pose
+from .kinematics import Kinematics
+from .planar import planar_pose
 
 _GAIN = 8.0  # of the position feedback that takes out the drift of integrating joint rates [1/s]
 _MAX_LAG = np.array((0.01, 0.06))  # the pose to follow never runs further ahead than this [m, rad]
@@ -20,7 +20,7 @@ _TURN = 0.15  # what an error in turning counts once joints at their limits leav
 class TwistTracker:
     """Follows a `HandTwist` with one arm; until it expires the hand's path holds in the map even while the base moves.
 
-    The twist is ramped at `model.HAND_ACCELERATION`, integrated into a hand pose, and that pose is followed
+    The twist is ramped at the robot's `hand_acceleration`, integrated into a hand pose, and that pose is followed
     with feedback, so a purely linear twist does not turn the hand.
     """
 
@@ -28,7 +28,8 @@ class TwistTracker:
         self._kinematics = kinematics
         self._side: Side = side
         self._limits = kinematics.limits[side]
-        self._ready = model.READY[SIDES.index(side)]
+        self._ready = kinematics.robot.ready[SIDES.index(side)]
+        self._moved = kinematics.robot.limits
         self._wanted = np.zeros(6)
         self._twist = np.zeros(6)
         self._until = -np.inf
@@ -39,7 +40,7 @@ class TwistTracker:
     def start(self, command: HandTwist, time: float) -> HandTwist:
         """Take a new twist; returns it clipped to the hand's speed limits."""
         wanted = np.array(command.twist_in_map, float)
-        for part, limit in zip((slice(0, 3), slice(3, 6)), model.HAND_VELOCITY, strict=True):
+        for part, limit in zip((slice(0, 3), slice(3, 6)), self._moved.hand_velocity, strict=True):
             wanted[part] *= min(1.0, limit / max(float(np.linalg.norm(wanted[part])), 1e-9))
         if self._pose is None:
             self._time = time
@@ -54,7 +55,7 @@ class TwistTracker:
     def rates(
         self, time: float, q: np.ndarray, dq: np.ndarray, pose_base_in_map: np.ndarray, twist_base: np.ndarray
     ) -> np.ndarray | None:
-        """Joint rates (7,) [rad/s] for the period that ends at `time`, or None when no twist is active."""
+        """Joint rates (n,) [rad/s] for the period that ends at `time`, or None when no twist is active."""
         if not self._active:
             return None
         kinematics, dt = self._kinematics, time - self._time
@@ -68,7 +69,7 @@ class TwistTracker:
             self._twist[:3] = pose[:3, :3] @ (jacobian[:3] @ dq)  # start from what the hand is doing
             self._twist[3:] = pose[:3, :3] @ (jacobian[3:] @ dq)
         wanted = self._wanted if time <= self._until + 1e-9 else np.zeros(6)
-        for part, limit in zip((slice(0, 3), slice(3, 6)), model.HAND_ACCELERATION, strict=True):
+        for part, limit in zip((slice(0, 3), slice(3, 6)), self._moved.hand_acceleration, strict=True):
             change = wanted[part] - self._twist[part]
             self._twist[part] += change * min(1.0, limit * dt / max(float(np.linalg.norm(change)), 1e-12))
         if time > self._until and np.abs(self._twist).max() < 1e-6:
@@ -87,8 +88,8 @@ class TwistTracker:
         low = np.maximum(-limits.velocity, (limits.lower - q) * room)
         high = np.minimum(limits.velocity, (limits.upper - q) * room)
         centring = _CENTRING * (self._ready - q)
-        free = np.ones(7, bool)
-        rates = np.zeros(7)
+        free = np.ones(len(q), bool)
+        rates = np.zeros(len(q))
         for _ in range(3):
             counts = np.where(np.arange(6) < 3, 1.0, 1.0 if free.sum() > 5 else _TURN)
             Jf = J[:, free] * counts[:, None]

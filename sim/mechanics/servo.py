@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..world import SIDES, BaseVelocity, Command, GripperOpening, HandTwist, JointTrajectory, WorldError
-from . import model
+from ..world import SIDES, BaseVelocity, Command, GripperOpening, HandTwist, JointTrajectory, Side, WorldError
 from .kinematics import Kinematics
 from .twist import TwistTracker
 
@@ -28,11 +27,11 @@ class _Motion:
 
 
 class Servo:
-    """Targets of the 14 arm joints, the head, the base and the grippers.
+    """Targets of the 2 n arm joints, the head, the base and the grippers.
 
     Attributes:
-        positions: (15,) joint targets, order `model.COMMANDED_JOINTS` [rad].
-        velocities: (15,) their rates [rad/s].
+        positions: (2 n + 1,) joint targets, order `robot.commanded_joints` [rad].
+        velocities: (2 n + 1,) their rates [rad/s].
         pose_base_in_map: (3,) base target [m, m, rad].
         twist_base: (3,) its rate in the base frame [m/s, m/s, rad/s].
         gripper_opening: (2,) wanted distance between the fingertips [m].
@@ -47,22 +46,29 @@ class Servo:
         head_pan: float = 0.0,
         time: float = 0.0,
     ) -> None:
+        self._robot = robot = kinematics.robot
+        self._moved = robot.limits
+        self._dof = robot.dof
+        count = 2 * robot.dof + 1
         limits = [kinematics.limits[side] for side in SIDES]
         low, high = kinematics.head_range
         self._lower = np.concatenate([*(limit.lower for limit in limits), (low,)])
         self._upper = np.concatenate([*(limit.upper for limit in limits), (high,)])
-        self._speed = np.concatenate([*(limit.velocity for limit in limits), (model.HEAD_VELOCITY,)])
-        self._acceleration = np.concatenate([*(limit.acceleration for limit in limits), (model.HEAD_ACCELERATION,)])
+        self._speed = np.concatenate([*(limit.velocity for limit in limits), (robot.limits.head_velocity,)])
+        self._acceleration = np.concatenate(
+            [*(limit.acceleration for limit in limits), (robot.limits.head_acceleration,)]
+        )
         self.positions = np.clip(np.append(np.ravel(arm_positions), head_pan), self._lower, self._upper)
-        self.velocities = np.zeros(15)
+        self.velocities = np.zeros(count)
         self.pose_base_in_map = np.array(pose_base_in_map, float)
         self.twist_base = np.zeros(3)
-        self.gripper_opening = np.full(2, model.GRIPPER_STROKE)
+        self.gripper_opening = np.full(2, robot.gripper.stroke)
         self.gripper_force_limit = np.full(2, 30.0)
         self._time = time
-        self._owner: list[_Motion | None] = [None] * 15
-        self._column = np.zeros(15, int)  # where a joint stands in its motion's samples
+        self._owner: list[_Motion | None] = [None] * count
+        self._column = np.zeros(count, int)  # where a joint stands in its motion's samples
         self._twists = {side: TwistTracker(kinematics, side) for side in SIDES}
+        self._rates: dict[Side, tuple[np.ndarray, float]] = {}  # of an arm's joints, and until when
         self._base_wanted = np.zeros(3)
         self._base_until = -np.inf
 
@@ -88,21 +94,22 @@ class Servo:
             return self._start_trajectory(command)
         if isinstance(command, HandTwist):
             side = SIDES.index(command.side)
+            self._rates.pop(command.side, None)
             sent = self._twists[command.side].start(command, self._time)
-            for joint in range(7 * side, 7 * side + 7):
+            for joint in range(self._dof * side, self._dof * side + self._dof):
                 self._owner[joint] = None
             return sent
         if isinstance(command, BaseVelocity):
             wanted = np.array(command.velocity, float)
             speed = float(np.hypot(*wanted[:2]))
-            wanted[:2] *= min(1.0, model.BASE_VELOCITY[0] / max(speed, 1e-9))
-            wanted[2] = np.clip(wanted[2], -model.BASE_VELOCITY[1], model.BASE_VELOCITY[1])
+            wanted[:2] *= min(1.0, self._moved.base_velocity[0] / max(speed, 1e-9))
+            wanted[2] = np.clip(wanted[2], -self._moved.base_velocity[1], self._moved.base_velocity[1])
             self._base_wanted, self._base_until = wanted, self._time + command.duration
             return BaseVelocity(velocity=wanted.copy(), duration=command.duration)
         if isinstance(command, GripperOpening):
             n = SIDES.index(command.side)
-            self.gripper_opening[n] = np.clip(command.opening, 0.0, model.GRIPPER_STROKE)
-            self.gripper_force_limit[n] = np.clip(command.force_limit, *model.GRIPPER_FORCE)
+            self.gripper_opening[n] = np.clip(command.opening, 0.0, self._robot.gripper.stroke)
+            self.gripper_force_limit[n] = np.clip(command.force_limit, *self._robot.gripper.force)
             return GripperOpening(
                 side=command.side,
                 opening=float(self.gripper_opening[n]),
@@ -113,16 +120,26 @@ class Servo:
             "BaseVelocity and GripperOpening"
         )
 
+    def move_joints(self, side: Side, velocities: np.ndarray, duration: float) -> None:
+        """Move an arm's joints [rad/s] for `duration` [s], replacing what the arm was doing."""
+        self._rates[side] = np.array(velocities, float), self._time + duration
+        self._twists[side].cancel()
+        first = self._dof * SIDES.index(side)
+        for joint in range(first, first + self._dof):
+            self._owner[joint] = None
+
     def stop(self) -> None:
         """End every motion: all targets brake at their acceleration limits.  The grippers keep their opening."""
-        self._owner = [None] * 15
+        self._owner = [None] * len(self._owner)
         for twist in self._twists.values():
             twist.cancel()
+        self._rates.clear()
         self._base_until = -np.inf
 
     def keep_near(self, arm_positions: np.ndarray) -> None:
-        """Let the targets of the arms run ahead of the measured joints (14,) [rad] by no more than `MAX_LEAD`."""
-        self.positions[:14] = np.clip(self.positions[:14], arm_positions - MAX_LEAD, arm_positions + MAX_LEAD)
+        """Let the targets of the arms run ahead of the measured joints (2 n,) [rad] by no more than `MAX_LEAD`."""
+        arms = self.positions[:-1]
+        self.positions[:-1] = np.clip(arms, arm_positions - MAX_LEAD, arm_positions + MAX_LEAD)
 
     def advance(self, time: float) -> None:
         """Move the targets on to `time` [s]; nothing happens when less than `PERIOD` has passed."""
@@ -135,8 +152,8 @@ class Servo:
         wanted = self._base_wanted if self._time <= self._base_until + 1e-9 else np.zeros(3)
         change = wanted - self.twist_base
         length = float(np.hypot(*change[:2]))
-        change[:2] *= min(1.0, model.BASE_ACCELERATION[0] * PERIOD / max(length, 1e-12))
-        turn = model.BASE_ACCELERATION[1] * PERIOD
+        change[:2] *= min(1.0, self._moved.base_acceleration[0] * PERIOD / max(length, 1e-12))
+        turn = self._moved.base_acceleration[1] * PERIOD
         change[2] = min(max(change[2], -turn), turn)
         self.twist_base = self.twist_base + change
         yaw = self.pose_base_in_map[2] + 0.5 * self.twist_base[2] * PERIOD
@@ -156,12 +173,17 @@ class Servo:
             if n >= last and abs(wanted[joint]) < 1e-6:
                 self._owner[joint], wanted[joint] = None, 0.0
         for n, side in enumerate(SIDES):
-            part = slice(7 * n, 7 * n + 7)
+            part = slice(self._dof * n, self._dof * (n + 1))
             rates = self._twists[side].rates(
                 self._time, self.positions[part], self.velocities[part], self.pose_base_in_map, self.twist_base
             )
             if rates is not None:
                 wanted[part] = rates
+            driven = self._rates.get(side)
+            if driven is not None and self._time <= driven[1] + 1e-9:
+                wanted[part] = self.velocities[part] + np.clip(
+                    driven[0] - self.velocities[part], -limit[part], limit[part]
+                )
         wanted = np.clip(wanted, -self._speed, self._speed)
         target = np.clip(self.positions + wanted * PERIOD, self._lower, self._upper)
         self.velocities = (target - self.positions) / PERIOD
@@ -169,7 +191,9 @@ class Servo:
 
     def _start_trajectory(self, command: JointTrajectory) -> JointTrajectory:
         times, positions = np.asarray(command.times, float), np.asarray(command.positions, float)
-        index = np.array([model.COMMANDED_JOINTS.index(name) for name in command.joints])
+        command.check_joints(self._robot)
+        known = self._robot.commanded_joints
+        index = np.array([known.index(name) for name in command.joints])
         positions = np.clip(positions, self._lower[index], self._upper[index])
         motion = _interpolate(times, positions)
         peak = float((np.abs(np.diff(motion, axis=0)) / PERIOD / self._speed[index]).max(initial=0.0))
@@ -180,8 +204,9 @@ class Servo:
         for column, joint in enumerate(index):
             self._owner[joint] = entry
             self._column[joint] = column
-            if joint < 14:
-                self._twists[SIDES[joint // 7]].cancel()
+            if joint < 2 * self._dof:
+                self._twists[SIDES[joint // self._dof]].cancel()
+                self._rates.pop(SIDES[joint // self._dof], None)
         return JointTrajectory(joints=command.joints, times=times, positions=positions)
 
 

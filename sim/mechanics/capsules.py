@@ -1,0 +1,88 @@
+"""The robot as capsules, one or two for each link above the base: for distances to the person, and for contact."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+from ..compiled import fma, njit
+from .kinematics import Kinematics
+
+
+class RobotCapsules:
+    """Where the capsules are for given joint angles.
+
+    Args:
+        kinematics: the robot's model.
+
+    Attributes:
+        capsules: in the order of the rows.
+        names: (r,) of them.
+        radii: (r,) [m].
+    """
+
+    def __init__(self, kinematics: Kinematics) -> None:
+        self.capsules = kinematics.robot.capsules
+        self.names = tuple(capsule.name for capsule in self.capsules)
+        self.radii = np.array([capsule.radius for capsule in self.capsules])
+        self._kinematics, model_ = kinematics, kinematics.model
+        self._asked, self._ends = b"", np.zeros((0, 2, 3))  # for one posture the guard and the skills ask in turn
+        frames = [model_.frames[model_.getFrameId(capsule.link)] for capsule in self.capsules]
+        self._joints = np.array([frame.parentJoint for frame in frames])
+        self._local = np.stack(
+            [
+                capsule.ends @ frame.placement.rotation.T + frame.placement.translation
+                for capsule, frame in zip(self.capsules, frames, strict=True)
+            ]
+        )  # (r, 2, 3) in the frame of the joint that moves the link
+        self._places = _places(kinematics.data)
+
+    def ends(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """(r, 2, 3) ends of every capsule's axis in the map [m].
+
+        Args:
+            pose_base_in_map: (3,) where the base stands [m, m, rad].
+            arm_positions: (2, n) [rad].
+            head_pan: [rad].
+            gripper_opening: (2,) [m]; closed when omitted.
+        """
+        robot = self._kinematics
+        q = robot.configuration(pose_base_in_map, arm_positions, head_pan, gripper_opening)
+        if (asked := q.tobytes()) != self._asked:
+            pin.forwardKinematics(robot.model, robot.data, q)
+            self._ends = _placed(self._local, self._joints, self._places)
+            self._asked = asked
+        return self._ends.copy()
+
+    def rows(self, ends: np.ndarray) -> np.ndarray:
+        """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""
+        return np.column_stack((ends.reshape(-1, 6), self.radii))
+
+
+def _places(data: pin.Data) -> np.ndarray:
+    """(joints, 12) where pinocchio keeps every joint's pose in the map: rotation by columns, then place.
+
+    A view of its memory, which lives as long as `data` does: asking for the poses one by one would take ten times
+    as long as computing them.
+    """
+    first = data.oMi[0].rotation[:1, 0]
+    return np.lib.stride_tricks.as_strided(first, (len(data.oMi), 12), (12 * first.itemsize, first.itemsize))
+
+
+@njit()
+def _placed(local: np.ndarray, joints: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Points (r, 2, 3) in the frames of `joints` (r,), in the map."""
+    points = np.empty_like(local)
+    for n in range(len(local)):
+        place = places[joints[n]]
+        for end in range(2):
+            x, y, z = local[n, end, 0], local[n, end, 1], local[n, end, 2]
+            for k in range(3):
+                points[n, end, k] = fma(z, place[6 + k], fma(y, place[3 + k], x * place[k])) + place[9 + k]
+    return points

@@ -1,0 +1,24 @@
+"""Poses of a base on the floor."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import njit
+
+
+def planar_pose(pose_base_in_map: np.ndarray) -> np.ndarray:
+    """Transform (4, 4) of a base pose (x [m], y [m], yaw [rad])."""
+    x, y, yaw = pose_base_in_map
+    return _planar_pose(float(x), float(y), float(yaw))
+
+
+@njit()
+def _planar_pose(x: float, y: float, yaw: float) -> np.ndarray:
+    pose = np.eye(4)
+    c, s = math.cos(yaw), math.sin(yaw)
+    pose[0, 0], pose[0, 1], pose[0, 3] = c, -s, x
+    pose[1, 0], pose[1, 1], pose[1, 3] = s, c, y
+    return pose

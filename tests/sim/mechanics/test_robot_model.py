@@ -1,0 +1,51 @@
+"""A robot that skills cannot plan with is refused in one sentence."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from caretree.sim.mechanics.robot_model import MotionLimits, RobotError, RobotModel
+from caretree.sim.robot.baxter import BAXTER
+
+
+def changed(**values) -> RobotModel:
+    return replace(BAXTER, **values)
+
+
+def test_a_robot_with_one_arm_is_refused_in_one_sentence():
+    with pytest.raises(RobotError) as refused:
+        changed(name="ur5", arms=("right",))
+    assert str(refused.value) == "the robot ur5 has one arm, but the skills move two, left and right"
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"arms": ("a", "b")}, "the arms of baxter are a, b, but left, right is asked for"),
+        ({"arm_joints": ("a", "b")}, "an arm of baxter has 2 joints"),
+        ({"arm_joints": ("a",) * 7}, "six or more different ones"),
+        ({"ready": np.zeros((2, 6))}, r"the posture ready of baxter has shape \(2, 6\), but \(2, 7\)"),
+        ({"held_up": np.zeros(7)}, r"the posture held_up of baxter has shape \(7,\)"),
+        ({"limits": replace(BAXTER.limits, arm_acceleration=np.ones(6))}, r"has shape \(6,\), but \(7,\)"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(values, said):
+    with pytest.raises(RobotError, match=said):
+        changed(**values)
+
+
+@pytest.mark.parametrize("name", [each.name for each in fields(MotionLimits) if each.name != "sources"])
+def test_every_limit_has_a_source_and_is_more_than_zero(name):
+    sources = {key: text for key, text in BAXTER.limits.sources.items() if key != name}
+    with pytest.raises(RobotError, match=f"{name} has no source"):
+        replace(BAXTER.limits, sources=sources)
+    with pytest.raises(RobotError, match="more than 0"):
+        replace(BAXTER.limits, **{name: 0.0 * np.asarray(getattr(BAXTER.limits, name))})
+
+
+def test_joints_are_told_by_side_and_place():
+    assert BAXTER.dof == 7
+    assert BAXTER.joints_of("right")[-1] == "right_w2"
+    assert len(BAXTER.commanded_joints) == 15
+    assert BAXTER.place_of("right_s1") == (1, 1)
+    assert BAXTER.place_of(BAXTER.head_joint) is None
