@@ -197,10 +197,15 @@ class ClassicalSenses(Senses):
         return chest_front(frame, self._bed, shoulders_in_map, self._tuning.chest_front)
 
     def collar_middle(
-        self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0, flat: Side | None = None
+        self,
+        frame: Frame,
+        *,
+        near_in_map: np.ndarray,
+        away: tuple[float, float] = (0.0, 0.0),
+        flat: Side | None = None,
     ) -> GraspPoint:
         """Half the neck binding's length from its ends."""
-        return collar_middle(frame, near_in_map, below, flat, self._tuning.collar)
+        return collar_middle(frame, near_in_map, away, flat, self._tuning.collar)
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""

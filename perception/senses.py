@@ -339,14 +339,19 @@ class Senses(ABC):
 
     @abstractmethod
     def collar_middle(
-        self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0, flat: Side | None = None
+        self,
+        frame: Frame,
+        *,
+        near_in_map: np.ndarray,
+        away: tuple[float, float] = (0.0, 0.0),
+        flat: Side | None = None,
     ) -> GraspPoint:
         """The middle of a worn gown's neckline.
 
         Args:
             frame: a view from above the person.
             near_in_map: (3,) middle between the shoulders [m].
-            below: how far footward of the middle the cloth is to be grasped [m].
+            away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
             flat: side of the person on which the neckline lies flat, if it is known: what hides is on the other.
 
         Returns:

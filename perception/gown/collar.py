@@ -179,7 +179,7 @@ def _corner_score(frame: Frame, end: np.ndarray, tip: np.ndarray, armhole: np.nd
 def collar_middle(
     frame: Frame,
     near_in_map: np.ndarray,
-    below: float = 0.0,
+    away: tuple[float, float] = (0.0, 0.0),
     flat: Side | None = None,
     tuning: CollarTuning = DEFAULT,
 ) -> GraspPoint:
@@ -192,7 +192,7 @@ def collar_middle(
     Args:
         frame: a view from above the person.
         near_in_map: (3,) middle between the shoulders [m].
-        below: how far footward of the middle the cloth is to be grasped, y in the map being towards the feet [m].
+        away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
         flat: side of the person on which the tape lies flat, if it is known.
         tuning: numbers of the search.
 
@@ -208,7 +208,7 @@ def collar_middle(
         raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding on the person")
     if flat is not None:
         half_way, shown = _half_way(points, flat, tuning)
-        return _grasp(frame, points, half_way, shown, below, tuning)
+        return _grasp(frame, points, half_way, shown, away, tuning)
     points = points[clusters(points, tuning.worn_step) == 0]
     tip = int(np.argmax(geodesic(points, 0, tuning.worn_step)))
     along = geodesic(points, tip, tuning.worn_step)
@@ -219,21 +219,26 @@ def collar_middle(
     hidden = max(0.0, GOWN.neckline_length - shown)
     place = float(np.clip(GOWN.neckline_length / 2 - hidden * doubt[0] / doubt.sum(), 0.0, shown))
     strip = points[np.argsort(np.abs(along - place))[: tuning.min_points]]
-    return _grasp(frame, points, np.median(strip, axis=0), shown, below, tuning)
+    return _grasp(frame, points, np.median(strip, axis=0), shown, away, tuning)
 
 
 def _grasp(
-    frame: Frame, points: np.ndarray, position: np.ndarray, shown: float, below: float, tuning: CollarTuning
+    frame: Frame,
+    points: np.ndarray,
+    position: np.ndarray,
+    shown: float,
+    away: tuple[float, float],
+    tuning: CollarTuning,
 ) -> GraspPoint:
-    """At a position (3,) on the tape, of which points (n, 3) and a length `shown` [m] show, or `below` it [m]."""
-    away = np.linalg.norm(points - position, axis=1)
-    strip = points[away < max(tuning.grasp_length, float(np.sort(away)[tuning.min_points - 1]))]
+    """At a position (3,) on the tape, of which points (n, 3) and a length `shown` [m] show, or `away` from it [m]."""
+    distance = np.linalg.norm(points - position, axis=1)
+    strip = points[distance < max(tuning.grasp_length, float(np.sort(distance)[tuning.min_points - 1]))]
     along = main_direction(strip)
-    if below > 0.0:
+    if any(away):
         cloth = points_in_map(frame)[np.isin(gown_labels(frame), GOWN_SURFACES) & (frame.depth > 0)]
-        from_grasp = np.linalg.norm((cloth - position - (0.0, below, 0.0))[:, :2], axis=1)
+        from_grasp = np.linalg.norm((cloth - position - (*away, 0.0))[:, :2], axis=1)
         if np.count_nonzero(from_grasp < tuning.grasp_length / 3) < tuning.min_points:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, "cloth below the collar")
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "cloth beside the collar")
         position = np.median(cloth[from_grasp < tuning.grasp_length / 3], axis=0)
         strip = cloth[from_grasp < tuning.grasp_length]
     normal = surface_normal(strip, frame.pose_camera_in_map[:3, 3])

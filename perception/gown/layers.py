@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.gripper import GRIPPER
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.gripper import GRIPPER
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Estimate, LayerCount

@@ -51,11 +51,11 @@ def test_cloth_below_the_middle_is_grasped_where_it_lies(scenes):
     scene = scenes.lying(1)
     middle = corner_places(scene).mean(axis=0)
     frame = scene.frame()
-    at, below = collar_middle(frame, middle), collar_middle(frame, middle, below=0.08)
+    at, below = collar_middle(frame, middle), collar_middle(frame, middle, away=(0.0, 0.08))
     assert (below.position_in_map - at.position_in_map)[:2] == pytest.approx((0.0, 0.08), abs=0.015)
     assert scene.distance_to_cloth(below.position_in_map) < 0.015
     with pytest.raises(PerceptionFailure):
-        collar_middle(frame, middle, below=2.0)  # [m]: beyond the hem
+        collar_middle(frame, middle, away=(0.0, 2.0))  # [m]: beyond the hem
 
 
 def tape(bend, end=0.36):

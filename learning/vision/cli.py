@@ -1,0 +1,118 @@
+"""`caretree learn vision states|data|train|evaluate`; each goes on where it was interrupted."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ...sim.command_line import CommandParser, seed, whole_number
+from ...sim.errors import CaretreeError
+from ...sim.scene.gown import HELD_OUT_GOWNS
+
+KEPT_SEEDS = 9000  # from here on no seed is for training or trying
+
+
+def _seeds(text: str) -> range:
+    first, dash, last = text.partition("-")
+    try:
+        found = range(int(first), int(last if dash else first) + 1)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no span of seeds; for example 110-139") from None
+    if not found or found[0] < 0 or found[-1] >= KEPT_SEEDS:
+        raise argparse.ArgumentTypeError(f"{text!r}: seeds are 0 to {KEPT_SEEDS - 1}, later ones are kept for tests")
+    return found
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = CommandParser(prog="caretree learn vision")
+    sub = top.add_subparsers(dest="command", required=True)
+    states = sub.add_parser("states", help="states of the room to take pictures of")
+    states.add_argument("folder", metavar="DIR", help="made when it is not there")
+    states.add_argument("--seeds", type=_seeds, default=_seeds("110-139"), metavar="A-B", help="default 110-139")
+    states.add_argument(
+        "--run", type=Path, action="append", default=[], metavar="DIR", help="a recorded run; may be repeated"
+    )
+    states.add_argument("--no-held-out", action="store_true", help="leave out the cuts that only tests see")
+    data = sub.add_parser("data", help="labelled pictures of states, to train on")
+    data.add_argument("folder", metavar="DIR", help="made when it is not there")
+    data.add_argument("--states", required=True, metavar="DIR", help="folder of `states`")
+    data.add_argument("--pictures", type=whole_number, default=3000, metavar="N", help="default 3000")
+    data.add_argument("--seed", type=seed, default=100, metavar="N", help="default 100")
+    train = sub.add_parser("train", help="train the network and write it as ONNX")
+    train.add_argument("data", metavar="DATA", help="folder of `data`")
+    train.add_argument("--out", required=True, metavar="DIR", help="checkpoint, record and seeing.onnx")
+    train.add_argument("--steps", type=whole_number, default=6000, metavar="N", help="of 8 pictures (default 6000)")
+    train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
+    train.add_argument("--start", type=Path, metavar="DIR", help="begin with the weights of another training")
+    test = sub.add_parser("evaluate", help="table of what is seen, beside the classical perception")
+    test.add_argument("states", metavar="STATES", help="folder of `states`")
+    test.add_argument("--network", type=Path, metavar="FILE", help="instead of the one in the package")
+    test.add_argument("--pictures", type=whole_number, default=40, metavar="N", help="of each sort (default 40)")
+    test.add_argument("--seed", type=seed, default=150, metavar="N", help="default 150")
+    test.add_argument("--out", type=Path, metavar="FILE", help="also write the table, Markdown, and beside it JSON")
+    return top
+
+
+def main(argv: list[str], seers: Callable[[Path | None], Mapping[str, Any]] | None = None) -> int:
+    """Run one command.
+
+    Raises:
+        CaretreeError: the input cannot be used.
+    """
+    options = parser().parse_args(argv)
+    if options.command == "states":
+        from .states import make_states
+
+        gowns = () if options.no_held_out else tuple(HELD_OUT_GOWNS)
+        print(make_states(options.folder, options.seeds, options.run, gowns, _say))
+    elif options.command == "data":
+        from .dataset import DatasetSpec, make_dataset
+        from .states import read_states
+
+        states, digest = read_states(options.states)
+        spec = DatasetSpec(part="train", pictures=options.pictures, seed=options.seed)
+        print(make_dataset(options.folder, states, digest, spec, _say))
+    elif options.command == "train":
+        _train(options)
+    else:
+        _evaluate(options, seers)
+    return 0
+
+
+def _train(options: argparse.Namespace) -> None:
+    try:
+        import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+    except ImportError as error:
+        raise CaretreeError("`caretree learn vision train` needs PyTorch: pip install 'caretree[learn]'") from error
+    from .train import train
+
+    torch.set_num_threads(1)  # as the other trainings: bit by bit the same on any number of cores
+    out, data = Path(options.out), Path(options.data)
+    print(train(data, out, steps=options.steps, seed=options.seed, say=_say, start=options.start))
+
+
+def _evaluate(options: argparse.Namespace, seers: Callable[[Path | None], Mapping[str, Any]] | None) -> None:
+    from .evaluate import evaluate
+    from .states import read_states
+    from .table import rows, table
+
+    if seers is None:
+        raise CaretreeError("who sees is given by `caretree learn vision evaluate`; this was called without")
+    states, digest = read_states(options.states)
+    tallies = evaluate(states, seers(options.network), pictures=options.pictures, seed=options.seed, say=_say)
+    found = rows(tallies)
+    about = f"{options.pictures} pictures of each sort, seed {options.seed}, states {digest}"
+    text = table(found, about)
+    print(text)
+    if options.out:
+        options.out.write_text(text + "\n", encoding="utf-8")
+        options.out.with_suffix(".json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

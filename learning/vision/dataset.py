@@ -1,0 +1,184 @@
+"""A folder of labelled pictures at the network's resolution: shards and `dataset.json`.
+
+With the same seed and states the same bytes; what is missing is made, what is there is kept.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...sim.errors import CaretreeError
+from .pictures import PARTS, Picture, chosen_states, draw_picture
+from .states import RoomState
+
+FORMAT = "caretree-seeing-1"
+INDEX = "dataset.json"
+SHARD = 50  # pictures
+SIZE = (256, 192)  # (width, height) of what the network sees [px]
+CELL = 4  # of the maps of places and key points [px]
+SHEET_UNIT = 1e-4  # of a place on the sheet, as it is kept [m]
+NO_PLACE = -32768
+
+
+@dataclass(frozen=True, kw_only=True)
+class DatasetSpec:
+    """What a dataset holds; with the same spec and the same states, the same bytes.
+
+    Attributes:
+        part: one of `PARTS`.
+        pictures: how many.
+        seed: of what is drawn.
+    """
+
+    part: str
+    pictures: int
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Reject what cannot be made.
+
+        Raises:
+            CaretreeError: an unknown part, no pictures, a negative seed.
+        """
+        if self.part not in PARTS:
+            raise CaretreeError(f"unknown part of the pictures '{self.part}'; there are {', '.join(PARTS)}")
+        if self.pictures < 1 or self.seed < 0:
+            raise CaretreeError(f"{self.pictures} pictures with seed {self.seed}: counts start at 1, seeds at 0")
+
+
+def seen(
+    rgb: np.ndarray, depth: np.ndarray, pose_camera_in_map: np.ndarray, intrinsics: tuple[float, ...]
+) -> np.ndarray:
+    """What the network is given of a picture.
+
+    Args:
+        rgb: (H, W, 3) uint8.
+        depth: (H, W) [m], 0 where there is none.
+        pose_camera_in_map: (4, 4), optical frame.
+        intrinsics: (fx, fy, cx, cy) [px].
+
+    Returns:
+        (5, 192, 256) float32: red, green, blue (0-255), depth [m], height over the floor [m]; the last two are 0 where
+        there is no depth.
+    """
+    import cv2
+
+    width, height = SIZE
+    fx, fy, cx, cy = intrinsics
+    small = cv2.resize(rgb, SIZE, interpolation=cv2.INTER_AREA)
+    rows = ((np.arange(height) + 0.5) * depth.shape[0] / height).astype(int)
+    columns = ((np.arange(width) + 0.5) * depth.shape[1] / width).astype(int)
+    z = depth[np.ix_(rows, columns)]
+    up = pose_camera_in_map[2, :3]
+    level = (columns - cx) / fx * up[0] + ((rows - cy) / fy * up[1])[:, None] + up[2]
+    level = np.where(z > 0, z * level + pose_camera_in_map[2, 3], 0.0)
+    return np.concatenate([small.transpose(2, 0, 1), z[None], level[None]]).astype(np.float32)
+
+
+def example(picture: Picture) -> dict[str, np.ndarray]:
+    """One picture as the training keeps it: `image`, `surface`, `sheet`, `points`, `seen`."""
+    frame, labels = picture.frame, picture.labels
+    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics)
+    width, height = SIZE
+    at = [((np.arange(n) + 0.5) * frame.depth.shape[k] / n).astype(int) for k, n in enumerate((height, width))]
+    places = labels.sheet[np.ix_(at[0][CELL // 2 :: CELL], at[1][CELL // 2 :: CELL])]
+    kept = np.where(np.isnan(places), NO_PLACE, np.round(np.nan_to_num(places) / SHEET_UNIT))
+    scale = (width / frame.depth.shape[1], height / frame.depth.shape[0], 1.0)
+    return {
+        "rgb": image[:3].astype(np.uint8),
+        "depth": np.round(image[3] * 1e3).clip(0, 65535).astype(np.uint16),
+        "level": np.round(image[4] * 1e3).clip(-32768, 32767).astype(np.int16),
+        "surface": labels.surface[np.ix_(*at)],
+        "sheet": kept.astype(np.int16).transpose(2, 0, 1),
+        "points": ((labels.points + (0.5, 0.5, 0.0)) * scale - (0.5, 0.5, 0.0)).astype(np.float32),
+        "seen": labels.seen,
+    }
+
+
+def make_dataset(
+    folder: str | Path,
+    states: Sequence[RoomState],
+    states_hash: str,
+    spec: DatasetSpec,
+    say: Callable[[str], None] = lambda text: None,
+) -> Path:
+    """Make a dataset, or what is missing of it.
+
+    Raises:
+        CaretreeError: the folder holds another dataset, or no state is of this part.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    about = {"format": FORMAT, "spec": asdict(spec), "states": states_hash}
+    old = read_index(folder) if (folder / INDEX).is_file() else {**about, "shards": []}
+    if (old["states"], old["spec"]["part"], old["spec"]["seed"]) != (states_hash, spec.part, spec.seed):
+        raise CaretreeError(f"{folder} holds other pictures than those asked for; choose another folder")
+    mine = chosen_states(states, spec.part)
+    if not mine:
+        raise CaretreeError(f"no state is for the part '{spec.part}'")
+    shards: list[dict[str, Any]] = [
+        s for s in old["shards"] if s["pictures"] == SHARD and (folder / s["file"]).is_file()
+    ]
+    for number in range(len(shards), -(-spec.pictures // SHARD)):
+        start = time.process_time()
+        ids = range(number * SHARD, min((number + 1) * SHARD, spec.pictures))
+        rows = [example(draw_picture(mine, spec.part, spec.seed, i)) for i in ids]
+        buffer = io.BytesIO()
+        arrays: dict[str, Any] = {key: np.stack([row[key] for row in rows]) for key in rows[0]}
+        np.savez(buffer, **arrays)  # noise does not compress
+        data = buffer.getvalue()
+        name = f"shard_{number:04d}.npz"
+        _replace(folder / name, data)
+        shards.append({"file": name, "pictures": len(ids), "sha256": hashlib.sha256(data).hexdigest()})
+        _replace(folder / INDEX, (json.dumps({**about, "shards": shards}, indent=1) + "\n").encode())
+        spent = time.process_time() - start
+        say(f"{spec.part}: {ids.stop} of {spec.pictures} pictures, {spent:.1f} s for the last {len(ids)}")
+    return folder
+
+
+def read_index(folder: str | Path) -> dict[str, Any]:
+    """What a dataset's folder says about it.
+
+    Raises:
+        CaretreeError: it is none.
+    """
+    path = Path(folder) / INDEX
+    try:
+        index = json.loads(path.read_text(encoding="utf-8"))
+        assert index["format"] == FORMAT
+    except (OSError, ValueError, KeyError, AssertionError) as error:
+        raise CaretreeError(f"{folder}: this is no dataset of pictures in format {FORMAT}") from error
+    return index
+
+
+def load_dataset(folder: str | Path) -> tuple[dict[str, np.ndarray], str]:
+    """All arrays of a dataset, stacked, and its hash.
+
+    Raises:
+        CaretreeError: it is none, or a shard is damaged.
+    """
+    index, parts = read_index(folder), []
+    for shard in index["shards"]:
+        data = (Path(folder) / shard["file"]).read_bytes()
+        if hashlib.sha256(data).hexdigest() != shard["sha256"]:
+            raise CaretreeError(f"{folder}/{shard['file']}: the shard is not the one that {INDEX} names")
+        with np.load(io.BytesIO(data)) as file:
+            parts.append({key: file[key] for key in file.files})
+    arrays = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    return arrays, hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
+
+
+def _replace(path: Path, data: bytes) -> None:
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(data)
+    os.replace(part, path)

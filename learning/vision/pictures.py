@@ -1,0 +1,191 @@
+"""Pictures of states of the room, drawn by seed: look, light, camera and noise; the same seed gives the same bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...sim.bullet.backdrop import Backdrop
+from ...sim.mechanics.kinematics import kinematics_of
+from ...sim.render.appearance import Appearance
+from ...sim.render.camera import CAMERA_VIEWS, camera_intrinsics, looking_at
+from ...sim.render.diorama import along
+from ...sim.render.looks import PLAIN, PRINTED, RANDOM, TAPED, draw_look
+from ...sim.render.raster import add_sensor_noise
+from ...sim.render.solids import capsule_mesh
+from ...sim.robot.baxter import BAXTER
+from ...sim.scene.person_spec import Capsule, trunk_capsules
+from ...sim.scene.scene import BED_TOP, RAIL_HEIGHT, room_map
+from ...sim.world import Frame
+from .labels import Labels, label
+from .states import RoomState
+
+PARTS = ("train", "test", "heldout")
+_LOOKS = {RANDOM: 0.8, PLAIN: 0.08, PRINTED: 0.07, TAPED: 0.05}  # of the pictures for training
+_FROM = {  # where the base stands for a look at each kind of state
+    "hung": ("rail", "rail_back"),
+    "held": ("rail", "lay"),
+    "laid": ("bed_right", "bed_left", "lay"),
+    "worn": ("bed_left", "bed_right"),
+}
+_AWAY = np.array((60.0, 0.0, 0.0))  # where the robot of meshes stands: the one in the picture is of capsules
+_MOST_ROBOT = 0.35  # of a picture, beyond which the robot is left out
+_HAND_DISTANCE = (0.28, 0.85)  # of a hand's camera from what it looks at [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A frame as a camera of the robot delivers it, and the truth about it.
+
+    Attributes:
+        frame: the picture.
+        labels: at its resolution.
+        state: what it shows.
+        look: name in `LOOKS`, of gown and room.
+    """
+
+    frame: Frame
+    labels: Labels
+    state: RoomState
+    look: str
+
+
+@dataclass(frozen=True)
+class _Still:
+    """A person who is drawn and does nothing."""
+
+    trunk: Mapping[str, Capsule]
+    _radii: np.ndarray
+    _arms: np.ndarray
+
+    def radii(self) -> np.ndarray:
+        """(2, 3) [m]."""
+        return self._radii
+
+    def arms(self) -> np.ndarray:
+        """(2, 4, 3) [m]."""
+        return self._arms
+
+
+def chosen_states(states: Sequence[RoomState], part: str) -> list[RoomState]:
+    """The states that a part of the data shows; cuts that are held out are in `heldout` alone.
+
+    Args:
+        states: all there are.
+        part: one of `PARTS`.
+    """
+    from ...sim.scene.gown import HELD_OUT_GOWNS
+
+    if part == "heldout":
+        return [s for s in states if s.test and s.gown in HELD_OUT_GOWNS]
+    return [s for s in states if s.test == (part == "test") and s.gown not in HELD_OUT_GOWNS]
+
+
+def draw_picture(
+    states: Sequence[RoomState],
+    part: str,
+    seed: int,
+    number: int,
+    *,
+    look: str | None = None,
+    skin: int | None = None,
+    light: str | None = None,
+    kind: str | None = None,
+    camera: str | None = None,
+    gown: bool = True,
+) -> Picture:
+    """Draw picture `number` of a seed.
+
+    Args:
+        states: those of `chosen_states`.
+        part: one of `PARTS`.
+        seed: of all pictures.
+        number: of this one.
+        look: name in `LOOKS`; None draws one, as training does.
+        skin: tone of the Monk scale; None leaves it to the look.
+        light: name in `LIGHTS`; None leaves it to the look.
+        kind: of the state, one of `KINDS`; None takes any.
+        camera: `head` or `left_hand`; None draws it.
+        gown: whether there is one in the room.
+    """
+    rng = np.random.default_rng([seed, PARTS.index(part), number])
+    kinds = sorted({s.kind for s in states})
+    wanted = kind or str(rng.choice(kinds))
+    fitting = [s for s in states if s.kind == wanted]
+    state = fitting[int(rng.integers(len(fitting)))]
+    look = look or str(rng.choice(list(_LOOKS), p=list(_LOOKS.values())))
+    appearance = draw_look(look, rng, held_out=part == "heldout", skin=skin, light=light)
+    camera = camera or ("head" if rng.random() < 0.5 else "left_hand")
+    size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
+    pose = _head_pose(state, rng) if camera == "head" else _hand_pose(state, rng)
+    room = _room(state, appearance, robot=rng.random() < 0.8, gown=gown)
+    drawn = room.renderer.render(pose, size, lens)
+    robots = [number for name, number in room.renderer.ids.items() if name.startswith("object_")]
+    if np.isin(drawn.ids, robots).mean() > _MOST_ROBOT:
+        room = _room(state, appearance, robot=False, gown=gown)
+        drawn = room.renderer.render(pose, size, lens)
+    rgb, depth = add_sensor_noise(drawn, rng)
+    hook = np.array((*state.scene.rail_xy, RAIL_HEIGHT)) if state.kind == "hung" else None
+    mesh = state.scene.mesh
+    labels = label(room.renderer, mesh, state.arms, hook, pose, lens, size, gown=gown)
+    frame = Frame(camera=camera, stamp=0.0, rgb=rgb, depth=depth, intrinsics=lens, pose_camera_in_map=pose)
+    return Picture(frame=frame, labels=labels, state=state, look=look)
+
+
+def _room(state: RoomState, appearance: Appearance, *, robot: bool, gown: bool) -> Backdrop:
+    """The room of a state, ready to draw."""
+    scene = state.scene
+    person = _Still(
+        trunk_capsules(scene.person, BED_TOP, scene.bed_xy), np.tile(scene.person.arm_radii, (2, 1)), state.arms
+    )
+    kinematics = kinematics_of(BAXTER)
+    room = Backdrop(scene, appearance, person, kinematics)
+    if robot:
+        for k, capsule in enumerate(state.capsules):
+            length = max(float(np.linalg.norm(capsule[3:6] - capsule[:3])), 1e-3)
+            mesh = capsule_mesh(np.zeros(3), np.array((0.0, 0.0, length)), float(capsule[6]))
+            room.add(f"link{k}", *mesh, appearance.colours["robot" if k % 2 else "robot_grey"])
+            room.renderer.set_pose(f"object_link{k}", along(capsule[:3], capsule[3:6]))
+    room.update(state.vertices, state.arms, kinematics.configuration(_AWAY, np.zeros((2, 7))))
+    if not gown:
+        room.renderer.remove_cloth()
+    return room
+
+
+def _head_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:
+    """The head's camera where the robot may stand, a bit off, turned a bit aside."""
+    places = room_map().waypoints
+    x, y, yaw = places[str(rng.choice(_FROM[state.kind]))]
+    if state.kind == "held":  # wherever the gown is, it is before the robot
+        x, y = state.vertices[:, :2].mean(axis=0) - rng.uniform(0.5, 0.8) * np.array((np.cos(yaw), np.sin(yaw)))
+    base = np.array((x, y, yaw)) + rng.uniform(-1, 1, 3) * (0.25, 0.25, 0.25)
+    pose = kinematics_of(BAXTER).pose_camera_in_map("head", base, np.zeros((2, 7)), float(rng.uniform(-0.5, 0.5)))
+    return pose @ _rolled(rng.normal(0.0, 0.03))
+
+
+def _hand_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:
+    """A hand's camera near the gown or an arm, from wherever a hand may look."""
+    mesh = state.scene.mesh
+    rims = [state.vertices[loop].mean(axis=0) for loop in mesh.loops.values()]
+    corners = [state.vertices[c] for c in mesh.corners]
+    places = [*rims, *corners, *corners, state.vertices[int(rng.integers(len(state.vertices)))]]
+    if state.kind in ("laid", "worn"):
+        places += [*state.arms[:, 1], *state.arms[:, 2]]
+    target = np.asarray(places[int(rng.integers(len(places)))], float) + rng.normal(0, 0.05, 3)
+    distance = rng.uniform(*_HAND_DISTANCE)
+    if state.kind in ("hung", "held"):
+        aside = rng.choice((-np.pi / 2, np.pi / 2)) + rng.uniform(-1.0, 1.0)
+        up = rng.uniform(-0.35, 0.45)
+    else:
+        aside, up = rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 1.5)
+    offset = np.array((np.cos(up) * np.cos(aside), np.cos(up) * np.sin(aside), np.sin(up)))
+    return looking_at(target + distance * offset, target) @ _rolled(rng.normal(0.0, 0.35))
+
+
+def _rolled(angle: float) -> np.ndarray:
+    """A turn (4, 4) about the optical axis [rad]."""
+    turn = np.eye(4)
+    turn[:2, :2] = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
+    return turn

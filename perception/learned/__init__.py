@@ -1,0 +1,1 @@
+"""What a trained network sees, run by OpenCV alone."""

@@ -1,0 +1,185 @@
+"""What the network says about one frame, and how it is read: surfaces, places on the gown's sheet, key points."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...sim.errors import CaretreeError
+from ...sim.quantity import Quantities, quantity
+from ...sim.world import Frame
+from ..image.surfaces import GOWN_SURFACES, Surface
+from .onnx_record import read_properties
+
+FORMAT = "caretree-seeing-1"
+PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"
+_OUTPUTS = ("surface", "sheet", "heat", "offset")
+_SOLID = (*GOWN_SURFACES, Surface.SKIN)  # what a key point can lie on
+
+
+@dataclass(frozen=True, kw_only=True)
+class SightTuning(Quantities):
+    """Numbers of how the network's maps are read."""
+
+    peak_cells: int = quantity(
+        1, "1", "to each side of a peak, whose mean is the key point's place", "choice: its width"
+    )
+    search_cells: int = quantity(2, "1", "to each side of a peak, where a depth is looked for", "choice: 8 pixels")
+
+
+DEFAULT = SightTuning()
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyPoint:
+    """A key point as it is seen.
+
+    Attributes:
+        confidence: that it is there, 0 to 1.
+        position_in_map: (3,) [m]; None where nothing around it has a depth.
+        pixel: (2,) u and v in the frame [px].
+    """
+
+    confidence: float
+    position_in_map: np.ndarray | None
+    pixel: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sight:
+    """What is seen in one frame.
+
+    Attributes:
+        surfaces: (H, W) uint8 of `Surface`, at the frame's size.
+        confidence: (H, W) float32 in that, 0 to 1.
+        sheet: (H, W, 3) float32, where on the gown's rest shape a pixel is, if it is of the gown [m].
+        key_points: by name, such as `corner_left`, `strap_right`, `hook`, `elbow_left`.
+    """
+
+    surfaces: np.ndarray
+    confidence: np.ndarray
+    sheet: np.ndarray
+    key_points: dict[str, KeyPoint]
+
+
+class SeeingNetwork:
+    """The trained network; one picture costs about 20 ms on one core.
+
+    Args:
+        path: of the ONNX file.
+        tuning: numbers.
+
+    Attributes:
+        record: how it was trained: hash, seed, time, machine.
+
+    Raises:
+        CaretreeError: the file is missing, is no such network, or sees other surfaces than this version knows.
+    """
+
+    def __init__(self, path: str | Path = PACKAGED, *, tuning: SightTuning = DEFAULT) -> None:
+        import cv2
+
+        about = {name: json.loads(text) for name, text in read_properties(path).items()}
+        if about.get("format") != FORMAT:
+            raise CaretreeError(f"{path}: this is no seeing network in format {FORMAT}")
+        if about["surfaces"] != [surface.name.lower() for surface in Surface]:
+            raise CaretreeError(f"{path}: it sees {', '.join(about['surfaces'])}, which this version does not know")
+        self.record: Mapping[str, Any] = about["record"]
+        self._size: tuple[int, int] = (about["size"][0], about["size"][1])
+        self._names: list[str] = about["key_points"]
+        self._calibration: dict[str, list[float]] = about.get("calibration", {})
+        self._temperature = float(about.get("temperature", 1.0))
+        self._net = cv2.dnn.readNetFromONNX(str(path))
+        self._tuning = tuning
+
+    def see(self, frame: Frame) -> Sight:
+        """What one frame shows."""
+        import cv2
+
+        image = self.image_of(frame)
+        self._net.setInput(image[None])
+        surface, sheet, heat, offset = (map_[0] for map_ in self._net.forward(_OUTPUTS))
+        scores = surface / self._temperature
+        chance = np.exp(scores - scores.max(axis=0))
+        chance /= chance.sum(axis=0)
+        labels = chance.argmax(axis=0).astype(np.uint8)
+        full = frame.depth.shape[::-1]
+        solid = np.isin(labels, _SOLID) & (image[3] > 0)
+        return Sight(
+            surfaces=cv2.resize(labels, full, interpolation=cv2.INTER_NEAREST),
+            confidence=cv2.resize(chance.max(axis=0), full, interpolation=cv2.INTER_LINEAR),
+            sheet=cv2.resize(np.ascontiguousarray(sheet.transpose(1, 2, 0)), full, interpolation=cv2.INTER_LINEAR),
+            key_points={
+                name: self._key_point(
+                    frame, heat[k], offset[k], image[3], solid, self._calibration.get(name.split("_")[0])
+                )
+                for k, name in enumerate(self._names)
+            },
+        )
+
+    def image_of(self, frame: Frame) -> np.ndarray:
+        """(5, h, w) float32 that the network is given: red, green, blue, depth [m] and height over the floor [m]."""
+        import cv2
+
+        width, height = self._size
+        fx, fy, cx, cy = frame.intrinsics
+        small = cv2.resize(frame.rgb, self._size, interpolation=cv2.INTER_AREA)
+        rows = ((np.arange(height) + 0.5) * frame.depth.shape[0] / height).astype(int)
+        columns = ((np.arange(width) + 0.5) * frame.depth.shape[1] / width).astype(int)
+        z = frame.depth[np.ix_(rows, columns)]
+        up = frame.pose_camera_in_map[2, :3]
+        level = (columns - cx) / fx * up[0] + ((rows - cy) / fy * up[1])[:, None] + up[2]
+        level = np.where(z > 0, z * level + frame.pose_camera_in_map[2, 3], 0.0)
+        return np.concatenate([small.transpose(2, 0, 1), z[None], level[None]]).astype(np.float32)
+
+    def _key_point(
+        self,
+        frame: Frame,
+        heat: np.ndarray,
+        offset: np.ndarray,
+        depth: np.ndarray,
+        solid: np.ndarray,
+        calibration: list[float] | None,
+    ) -> KeyPoint:
+        """Read one key point off its maps (h, w)."""
+        row, column = divmod(int(heat.argmax()), heat.shape[1])
+        best = float(heat[row, column])
+        scale, shift = calibration or (1.0, 0.0)
+        rows, columns = _around(row, column, heat.shape, self._tuning.peak_cells)
+        weight = 1.0 / (1.0 + np.exp(-heat[np.ix_(rows, columns)].astype(float)))
+        cell = np.array((weight.sum(axis=0) @ columns, weight.sum(axis=1) @ rows)) / weight.sum()
+        step = depth.shape[0] / heat.shape[0]
+        full = np.array(frame.depth.shape[::-1]) / depth.shape[::-1]
+        pixel = ((cell + 0.5) * step) * full - 0.5
+        rows, columns = _around(row, column, heat.shape, self._tuning.search_cells)
+        at = np.ix_((rows * step + step // 2).astype(int), (columns * step + step // 2).astype(int))
+        weight = solid[at] / (1.0 + np.exp(-heat[np.ix_(rows, columns)].astype(float)))
+        place = None
+        if weight.sum() > 0:
+            z = float((weight * (depth[at] + offset[np.ix_(rows, columns)])).sum() / weight.sum())
+            fx, fy, cx, cy = frame.intrinsics
+            local = np.array(((pixel[0] - cx) / fx, (pixel[1] - cy) / fy, 1.0)) * z
+            place = frame.pose_camera_in_map[:3, :3] @ local + frame.pose_camera_in_map[:3, 3]
+        return KeyPoint(
+            confidence=float(1.0 / (1.0 + np.exp(-(scale * best + shift)))), position_in_map=place, pixel=pixel
+        )
+
+
+def _around(row: int, column: int, shape: tuple[int, ...], by: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns up to `by` from a cell."""
+    return (
+        np.arange(max(row - by, 0), min(row + by + 1, shape[0])),
+        np.arange(max(column - by, 0), min(column + by + 1, shape[1])),
+    )
+
+
+@lru_cache
+def packaged_network() -> SeeingNetwork:
+    """The network that the package ships, loaded once."""
+    return SeeingNetwork()

@@ -1,0 +1,70 @@
+"""A dataset: resumable, the same bytes again, and what the network is given at run time is what it was trained on."""
+
+import json
+
+import numpy as np
+import pytest
+from caretree.learning.vision.dataset import INDEX, DatasetSpec, example, load_dataset, make_dataset, seen
+from caretree.learning.vision.pictures import draw_picture
+from caretree.sim.errors import CaretreeError
+
+from .still_room import still_state
+
+
+@pytest.fixture(autouse=True)
+def small_shards(monkeypatch):
+    monkeypatch.setattr("caretree.learning.vision.dataset.SHARD", 2)
+
+
+@pytest.fixture
+def states():
+    return [still_state("hung"), still_state("laid")]
+
+
+def test_an_interrupted_dataset_goes_on_and_has_the_same_bytes(tmp_path, states):
+    make_dataset(tmp_path / "a", states, "s", DatasetSpec(part="train", pictures=4, seed=3))
+    make_dataset(tmp_path / "b", states, "s", DatasetSpec(part="train", pictures=2, seed=3))
+    first = (tmp_path / "b/shard_0000.npz").stat().st_mtime_ns
+    make_dataset(tmp_path / "b", states, "s", DatasetSpec(part="train", pictures=4, seed=3))
+    assert (tmp_path / "b/shard_0000.npz").stat().st_mtime_ns == first
+    assert json.loads((tmp_path / "a" / INDEX).read_text()) == json.loads((tmp_path / "b" / INDEX).read_text())
+    data, digest = load_dataset(tmp_path / "a")
+    assert data["rgb"].shape == (4, 3, 192, 256)
+    assert digest == load_dataset(tmp_path / "b")[1]
+
+
+def test_another_dataset_is_refused(tmp_path, states):
+    make_dataset(tmp_path, states, "s", DatasetSpec(part="train", pictures=2, seed=3))
+    with pytest.raises(CaretreeError, match="holds other pictures"):
+        make_dataset(tmp_path, states, "s", DatasetSpec(part="train", pictures=2, seed=4))
+
+
+def test_a_damaged_shard_is_refused(tmp_path, states):
+    make_dataset(tmp_path, states, "s", DatasetSpec(part="train", pictures=2, seed=3))
+    shard = tmp_path / "shard_0000.npz"
+    shard.write_bytes(shard.read_bytes()[:-9] + b"tampered!")
+    with pytest.raises(CaretreeError, match="not the one"):
+        load_dataset(tmp_path)
+
+
+@pytest.mark.parametrize("wrong", [{"part": "all", "pictures": 1}, {"part": "train", "pictures": 0}])
+def test_what_cannot_be_made_is_refused(wrong):
+    with pytest.raises(CaretreeError):
+        DatasetSpec(**wrong)
+
+
+def test_height_over_the_floor_is_that_of_the_map(states):
+    picture = draw_picture(states, "train", 3, 0, kind="laid", camera="head")
+    frame = picture.frame
+    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics)
+    floor = (image[3] > 0) & (np.abs(image[4]) < 0.03)
+    assert floor.mean() > 0.05
+    assert image[4][image[3] > 0].min() > -0.2
+
+
+def test_points_move_with_the_picture_s_size(states):
+    picture = draw_picture(states, "train", 3, 0, kind="hung", camera="head")
+    kept = example(picture)
+    assert np.allclose((kept["points"][:, 0] + 0.5) / 256, (picture.labels.points[:, 0] + 0.5) / 400)
+    assert kept["sheet"].shape == (3, 48, 64)
+    assert kept["surface"].shape == (192, 256)

@@ -1,0 +1,43 @@
+"""Pictures: drawn by seed, and nothing that is held out among those for training."""
+
+import numpy as np
+import pytest
+from caretree.learning.vision.labels import OTHER
+from caretree.learning.vision.pictures import chosen_states, draw_picture
+
+from .still_room import still_state
+
+
+@pytest.fixture(scope="module")
+def states():
+    return [still_state("hung"), still_state("laid"), still_state("hung", seed=114)]
+
+
+def test_same_seed_same_bytes(states):
+    one, other = (draw_picture(states, "train", 7, 3) for _ in range(2))
+    assert one.frame.rgb.tobytes() == other.frame.rgb.tobytes()
+    assert one.frame.depth.tobytes() == other.frame.depth.tobytes()
+    assert one.labels.surface.tobytes() == other.labels.surface.tobytes()
+    assert draw_picture(states, "train", 7, 4).frame.rgb.tobytes() != one.frame.rgb.tobytes()
+
+
+def test_what_is_asked_for_is_drawn(states):
+    picture = draw_picture(states, "train", 7, 0, look="taped", kind="laid", camera="head")
+    assert (picture.look, picture.state.kind, picture.frame.camera) == ("taped", "laid", "head")
+    assert picture.frame.rgb.shape == (300, 400, 3)
+    assert draw_picture(states, "train", 7, 0, camera="left_hand").frame.rgb.shape == (240, 320, 3)
+
+
+def test_a_picture_shows_what_its_labels_say(states):
+    shares = []
+    for number in range(6):
+        picture = draw_picture(states, "train", 1, number, look="plain", kind="hung", camera="left_hand")
+        shares.append((picture.labels.surface != OTHER).mean())
+        assert (picture.frame.depth[picture.labels.surface != OTHER] > 0).mean() > 0.5
+    assert np.mean(shares) > 0.1
+
+
+def test_every_fifth_seed_is_for_tests(states):
+    assert [s.seed for s in chosen_states(states, "test")] == [114]
+    assert {s.seed for s in chosen_states(states, "train")} == {110}
+    assert chosen_states(states, "heldout") == []

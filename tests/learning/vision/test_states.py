@@ -1,0 +1,36 @@
+"""States: kept as they were made, and runs of the wrong kind refused."""
+
+import numpy as np
+import pytest
+from caretree.learning.vision import states as module
+from caretree.learning.vision.states import _bytes, make_states, read_states, recorded
+from caretree.sim.errors import CaretreeError
+
+from .still_room import still_state
+
+
+def test_what_is_made_is_read_again_and_not_made_twice(tmp_path, monkeypatch):
+    made = []
+    monkeypatch.setattr(module, "prepared", lambda seed, state, gown=None: made.append(seed) or still_state(seed=seed))
+    make_states(tmp_path, range(110, 112))
+    count = len(made)
+    assert count == 4 + 2  # every seed hung and in hands, every second one laid, every third one worn
+    make_states(tmp_path, range(110, 112))
+    assert len(made) == count
+    found, digest = read_states(tmp_path)
+    assert np.array_equal(found[0].vertices, still_state().vertices)
+    assert digest == read_states(tmp_path)[1]
+
+
+def test_same_state_same_bytes():
+    assert _bytes([still_state()]) == _bytes([still_state()])
+
+
+def test_an_empty_folder_says_what_makes_states(tmp_path):
+    with pytest.raises(CaretreeError, match="caretree learn vision states"):
+        read_states(tmp_path)
+
+
+def test_a_folder_without_a_record_is_refused(tmp_path):
+    with pytest.raises(CaretreeError, match="no record of a dressing run"):
+        recorded(tmp_path)
