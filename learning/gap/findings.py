@@ -43,13 +43,18 @@ class Where:
 
 @dataclass(frozen=True, kw_only=True)
 class Value:
-    """A fitted number with its 95 % interval."""
+    """A fitted number with its 95 % interval.
+
+    Attributes:
+        doubt: why the interval is not to be trusted, or "".
+    """
 
     name: str
     unit: str
     value: float
     low: float
     high: float
+    doubt: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +80,12 @@ class EffectFinding:
     size: float = 0.0
     smallest: float = float("nan")
     confidence: float = float("nan")
+
+
+def doubted(finding: EffectFinding, why: str) -> EffectFinding:
+    """The same finding, none of whose intervals is to be trusted; a doubt of a number's own is kept."""
+    values = (v if v.doubt else dataclasses.replace(v, doubt=why) for v in finding.parameters)
+    return dataclasses.replace(finding, parameters=tuple(values))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -131,6 +131,7 @@ def _effects(findings: tuple[EffectFinding, ...], prefix: str = "") -> str:
         values = "<br>".join(
             f"{prefix}{escape(x.name.replace('_', ' '))} {x.value:.4g} {escape(x.unit) if x.unit != '1' else ''}"
             + (f" ({x.low:.4g} to {x.high:.4g})" if x.low != x.high else "")
+            + (f"; {escape(x.doubt)}" if x.doubt else "")
             for x in f.parameters
         )
         others = _words(", ".join(f.equivalent)) or "&ndash;"

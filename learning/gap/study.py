@@ -5,9 +5,11 @@ from __future__ import annotations
 import abc
 from typing import Any
 
-from .findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Verdict, VerdictName, Where
+from .findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Verdict, VerdictName, Where, doubted
 from .measurement import MeasurementSet
 from .pictures import Curve
+
+UNNAMED = "something that has no name here acts too, and the interval does not know of it"
 
 
 class Study(abc.ABC):
@@ -59,6 +61,8 @@ class Study(abc.ABC):
         """All four steps as one verdict."""
         p_value, source, where = self.find()
         verdict, effects, recalibration, guess = self.name()
+        if verdict == "unknown":
+            effects, recalibration = (tuple(doubted(f, UNNAMED) for f in group) for group in (effects, recalibration))
         gap, forward, placebos, detectable = self.show()
         return Verdict(
             set=str(self.measured.folder.name),

@@ -18,7 +18,8 @@ class Truth:
 
     Attributes:
         kind: one of `KINDS`.
-        effects: name, target and size (root mean square over that of the noise) of each.
+        effects: name, target and size (root mean square over that of the noise) of each, and `values`, the numbers
+            the registry has for it ({} outside).
         intervals: [episode, t0, t1] where a localised effect acted.
         robot: or None.
         note: form of an effect outside the registry.

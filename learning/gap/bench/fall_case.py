@@ -100,7 +100,10 @@ def draw_fall(seed: int, folder: Path) -> tuple[Truth, Drawn]:
     size = {n: float(np.exp(rng.uniform(np.log(low), np.log(high)))) for n in names}
     values = {"updraft": float(rng.choice([-1, 1]) * rng.uniform(*UPDRAFT))} if "wind" in names else {}
     values |= _set_values(names, size, values, lambda v: _fly(v, top, rate), noise)
-    truth.effects = [{"name": n, "target": "body", "size": size[n], "value": float(values[n])} for n in names]
+    truth.effects = [
+        {"name": n, "target": "body", "size": size[n], "value": float(values[n]), "values": _parameters(n, values)}
+        for n in names
+    ]
     known, lift = _draw_ball(rng, values.get("buoyancy"))
     if known:
         values["buoyancy"] = lift  # of air: too small to see, and not missing from a model that knows size and mass
@@ -171,6 +174,23 @@ def _set_values(
         values[n] = high
         size[n] = min(size[n], 1.05 * change / noise)  # a body can only be braked so much
     return values
+
+
+PARAMETERS = {
+    "linear_drag": "rate",
+    "quadratic_drag": "coefficient",
+    "wind": "coefficient",
+    "buoyancy": "fraction",
+    "gain_error": "fraction",
+    "delay": "time",
+}  # the registry's name of each value
+
+
+def _parameters(name: str, values: dict[str, float]) -> dict[str, float]:
+    """The registry's parameters of a hidden effect; {} outside the registry."""
+    if name not in PARAMETERS:
+        return {}
+    return {PARAMETERS[name]: float(values[name]), **({"speed": values["updraft"]} if name == "wind" else {})}
 
 
 def _draw_ball(rng: np.random.Generator, lift: float | None) -> tuple[dict[str, float], float]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 from .case import STEPS, Truth, coloured, draw_kind, draw_size, moves, multisine
-from .joint_loads import INSIDE, OUTSIDE, Trace, shape_of
+from .joint_loads import INSIDE, OUTSIDE, Drawn, Trace, shape_of
 
 ROBOTS = ("ur5", "ur10", "panda", "z1", "xarm7")
 MOST = {"backlash": 1.0, "wrong_tool": 1.9}  # a gap or a missing tool (1: half the link) takes away what there is
@@ -39,7 +41,8 @@ def write_joint_case(system: str, seed: int, folder: Path) -> Truth:
         actual = mass * (rng.choice([-1, 1]) * rng.uniform(0.08, 0.3) + 1.0 if kind == "recalibration" else 1.0)
         loads = [actual * a for _, _, a in motions]
         names, header = ["axis"], {"system": "axis", "mass": round(float(mass), 6)}
-        truth.effects = [{"name": "mass", "target": "axis", "size": float("nan")}] if kind == "recalibration" else []
+        if kind == "recalibration":
+            truth.effects = [_mass("axis", actual - round(float(mass), 6))]
     else:
         motions, loads, names, arm = _arm(rng, robot, t, episodes, kind, truth)
         header = {"system": "arm", "robot": robot}
@@ -84,9 +87,9 @@ def _path(rng: np.random.Generator, t: np.ndarray) -> np.ndarray:
 
 
 def _derive(t: np.ndarray, q: np.ndarray):
-    dt = t[1] - t[0]
-    v = np.gradient(q, dt, axis=0)
-    return q, v, np.gradient(v, dt, axis=0)
+    # differences of neighbours would lose a hundredth of the acceleration at 3 Hz and 100 samples a second
+    path = make_interp_spline(t, q, k=5)
+    return q, path(t, 1), path(t, 2)
 
 
 def _arm(rng, robot, t, episodes, kind, truth):
@@ -132,10 +135,15 @@ def _arm(rng, robot, t, episodes, kind, truth):
         actual.inertias[j] = pin.Inertia(
             model.inertias[j].mass * factor, model.inertias[j].lever, model.inertias[j].inertia * factor
         )
-        truth.effects = [{"name": "mass", "target": names[j - 1], "size": float("nan")}]
+        truth.effects = [_mass(names[j - 1], model.inertias[j].mass * (factor - 1.0))]
     loads = [_rnea(pin, actual, m) for m in motions]
     truth.note = str(n)
     return motions, loads, names, (pin, model)
+
+
+def _mass(target: str, change: float) -> dict[str, Any]:
+    """A wrong number of the model's own."""
+    return {"name": "mass", "target": target, "size": float("nan"), "values": {"mass": float(change)}}
 
 
 def _rnea(pin, model, motion):
@@ -144,14 +152,16 @@ def _rnea(pin, model, motion):
 
 
 def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
-    """What each hidden effect adds to the loads; an effect too small at its largest gives way to another draw."""
+    """What the hidden effects add to the loads; an effect too small at its largest gives way to another draw."""
+    late = None
     added = [np.zeros_like(u) for u in loads]
     used = set()
     for _ in range({"none": 0, "recalibration": 0, "single": 1, "two": 2, "outside": 1}[kind]):
-        name, target, j, load, size = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+        name, target, j, load, size, values = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
         while size < LEAST:
-            name, target, j, load, size = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+            name, target, j, load, size, values = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
         used |= ALIKE.get(name, {name})
+        late = (j, values["time"]) if name == "delay" else late
         for e, x in enumerate(load):
             added[e] += x
             if name == "contact":
@@ -161,17 +171,22 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
                     (f"episode_{e + 1}", float(t[a]), float(t[b - 1]))
                     for a, b in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True)
                 ]
-        truth.effects.append({"name": name, "target": target, "size": size})
+        truth.effects.append({"name": name, "target": target, "size": size, "values": values})
+    if late:  # a late reading is late for whatever acts beside it
+        j, lag = late
+        for x, u in zip(added, loads, strict=True):
+            x[:, j] += _late(t, x[:, j] - _late(t, u[:, j], lag), lag)
     return added
 
 
 def _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm):
-    """Draw one effect: its name, target, the joint it loads most, its loads (T, n) per episode, and its size there."""
+    """Draw one effect: name, target, the joint it loads most, loads (T, n) per episode, size there, and parameters."""
     size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
     pool = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
     name = str(rng.choice([n for n in pool if n not in used]))
     if name in ("payload", "wrong_tool"):
-        load = _body(rng, name, arm, motions)
+        drawn = _body(rng, name, arm, motions)
+        load = drawn.load
         j = int(np.argmax(np.sqrt(np.mean(np.concatenate(load) ** 2, axis=0)) / noise))
         target = names[-1]
     else:
@@ -179,24 +194,27 @@ def _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm):
         trace = [
             Trace(t=t, q=q[:, j], v=v[:, j], a=a[:, j], u=u[:, j]) for (q, v, a), u in zip(motions, loads, strict=True)
         ]
-        one = shape_of(name, trace, rng)
+        drawn = shape_of(name, trace, rng)
         load = [np.zeros_like(u) for u in loads]
-        for x, y in zip(load, one, strict=True):
+        for x, y in zip(load, drawn.load, strict=True):
             x[:, j] = y
         target = names[j]
     rms = np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2))
     scale = min(size * noise[j] / max(rms, 1e-12), MOST.get(name, np.inf))
+    values = drawn.values(scale)
     if name == "delay":
         shift = min(scale * 1e-3, 0.04)
         load = [
-            np.stack(
-                [np.interp(t - shift, t, u[:, k]) - u[:, k] if k == j else 0 * t for k in range(u.shape[1])], axis=1
-            )
-            for u in loads
+            np.stack([_late(t, u[:, k], shift) if k == j else 0 * t for k in range(u.shape[1])], axis=1) for u in loads
         ]
-        scale = 1.0
+        values, scale = {"time": shift}, 1.0
     size = float(scale * np.sqrt(np.mean(np.concatenate(load)[:, j] ** 2)) / noise[j])
-    return name, target, j, [scale * x for x in load], size
+    return name, target, j, [scale * x for x in load], size, values
+
+
+def _late(t: np.ndarray, load: np.ndarray, lag: float) -> np.ndarray:
+    """Change of a load (T,) that is recorded `lag` seconds late."""
+    return CubicSpline(t, load)(np.maximum(t - lag, t[0])) - load
 
 
 def _body(rng, name, arm, motions):
@@ -206,8 +224,12 @@ def _body(rng, name, arm, motions):
     if name == "payload":
         com = np.array([rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), rng.uniform(0.0, 0.15)])
         changed.inertias[last] = model.inertias[last] + pin.Inertia(1.0, com, np.zeros((3, 3)))
+        part, lever = 1.0, com
     else:
         changed.inertias[last] = pin.Inertia(
             model.inertias[last].mass * 0.5, model.inertias[last].lever, model.inertias[last].inertia * 0.5
         )
-    return [_rnea(pin, changed, m) - _rnea(pin, model, m) for m in motions]
+        part, lever = -0.5 * model.inertias[last].mass, model.inertias[last].lever
+    load = [_rnea(pin, changed, m) - _rnea(pin, model, m) for m in motions]
+    moments = {f"mass_com_{a}": part * x for a, x in zip("xyz", lever, strict=True)}
+    return Drawn(load, {"mass": part, **moments})

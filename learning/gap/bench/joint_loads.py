@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,17 +18,37 @@ class Trace:
     u: np.ndarray
 
 
-def shape_of(name: str, m: list[Trace], rng: np.random.Generator) -> list[np.ndarray]:
-    """Load of an effect per episode, up to a positive (or for some signed) factor, (T,) each.
+@dataclass
+class Drawn:
+    """A hidden effect up to its size.
+
+    Attributes:
+        load: (T,) per episode, at a size of 1.
+        linear: the registry's parameters at a size of 1; {} outside the registry.
+        fixed: those that do not depend on the size.
+    """
+
+    load: list[np.ndarray]
+    linear: dict[str, float] = field(default_factory=dict)
+    fixed: dict[str, float] = field(default_factory=dict)
+
+    def values(self, size: float) -> dict[str, float]:
+        """The registry's parameters at a size."""
+        return {**{k: float(size * v) for k, v in self.linear.items()}, **{k: float(v) for k, v in self.fixed.items()}}
+
+
+def shape_of(name: str, m: list[Trace], rng: np.random.Generator) -> Drawn:
+    """Load of an effect per episode, up to a positive factor, and what the registry would call it.
 
     Raises:
         KeyError: no such effect.
     """
-    return _SHAPES[name](m, rng)
+    drawn = _SHAPES[name](m, rng)
+    return drawn if isinstance(drawn, Drawn) else Drawn(drawn)
 
 
 def _viscous(m, rng):
-    return [x.v for x in m]
+    return Drawn([x.v for x in m], {"coefficient": 1.0})
 
 
 def _sign(v, eps=1e-4):
@@ -36,38 +56,39 @@ def _sign(v, eps=1e-4):
 
 
 def _coulomb(m, rng):
-    return [_sign(x.v) for x in m]
+    return Drawn([_sign(x.v) for x in m], {"level": 1.0})
 
 
 def _asymmetric(m, rng):
     a, b = 1.0, rng.uniform(0.0, 0.45)
     if rng.random() < 0.5:
         a, b = b, a
-    return [np.where(x.v > 0, a, b) * _sign(x.v) for x in m]
+    load = [np.where(x.v > 0, a, b) * _sign(x.v) for x in m]
+    return Drawn(load, {"forward": a, "backward": b})
 
 
 def _stribeck(m, rng):
     vs = rng.uniform(0.08, 0.3) * np.quantile(np.abs(np.concatenate([x.v for x in m])), 0.95)
     ratio = rng.uniform(0.8, 2.5)
-    return [
-        (1.0 + ratio / (1.0 + (x.v / vs) ** 2) if rng.random() < 0 else 1.0 + ratio * np.exp(-(np.abs(x.v / vs) ** 2)))
-        * _sign(x.v)
-        for x in m
-    ]
+    load = []
+    for x in m:
+        rng.random()  # one draw an episode, so that the draws that follow stay the same
+        load.append((1.0 + ratio * np.exp(-((x.v / vs) ** 2))) * _sign(x.v))
+    return Drawn(load, {"level": 1.0, "excess": ratio}, {"speed": vs})
 
 
 def _load(m, rng):
-    return [np.abs(x.u) * _sign(x.v) for x in m]
+    return Drawn([np.abs(x.u) * _sign(x.v) for x in m], {"ratio": 1.0})
 
 
 def _offset(m, rng):
     s = rng.choice([-1.0, 1.0])
-    return [s * np.ones_like(x.v) for x in m]
+    return Drawn([s * np.ones_like(x.v) for x in m], {"value": s})
 
 
 def _gain(m, rng):
     s = rng.choice([-1.0, 1.0])
-    return [s * x.u for x in m]
+    return Drawn([s * x.u for x in m], {"fraction": s})
 
 
 def _delay(m, rng):
@@ -89,17 +110,17 @@ def _backlash(m, rng):
             n = k[0] if len(k) else stop - start
             load[start : start + n] = -x.u[start : start + n]
         out.append(load)
-    return out
+    return Drawn(out, {"fraction": 1.0}, {"width": gap})
 
 
 def _armature(m, rng):
-    return [x.a for x in m]
+    return Drawn([x.a for x in m], {"inertia": 1.0})
 
 
 def _spring(m, rng):
     q = np.concatenate([x.q for x in m])
     rest = rng.uniform(q.min(), q.max())
-    return [x.q - rest for x in m]
+    return Drawn([x.q - rest for x in m], {"stiffness": 1.0, "preload": rest})
 
 
 def _contact(m, rng):
@@ -107,9 +128,9 @@ def _contact(m, rng):
     part = rng.uniform(0.06, 0.25)
     if rng.random() < 0.5:
         wall = np.quantile(q, 1 - part)
-        return [np.maximum(x.q - wall, 0.0) for x in m]
+        return Drawn([np.maximum(x.q - wall, 0.0) for x in m], {"stiffness": 1.0}, {"threshold": wall})
     wall = np.quantile(q, part)
-    return [np.minimum(x.q - wall, 0.0) for x in m]
+    return Drawn([np.minimum(x.q - wall, 0.0) for x in m], {"stiffness": 1.0}, {"threshold": wall})
 
 
 # outside the registry

@@ -34,8 +34,9 @@ def judge_case(truth: Row, verdict: Row) -> Row:
         "size": min(sizes) if sizes else 0.0,
         "exact": verdict["verdict"] != "unknown" and said == hidden,
         "up_to_equivalents": verdict["verdict"] != "unknown" and _equivalent(hidden, verdict["effects"]),
-        "together": verdict["verdict"] != "unknown"
-        and (said == hidden or any({tuple(x) for x in r["effects"]} == hidden for r in verdict.get("rivals", ()))),
+        "together": verdict["verdict"] != "unknown" and (said == hidden or _listed(hidden, verdict)),
+        "told": verdict["verdict"] != "unknown"
+        and (_equivalent(hidden, verdict["effects"]) or _listed(hidden, verdict)),
         "rivals": len(verdict.get("rivals", ())),
         "joint": hidden <= said or {t for _, t in hidden} == {t for _, t in said},
         "false_alarm": truth["kind"] in ("none", "recalibration") and bool(said or verdict["verdict"] == "unknown"),
@@ -43,7 +44,32 @@ def judge_case(truth: Row, verdict: Row) -> Row:
         "closed": verdict["gap"].get("closed"),
         "seconds": verdict.get("seconds", 0.0),
         "apart": truth.get("apart"),
+        "intervals": [] if verdict["verdict"] == "unknown" else _intervals(truth, verdict),
     }
+
+
+def _intervals(truth: Row, verdict: Row) -> list[Row]:
+    """Every stated number of an effect that is really there: its name, the truth, what was said of it."""
+    real = {(e["name"], e["target"]): e.get("values", {}) for e in truth["effects"]}
+    said = [*verdict["effects"], *verdict.get("recalibration", ())]
+    return [
+        {
+            "effect": f["name"],
+            "parameter": p["name"],
+            "truth": real[f["name"], f["target"]][p["name"]],
+            **{k: p[k] for k in ("value", "low", "high")},
+            "doubt": p.get("doubt", ""),
+        }
+        for f in said
+        if (f["name"], f["target"]) in real
+        for p in f["parameters"]
+        if p["name"] in real[f["name"], f["target"]]
+    ]
+
+
+def _listed(hidden: set[tuple[str, str]], verdict: Row) -> bool:
+    """Whether the hidden set is among those that are said to fit as well."""
+    return any({tuple(x) for x in r["effects"]} == hidden for r in verdict.get("rivals", ()))
 
 
 def _equivalent(hidden: set[tuple[str, str]], effects: list[Row]) -> bool:
@@ -131,6 +157,7 @@ def _effect_questions(rows: list[Row]) -> list[Question]:
     small = [r for r in rows if r["kind"] == "single" and r["size"] < 2.0]
     two = [r for r in rows if r["kind"] == "two"]
     none = [r for r in rows if r["kind"] in ("none", "recalibration")]
+    wrong = [r for r in rows if r["kind"] in ("single", "two") and r["verdict"] == "effects" and not r["exact"]]
     asked = (
         ("single effect, size >= 2, exact set", big, "exact"),
         ("single effect, size >= 2, up to stated equivalents", big, "up_to_equivalents"),
@@ -138,6 +165,7 @@ def _effect_questions(rows: list[Row]) -> list[Question]:
         ("two effects, exact set", two, "exact"),
         ("two effects, up to stated equivalents", two, "up_to_equivalents"),
         ("two effects, exact or listed among the sets that fit as well", two, "together"),
+        ("wrong set named, the truth among its equals", wrong, "told"),
         ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
         (f"two effects, apart >= {APART:g} sd, exact set", _distinct(two), "exact"),
         (f"two effects, apart < {APART:g} sd, exact set", [r for r in two if 0 <= _apart(r) < APART], "exact"),
@@ -161,9 +189,23 @@ def _verdict_questions(rows: list[Row]) -> list[Question]:
 
 
 def _interval_questions(rows: list[Row]) -> list[Question]:
-    """Whether a local effect is found where it acts."""
+    """Whether a local effect is found where it acts, and how often a stated interval holds the truth."""
     local = [r for r in rows if r["overlap"] is not None and r["size"] >= 2.0]
-    return [("interval overlap at least 0.7, size >= 2", local, lambda r: r["overlap"] >= 0.7)]
+    known = [i for r in rows for i in r["intervals"]]
+    sure = [i for i in known if not i["doubt"]]
+    named = [i for r in rows if r["exact"] or r["kind"] == "recalibration" for i in r["intervals"] if not i["doubt"]]
+    return [
+        ("interval overlap at least 0.7, size >= 2", local, lambda r: r["overlap"] >= 0.7),
+        ("95 % interval holds the truth", sure, holds),
+        ("95 % interval holds the truth, exact set", named, holds),
+        ("number whose interval is said not to hold", known, lambda i: bool(i["doubt"])),
+    ]
+
+
+def holds(stated: Row) -> bool:
+    """Whether a stated interval holds the truth; an end that was not finite is none."""
+    above = stated["low"] is None or stated["low"] <= stated["truth"]
+    return above and (stated["high"] is None or stated["truth"] <= stated["high"])
 
 
 def _closed_gap(system: str, rows: list[Row]) -> list[Answer]:

@@ -9,7 +9,7 @@ diameter where both are known.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -116,10 +116,14 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
     # what is implausible beforehand may still fit as well, and has to be told as an equal
     best_rough = rough.index(min(rough))
     alike = worth * float(np.log(max(fits[best_rough].rss, 1e-12))) + SAME
+    numbers = _numbers(fits[best_rough], drops)
     near = [
-        score - min(rough) < CLOSE or (worth * float(np.log(max(f.rss, 1e-12))) < alike and len(f.names) == 1)
+        score - min(rough) < CLOSE
+        or (worth * float(np.log(max(f.rss, 1e-12))) < alike and _numbers(f, drops) <= numbers)
         for f, score in zip(fits, rough, strict=True)
     ]
+    beside = {(f.mode, _twin(f.names)) for f, n in zip(fits, near, strict=True) if n}
+    near = [n or (f.mode, frozenset(f.names)) in beside for f, n in zip(fits, near, strict=True)]
     close = [f for f, n in zip(fits, near, strict=True) if n]
     candidates = _under_likely_colours(drops, close, colours, worth, price)
     behind = max(c.score for c in candidates) - min(rough)
@@ -137,6 +141,20 @@ def search(drops: list[Drop], mass: float | None, diameter: float | None) -> Dro
         floor=float(np.sqrt(cleanest.rss / max(rows - spent, 1))),
         rows=rows,
     )
+
+
+TWINS = {"gain_error": "buoyancy", "buoyancy": "gain_error"}
+"""At one mass a body that weighs less reads as one whose height is scaled down, whatever acts beside."""
+
+
+def _twin(names: Iterable[str]) -> frozenset[str]:
+    """The set in which the one stands for the other."""
+    return frozenset(TWINS.get(n, n) for n in names)
+
+
+def _numbers(fit: DropFit, drops: list[Drop]) -> int:
+    """How many numbers a set has beside the heights of release."""
+    return len(fit.theta) + instants_of(fit.mode, len(drops))
 
 
 def _sets(drops: list[Drop]) -> list[tuple[str, tuple[str, ...]]]:
@@ -172,7 +190,9 @@ def _under_likely_colours(
             # what a fit takes up itself does not count
             misfit = worth / rows * deviance
             options.append(Candidate(fit=other, score=misfit + price(other), misfit=misfit))
-        candidates.append(min(options, key=lambda o: o.score))
+        # how well a set fits is asked apart from how implausible its values are, which may prefer another colour
+        fits_best = min(o.misfit for o in options)
+        candidates.append(replace(min(options, key=lambda o: o.score), misfit=fits_best))
     return candidates
 
 
@@ -220,7 +240,10 @@ def rivals(found: DropSearch, fit: DropFit, most: int = MOST_RIVALS) -> list[Can
         if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
             continue
         out.setdefault(c.effects, c)
-    return list(out.values())[:most]
+    likely = dict(list(out.items())[:most])
+    # a twin is told, however implausible it is beforehand
+    twins = {_twin(n): out[_twin(n)] for n in (mine.effects, *likely) if _twin(n) in out}
+    return list({**likely, **twins}.values())
 
 
 def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:

@@ -9,13 +9,16 @@ import numpy as np
 from scipy.stats import chi2
 
 from ....sim.effects.body.body_registry import BODY_EFFECTS
+from ....sim.effects.effect import Parameter
 from ..findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Value, VerdictName, Where
 from ..pictures import Curve
 from ..regions import phase_of
 from ..study import Study
+from .colour import Colour, grid
 from .experiment import detectable, separating
 from .fit import Drop, DropFit, fit_drops
 from .follow_up import follow_up
+from .intervals import intervals
 from .leftover import Leftover, repeating
 from .recording import drop_of
 from .search import EFFECT, LARGEST, DropSearch, equals, foreseen, price_of, rivals, search
@@ -142,7 +145,8 @@ class FallStudy(Study):
         if fit.mode == "together" or len(instants) < 3:
             return None
         step = float(np.median(np.diff(self.fitted[0].t)))
-        own = self._errors(fit)[len(fit.theta) + len(instants) :]
+        low, high = (x[len(fit.theta) + len(instants) :] for x in self._ends(fit))
+        own = 0.25 * (high - low)
         mean = float(instants.mean())
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
         scatter = float(instants.var(ddof=1)) / len(instants) if fit.mode == "free" else 0.0
@@ -152,10 +156,36 @@ class FallStudy(Study):
             return None
         return mean, mean - 2.0 * error, mean + 2.0 * error
 
-    def _errors(self, fit: DropFit) -> np.ndarray:
-        """Standard deviations of effects and releases (p,)."""
-        scale = fit.rss / self.found.worth
-        return np.sqrt(np.maximum(np.diag(np.linalg.pinv(fit.information)), 0.0) * scale)
+    def _interval(self, name: str, at: int, parameter: Parameter) -> tuple[float, float]:
+        """95 % interval of one number, whichever of the sets that fit as well is the right one.
+
+        Args:
+            name: of its effect.
+            at: where it is among the numbers of its effect.
+            parameter: its bounds.
+        """
+        ends = []
+        for fit in (self.chosen, *(c.fit for c in rivals(self.found, self.chosen) if name in c.fit.names)):
+            first = sum(len(BODY_EFFECTS[n].parameters) for n in fit.names[: fit.names.index(name)])
+            ends.append([x[first + at] for x in self._ends(fit)])
+        low, high = np.min(ends, axis=0)[0], np.max(ends, axis=0)[1]
+        return max(float(low), parameter.lower), min(float(high), parameter.upper)
+
+    def _ends(self, fit: DropFit) -> tuple[np.ndarray, np.ndarray]:
+        """Ends of the 95 % intervals of effects and releases (p,)."""
+        if (fit.names, fit.mode) not in self._known:
+            self._known[fit.names, fit.mode] = intervals(fit, self._colours)
+        return self._known[fit.names, fit.mode]
+
+    @cached_property
+    def _known(self) -> dict[tuple[tuple[str, ...], str], tuple[np.ndarray, np.ndarray]]:
+        """The intervals asked for so far."""
+        return {}
+
+    @cached_property
+    def _colours(self) -> list[Colour]:
+        """Of the noise, those worth trying."""
+        return grid([d.t for d in self.fitted])
 
     @cached_property
     def leftover(self) -> Leftover:
@@ -238,15 +268,14 @@ class FallStudy(Study):
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
         """See `Study.name`."""
-        half = 1.96 * self._errors(self.chosen)[: len(self.chosen.theta)]
         kept = self._kept(self.chosen)
         out, at = [], 0
         for name in self.chosen.names:
             effect = BODY_EFFECTS[name]
             values = []
-            for p in effect.parameters:
-                x, h = float(self.chosen.theta[at]), float(half[at])
-                values.append(Value(name=p.name, unit=p.unit, value=x, low=x - h, high=x + h))
+            for k, p in enumerate(effect.parameters):
+                low, high = self._interval(name, k, p)
+                values.append(Value(name=p.name, unit=p.unit, value=float(self.chosen.theta[at]), low=low, high=high))
                 at += 1
             if self.mass and effect.per_mass:
                 first = values[0]
@@ -279,13 +308,17 @@ class FallStudy(Study):
                 )
             )
         if self.late:
-            mean, low, high = self.late
+            mean = self.late[0]
+            same = (self._lateness(c.fit) for c in rivals(self.found, self.chosen) if c.fit.mode == "late")
+            low, high = np.array([self.late, *(x for x in same if x)])[:, 1:].T
             out.append(
                 EffectFinding(
                     name="delay",
                     target="body",
                     size=float("nan"),
-                    parameters=(Value(name="time", unit="s", value=mean, low=low, high=high),),
+                    parameters=(
+                        Value(name="time", unit="s", value=mean, low=float(low.min()), high=float(high.max())),
+                    ),
                     equivalent=tuple(n for n, _ in equals(self.found, "delay", self.chosen)),
                 )
             )

@@ -185,7 +185,12 @@ def _again(model: RigidModel, log: JointLog, q, dq, ddq, stretch: float) -> Join
 
 
 def best_experiment(
-    block: Block, theta: np.ndarray, other: Alternative, model: RigidModel, logs: list[JointLog], floor: np.ndarray
+    block: Block,
+    theta: np.ndarray,
+    other: Alternative,
+    motions: dict[str, JointLog],
+    logs: list[JointLog],
+    floor: np.ndarray,
 ) -> tuple[str, float]:
     """The motion in which two explanations differ most, both having to explain the old data too.
 
@@ -203,18 +208,19 @@ def best_experiment(
     old = np.concatenate([columns(other.blocks, log) for log in logs])
     target = np.concatenate([columns((block,), log) @ theta for log in logs])
     best = ("", 0.0)
-    for text, log in experiments(model, logs[0]).items():
+    for text, log in motions.items():
         X, y = columns(other.blocks, log), columns((block,), log) @ theta
         fit = np.linalg.lstsq(np.concatenate([old, X]), np.concatenate([target, y]), rcond=None)[0]
         apart = float(np.sqrt(np.mean((y - X @ fit) ** 2)))
         for b in (block, *other.blocks):  # synthetic logs are not kept
-            _forget(b, log.name)
+            forget(b, log.name)
         if apart > best[1]:
             best = (text, apart)
     return best
 
 
-def _forget(block: Block, name: str) -> None:
+def forget(block: Block, name: str) -> None:
+    """Drop what a block keeps of one log: logs of motions that were never run are not asked for again."""
     for cell in block.build.__closure__ or ():
         if isinstance(cell.cell_contents, dict):
             cell.cell_contents.pop(name, None)

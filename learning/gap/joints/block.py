@@ -31,6 +31,7 @@ class Block:
         build: its columns in one log.
         trials: how many shapes were screened (multiplicity).
         term: the body term behind it, if any.
+        about: value of its parameter that its columns are exact at.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Block:
     contains: frozenset[str] = frozenset()
     trials: int = 1
     term: BodyTerm | None = None
+    about: float = 0.0
 
     @property
     def key(self) -> tuple[str, str]:
@@ -62,7 +64,7 @@ def joint_block(effect: JointEffect, model: RigidModel, joint: int, shape: dict[
 
     def build(log: JointLog) -> np.ndarray:
         if log.name not in kept:
-            kept[log.name] = log.shared(effect.columns(log.motion(joint), shape))[:, None, :]
+            kept[log.name] = log.shared(effect.columns(log.motion(joint), shape), effect.sharp)[:, None, :]
         return kept[log.name]
 
     return Block(

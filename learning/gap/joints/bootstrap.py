@@ -1,8 +1,8 @@
-"""Intervals and confidence from resampled stretches of the log (stretches longer than the noise remembers)."""
+"""Confidence in each effect from resampled stretches of the log (stretches longer than the noise remembers)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,31 +12,17 @@ from .search import Search, bounded_solve
 from .thresholds import CONFIDENCE
 from .workflow import Named
 
-RESAMPLES = 200
+RESAMPLES = 50
 STRETCHES = 30
 
 
-@dataclass(frozen=True, kw_only=True)
-class Resampled:
-    """Bootstrap of one fitted set.
-
-    Attributes:
-        low, high: 95 % interval of each linear parameter, in order.
-        kept: (B,) part of the resamples in which each block still pays its price.
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    kept: np.ndarray
-
-
-def resample(search: Search, chosen: tuple[int, ...], logs: list[JointLog], seed: int = 0) -> Resampled:
-    """Refit the chosen set on resampled stretches."""
+def kept_part(search: Search, chosen: tuple[int, ...], logs: list[JointLog], seed: int = 0) -> np.ndarray:
+    """Part of the resamples, in which the chosen set is refitted, that each block still pays its price in, (B,)."""
     blocks: list[Block] = [search.blocks[i] for i in chosen]
     parameters = [p for b in blocks for p in b.parameters]
     k = len(parameters)
     if k == 0:
-        return Resampled(low=np.zeros(0), high=np.zeros(0), kept=np.zeros(0))
+        return np.zeros(0)
     channels = sorted({c for b in blocks for c in b.channels})
     each = max(1, STRETCHES // len(logs))
     A, r, yy, n = [], [], [], []
@@ -59,27 +45,22 @@ def resample(search: Search, chosen: tuple[int, ...], logs: list[JointLog], seed
     weight = search.weight[channels]
     ridge = np.diag(search.ridge[search.columns(chosen)])
     rng = np.random.default_rng(seed)
-    thetas, kept = np.zeros((RESAMPLES, k)), np.zeros(len(blocks))
+    kept = np.zeros(len(blocks))
     spans = np.cumsum([0, *(len(b.parameters) for b in blocks)])
-    for s in range(RESAMPLES):
+    for _ in range(RESAMPLES):
         pick = rng.integers(len(n), size=len(n))
         Ac, rc, yc, rows = A[pick].sum(axis=0), r[pick].sum(axis=0), yy[pick].sum(axis=0), n[pick].sum()
         At, rt = np.einsum("c,cij->ij", weight, Ac) + ridge, weight @ rc
         theta = bounded_solve(At, rt, parameters)
-        thetas[s] = theta
         full = _rss(Ac, rc, yc, theta)
-        if s % 4 == 0:
-            for b in range(len(blocks)):
-                others = np.r_[0 : spans[b], spans[b + 1] : k]
-                part = np.zeros(k)
-                if len(others):
-                    part[others] = bounded_solve(
-                        At[np.ix_(others, others)], rt[others], [parameters[o] for o in others]
-                    )
-                gain = rows * float(np.sum(np.log(_rss(Ac, rc, yc, part)) - np.log(full)))
-                kept[b] += gain > search.price[chosen[b]]
-    low, high = np.quantile(thetas, [0.025, 0.975], axis=0)
-    return Resampled(low=low, high=high, kept=kept / len(range(0, RESAMPLES, 4)))
+        for b in range(len(blocks)):
+            others = np.r_[0 : spans[b], spans[b + 1] : k]
+            part = np.zeros(k)
+            if len(others):
+                part[others] = bounded_solve(At[np.ix_(others, others)], rt[others], [parameters[o] for o in others])
+            gain = rows * float(np.sum(np.log(_rss(Ac, rc, yc, part)) - np.log(full)))
+            kept[b] += gain > search.price[chosen[b]]
+    return kept / RESAMPLES
 
 
 def _rss(A: np.ndarray, r: np.ndarray, yy: np.ndarray, theta: np.ndarray) -> np.ndarray:
@@ -89,7 +70,7 @@ def _rss(A: np.ndarray, r: np.ndarray, yy: np.ndarray, theta: np.ndarray) -> np.
 def confident(named: Named, logs: list[JointLog]) -> Named:
     """Leave out, one after the other, effects that too few resamples keep."""
     while named.chosen:
-        kept = resample(named.search, named.chosen, logs).kept
+        kept = kept_part(named.search, named.chosen, logs)
         worst = int(np.argmin(kept))
         if kept[worst] >= CONFIDENCE:
             break

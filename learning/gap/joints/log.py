@@ -9,7 +9,7 @@ import numpy as np
 from ....sim.effects.effect import JointMotion, Spread
 from ..errors import GapError
 from ..measurement import Episode
-from ..smoothing import bandwidth, derivative, lowpass, resample
+from ..smoothing import bandwidth, derivative, lowpass, lowpass_both, resample
 from .rigid import RigidModel
 
 ROWS = 6000  # an episode is thinned to at most about this many rows
@@ -73,8 +73,16 @@ class JointLog:
         """The same log without the shared filter, to see what lies outside the motion's bandwidth."""
         return replace(self, name=f"{self.name}~", cutoff=float("inf"), residual=self.raw - self.rigid)
 
-    def shared(self, columns: np.ndarray) -> np.ndarray:
-        """Columns through the filter both sides of the balance go through, ends trimmed."""
+    def shared(self, columns: np.ndarray, sharp: bool = False) -> np.ndarray:
+        """Columns through the filter both sides of the balance go through, ends trimmed.
+
+        Args:
+            columns: (T, ...) made from the smoothed motion.
+            sharp: they jump or bend where the motion is smooth; then they also go through the filter that smoothed
+                the load, as a jump in the load did.
+        """
+        if sharp:
+            return lowpass_both(columns, self.dt, self.cutoff, self.cutoff / SHARED)[self.inner]
         return lowpass(columns, self.dt, self.cutoff)[self.inner]
 
 

@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 
 from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .block import Block, body_block, joint_block
+from .lag import at_lag
 from .log import JointLog
 from .rigid import RigidModel
 
@@ -24,6 +25,8 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
             com = np.clip(values[1:] / values[0], -1.0, 1.0)
             shape = {f"com_{a}": float(x) for a, x in zip("xyz", com, strict=True)}
             out[i] = body_block(replace(block.term, shape=shape), model)
+        elif block.name == "delay":
+            out[i] = at_lag(block, float(values[0]))
         elif block.shape and block.name in JOINT_EFFECTS:
             out[i] = fit_shape(block, [b for k, b in enumerate(out) if k != i], model, logs)
     return out
@@ -86,7 +89,8 @@ class _ShapeProblem:
         y = self._y
         if any(p.lower > shape[p.name] or p.upper < shape[p.name] for p in self._block.shape_parameters):
             return float(y @ y)
-        Z = np.concatenate([log.shared(self._effect.columns(log.motion(self._channel), shape)) for log in self._logs])
+        columns = (self._effect.columns(log.motion(self._channel), shape) for log in self._logs)
+        Z = np.concatenate([log.shared(x, self._effect.sharp) for x, log in zip(columns, self._logs, strict=True)])
         Z = Z - self._others @ (self._others.T @ Z)
         theta = np.linalg.lstsq(Z, y, rcond=1e-8)[0]
         linear = self._effect.linear

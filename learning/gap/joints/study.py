@@ -9,21 +9,23 @@ from typing import Any
 import numpy as np
 
 from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where, told_apart
+from ..findings import EffectFinding, Gap, Placebo, Rival, VerdictName, Where, told_apart
 from ..measurement import SHOWN, Episode, MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
-from .alternatives import alternatives, best_experiment, mass_twins
+from .alternatives import alternatives, best_experiment, experiments, mass_twins
 from .arm_model import GRAVITY, ArmModel
 from .axis_model import AxisModel
 from .block import Block
-from .bootstrap import Resampled, confident, resample
+from .bootstrap import confident, kept_part
 from .detect import smallest_found
+from .intervals import Intervals, intervals, value_within
 from .localise import places
 from .log import JointColumns, JointLog, read_logs
 from .outcome import Outcome, inadequacy, judge, makes_worse
 from .placebo import placebos
 from .rigid import RigidModel
+from .rivals import parting, rivals
 from .robot_files import find_urdf
 from .rollout import patched_joints, rollout_gap
 from .workflow import Named, explained, name_effects
@@ -193,9 +195,16 @@ class JointStudy(Study):
         return judge(self.named, self.fitted, self.heldout, self.model.joints, self.unit, self._searched[1])
 
     @cached_property
-    def resampled(self) -> Resampled:
-        """Intervals and confidence."""
-        return resample(self.named.search, self.named.chosen, self.fitted)
+    def kept(self) -> np.ndarray:
+        """Part of the resamples that keeps each effect, (B,)."""
+        return kept_part(self.named.search, self.named.chosen, self.fitted)
+
+    @cached_property
+    def intervals(self) -> Intervals:
+        """How sure the numbers are."""
+        n = self.named
+        ridge = n.search.ridge[n.search.columns(n.chosen)]
+        return intervals(n.blocks, n.theta, n.search.weight, self.fitted, self.model, ridge)
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
@@ -221,28 +230,21 @@ class JointStudy(Study):
 
     def _finding(self, k: int, block: Block, theta: np.ndarray, span: slice) -> EffectFinding:
         prismatic = self.model.prismatic[block.channels[0]]
+        low, high = self._ends(k, theta, self.intervals.linear[span])
         values = [
-            Value(name=p.name, unit=p.unit_for(prismatic), value=float(v), low=float(a), high=float(b))
-            for p, v, a, b in zip(
-                block.parameters, theta, self.resampled.low[span], self.resampled.high[span], strict=True
-            )
+            value_within(p, p.unit_for(prismatic), v, a, b)
+            for p, v, a, b in zip(block.parameters, theta, low, high, strict=True)
         ]
-        if not (block.term is not None):
+        if block.term is None:
             values += [
-                Value(
-                    name=p.name,
-                    unit=p.unit_for(prismatic),
-                    value=block.shape[p.name],
-                    low=block.shape[p.name],
-                    high=block.shape[p.name],
-                )
-                for p in block.shape_parameters
+                value_within(p, p.unit_for(prismatic), x := block.shape[p.name], x - h, x + h)
+                for p, h in ((p, self.intervals.shape.get((k, p.name), 0.0)) for p in block.shape_parameters)
             ]
         search, chosen = self.named.search, self.named.chosen
         others = alternatives(search, chosen, chosen[k])
         experiment = ""
         if others:
-            text, apart = best_experiment(block, theta, others[0], self.model, self.fitted, self.named.noise.rms)
+            text, apart = best_experiment(block, theta, others[0], self._motions, self.fitted, self.named.noise.rms)
             experiment = told_apart(text, block.name, " + ".join(others[0].names), apart)
         loads = np.concatenate([block.build(log) @ theta for log in self.fitted])
         size = float(np.max(np.sqrt(np.mean(loads**2, axis=0)) / self.named.noise.rms[list(block.channels)]))
@@ -255,8 +257,42 @@ class JointStudy(Study):
             equivalent=(*(" + ".join(a.names) for a in others), *mass_twins(block)),
             size=size,
             smallest=smallest,
-            confidence=float(self.resampled.kept[k]),
+            confidence=float(self.kept[k]),
         )
+
+    def rivals(self) -> tuple[Rival, ...]:
+        """See `Study.rivals`."""
+        if self.outcome.verdict != "effects" or not self.named.chosen:
+            return ()
+        search, chosen, floor = self.named.search, self.named.chosen, self.named.noise.rms
+        out = []
+        for other in self._rival_sets:
+            blocks = [search.blocks[i] for i in other if not search.blocks[i].recalibration]
+            text, apart = parting(search, chosen, other, self._motions, floor)
+            name = " + ".join(b.name for b in self.named.blocks)
+            names = " + ".join(b.name for b in blocks)
+            out.append(Rival(effects=tuple(b.key for b in blocks), experiment=told_apart(text, name, names, apart)))
+        return tuple(out)
+
+    @cached_property
+    def _rival_sets(self) -> list[tuple[int, ...]]:
+        """Other sets of the search's blocks that fit as well."""
+        return rivals(self.named.search, self.named.chosen)
+
+    @cached_property
+    def _motions(self) -> dict[str, JointLog]:
+        """What could be run next."""
+        return experiments(self.model, self.fitted[0])
+
+    def _ends(self, k: int, theta: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Ends of the intervals of the `k`-th block's numbers, whichever of the sets that fit as well is right."""
+        search, index = self.named.search, self.named.chosen[k]
+        every = [theta]
+        for other in self._rival_sets:
+            if index in other:
+                at = len(search.columns(other[: other.index(index)]))
+                every.append(search.fit(other)[at : at + len(theta)])
+        return np.min(every, axis=0) - half, np.max(every, axis=0) + half
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""

@@ -9,6 +9,7 @@ import numpy as np
 from .block import Block, effect_blocks
 from .generic import generic_columns, scales
 from .gram import Gram, assemble, exchange
+from .lag import lagged
 from .log import JointLog
 from .noise import NoiseModel, estimate_noise, repeat_difference
 from .refine import refined
@@ -117,7 +118,7 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
             )
     search = Search(gram=gram, noise=noise, strict=strict)
     chosen = unequal_levels(search, chosen)
-    search = widened(search, chosen, model, logs)
+    search = lagged(widened(search, chosen, model, logs), chosen, logs)
     return Named(
         blocks=tuple(search.blocks[i] for i in chosen),
         noise=noise,

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where, told_apart
-from ..joints.bootstrap import Resampled, resample
+from ..findings import EffectFinding, Gap, Placebo, VerdictName, Where, told_apart
+from ..joints.bootstrap import kept_part
 from ..joints.detect import smallest_found
+from ..joints.intervals import intervals, value_within
 from ..joints.localise import places
 from ..joints.log import JointLog
 from ..joints.outcome import Outcome, farther, inadequacy, judge
@@ -100,9 +101,15 @@ class OwnStudy(Study):
         return out
 
     @cached_property
-    def resampled(self) -> Resampled:
-        """Intervals and confidence."""
-        return resample(self.found.named.search, self.found.named.chosen, self.found.point.logs)
+    def kept(self) -> np.ndarray:
+        """Part of the resamples that keeps each effect, (B,)."""
+        return kept_part(self.found.named.search, self.found.named.chosen, self.found.point.logs)
+
+    @cached_property
+    def half_widths(self) -> np.ndarray:
+        """Half-widths of the parameters' 95 % intervals, (k,)."""
+        n = self.found.named
+        return intervals(n.blocks, n.theta, n.search.weight, self.found.point.logs).linear
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""
@@ -132,10 +139,8 @@ class OwnStudy(Study):
         named, effect = self.found.named, self.found.effects[k]
         block, theta = named.blocks[k], named.theta[span]
         values = tuple(
-            Value(name=p.name, unit=p.unit, value=float(v), low=float(a), high=float(b))
-            for p, v, a, b in zip(
-                effect.parameters, theta, self.resampled.low[span], self.resampled.high[span], strict=True
-            )
+            value_within(p, p.unit, v, v - h, v + h)
+            for p, v, h in zip(effect.parameters, theta, self.half_widths[span], strict=True)
         )
         others = equals(self.sim, self.found, k)
         experiment = ""
@@ -151,7 +156,7 @@ class OwnStudy(Study):
             experiment=experiment,
             size=float(np.max(np.sqrt(np.mean(moved**2, axis=0)) / self.outcome.floor)),
             smallest=smallest_found(named.search, named.chosen, named.chosen[k], theta),
-            confidence=float(self.resampled.kept[k]),
+            confidence=float(self.kept[k]),
         )
 
     def patch(self) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caretree.learning.gap.smoothing import bandwidth, derivative, lowpass, resample
+from caretree.learning.gap.smoothing import bandwidth, derivative, lowpass, lowpass_both, resample
 from scipy.signal import lfilter
 
 T = np.arange(0.0, 10.0, 0.005)
@@ -57,3 +57,10 @@ def test_a_quiet_log_is_read_well_beyond_its_motion_and_a_noisy_one_is_not():
     noise = np.random.default_rng(100).normal(size=len(t))
     assert bandwidth(x + 1e-6 * noise, 1e-3)[0] > 10.0
     assert bandwidth(x + 3e-3 * noise, 1e-3)[0] < 10.0
+
+
+def test_two_filters_in_one_pass_are_the_two_one_after_the_other():
+    x = np.sin(2 * np.pi * 0.5 * T) + np.sin(2 * np.pi * 3.0 * T)
+    both = lowpass_both(x, 0.005, 3.0, 4.0)
+    assert both[200:-200] == pytest.approx(lowpass(lowpass(x, 0.005, 4.0), 0.005, 3.0)[200:-200], abs=1e-3)
+    assert np.array_equal(lowpass_both(x, 0.005, np.inf, 3.0), lowpass(x, 0.005, 3.0))

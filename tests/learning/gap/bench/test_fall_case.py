@@ -24,3 +24,10 @@ def test_drops_asked_for_are_added_to_the_same_recordings(tmp_path):
     assert [e["mass"] for e in after["episodes"][count:]] == pytest.approx([3.0 * after["mass"]] * 3)
     released = np.loadtxt(again / after["episodes"][-1]["file"], delimiter=",", skiprows=1)[0, 1]
     assert released / (1.0 + drawn.values["gain_error"]) == pytest.approx(29.25, abs=1.0)
+
+
+def test_what_is_hidden_has_the_numbers_the_registry_gives_it(tmp_path):
+    truth, drawn = draw_fall(185, tmp_path)
+    values = {e["name"]: e["values"] for e in truth.effects}
+    assert values["wind"] == {"coefficient": drawn.values["wind"], "speed": drawn.values["updraft"]}
+    assert values["linear_drag"] == {"rate": drawn.values["linear_drag"]}

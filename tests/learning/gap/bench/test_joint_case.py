@@ -14,3 +14,13 @@ def test_no_more_tool_is_missing_than_there_is(tmp_path):
     tool = next(e for e in truth.effects if e["name"] == "wrong_tool")
     assert LEAST <= tool["size"] < 3.0
     assert np.isfinite(tool["size"])
+
+
+def test_what_is_hidden_has_the_numbers_the_registry_gives_it(tmp_path):
+    file = {103: "mass", 141: "spring", 181: "backlash"}
+    for seed, name in file.items():
+        truth = write_joint_case("axis", seed, tmp_path)
+        values = next(e["values"] for e in truth.effects if e["name"] == name)
+        wanted = {"mass": {"mass"}, "spring": {"stiffness", "preload"}, "backlash": {"fraction", "width"}}[name]
+        assert set(values) == wanted
+        assert all(np.isfinite(v) for v in values.values())

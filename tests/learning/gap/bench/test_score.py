@@ -1,5 +1,5 @@
 import pytest
-from caretree.learning.gap.bench.score import interval, judge_case, side_by_side, table
+from caretree.learning.gap.bench.score import holds, interval, judge_case, side_by_side, table
 
 
 def case(hidden, said, kind="single", verdict="effects", equivalent=()):
@@ -16,13 +16,13 @@ def case(hidden, said, kind="single", verdict="effects", equivalent=()):
             "verdict": verdict,
             "where": [],
             "gap": {"closed": 0.9},
-            "effects": [{"name": n, "target": "axis", "equivalent": list(equivalent)} for n in said],
+            "effects": [{"name": n, "target": "axis", "equivalent": list(equivalent), "parameters": []} for n in said],
         },
     )
 
 
 def two(name):
-    return {"name": name, "target": "body", "size": 3.0}
+    return {"name": name, "target": "body", "size": 3.0, "parameters": []}
 
 
 def test_exact_set_counts_neither_more_nor_less():
@@ -74,3 +74,23 @@ def test_two_rounds_stand_side_by_side():
     lines = side_by_side([[case(["offset"], [])], [case(["offset"], ["offset"])]])
     row = next(line for line in lines if line.startswith("single effect, size >= 2, exact set"))
     assert row.index("0/   1") < row.index("1/   1")
+
+
+def test_a_stated_interval_holds_the_truth_or_not_or_is_doubted():
+    stated = {"name": "value", "value": 1.0, "low": 0.8, "high": 1.2}
+    truth = {
+        "system": "axis",
+        "seed": 1,
+        "kind": "single",
+        "intervals": [],
+        "effects": [{"name": "offset", "target": "axis", "size": 3.0, "values": {"value": 1.1}}],
+    }
+    said = {"verdict": "effects", "where": [], "gap": {"closed": 0.9}}
+    rows = [
+        judge_case(truth, {**said, "effects": [{"name": "offset", "target": "axis", "parameters": [p]}]})
+        for p in (stated, {**stated, "high": 1.05}, {**stated, "high": None}, {**stated, "doubt": "at its bound"})
+    ]
+    assert [holds(i) for r in rows for i in r["intervals"]] == [True, False, True, True]
+    asked = {r[0]: r[2:4] for r in table(rows)}
+    assert asked["95 % interval holds the truth"] == (2, 3)
+    assert asked["number whose interval is said not to hold"] == (1, 4)

@@ -119,3 +119,19 @@ def test_a_lift_that_size_and_mass_do_not_foretell_is_told_as_an_equal_of_a_wron
     assert verdict == "effects"
     assert {"buoyancy", "gain_error"} <= {effects[0].name, *effects[0].equivalent}
     assert "heavy" in effects[0].experiment
+
+
+def test_a_lift_beside_a_drag_is_told_as_an_equal_of_a_wrong_scale_beside_one(drop_set):
+    folder = drop_set(0.02)
+    for file in folder.glob("d*.csv"):
+        t, h = np.loadtxt(file, delimiter=",", skiprows=1).T
+        h = 20.0 + (h - 20.0) * 0.95  # 5 % less weight and a drag that is 5 % larger read so too
+        np.savetxt(file, np.column_stack([t, h]), delimiter=",", header="t,h", comments="")
+    settings = folder / "measurement.yaml"
+    settings.write_text(settings.read_text() + "mass: 0.2\ndiameter: 0.2\n")
+    study = open_study(load_set(folder))
+    verdict, effects, _, _ = study.name()
+    assert verdict == "effects"
+    sets = [{f.name for f in effects}, *({n for n, _ in r.effects} for r in study.rivals())]
+    assert {"gain_error", "quadratic_drag"} in sets
+    assert {"buoyancy", "quadratic_drag"} in sets

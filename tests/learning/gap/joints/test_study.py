@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
 
 from ..solved import solved
 
@@ -42,3 +44,12 @@ def test_a_single_effect_is_named_with_its_size(axis_set, name, extra, parameter
 def test_two_effects_are_named_together(axis_set):
     _, _, effects, _, _ = solved(axis_set(lambda q, v, a: 8.0 * v + 1.0))
     assert {f.name for f in effects} == {"viscous_friction", "offset"}
+
+
+def test_no_interval_is_trusted_where_something_without_a_name_acts_too(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: 8.0 * v + 3.0 * np.sin(150.0 * q), noise=0.1)))
+    verdict = study.conclude()
+    assert verdict.verdict == "unknown"
+    values = [p for f in (*verdict.effects, *verdict.recalibration) for p in f.parameters]
+    assert values
+    assert all(p.doubt for p in values)

@@ -1,0 +1,148 @@
+"""Whole sets of effects that explain a log as well as the named one, from the search's own columns and noise.
+
+Prices are not counted here: a price says which explanation is likelier beforehand, not which the log rules out.  A set
+with one effect more fits better by construction; it is a rival where it does so by more than noise would, and yet not
+by as much as a new effect has to before it is named.  So what the named effects may have swallowed is told too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from .alternatives import SAME, forget
+from .block import Block
+from .log import JointLog
+from .search import Search, Set
+
+SWALLOWED = 0.05  # chance that noise alone gains as much as an effect that is told as perhaps swallowed
+TRIED = 6  # of the effects that could take the place of others, those that gain most
+MOST = 6
+
+
+def rivals(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
+    """Other sets that fit as well, best first.
+
+    Args:
+        search: knows all blocks and how well any set of them fits.
+        chosen: the named set.
+        most: how many at most.
+    """
+    base, mine = _misfit(search, chosen), _named(search, chosen)
+    found: dict[frozenset[tuple[str, str]], tuple[float, Set]] = {}
+    for other in _neighbours(search, chosen):
+        names = _named(search, other)
+        if not names or names == mine:
+            continue
+        worse = _misfit(search, other) - base
+        widest = max(float(search.widening[i]) for i in {*chosen, *other})
+        added = set(other) - set(chosen)
+        if set(chosen) < set(other):
+            numbers = sum(search.blocks[i].size for i in added)
+            keep = -worse > chi2.isf(SWALLOWED, numbers) * widest
+        else:
+            keep = worse < SAME * widest
+        score = search.score(other)
+        if keep and (names not in found or score < found[names][0]):
+            found[names] = (score, other)
+    return [other for _, other in sorted(found.values(), key=lambda pair: pair[0])][:most]
+
+
+def _misfit(search: Search, chosen: Set) -> float:
+    return float(search.rows @ np.log(search.rss(chosen)))
+
+
+def _named(search: Search, chosen: Set) -> frozenset[tuple[str, str]]:
+    """Keys of the effects in a set; the model's own numbers are none."""
+    return frozenset(search.blocks[i].key for i in chosen if not search.blocks[i].recalibration)
+
+
+def _neighbours(search: Search, chosen: Set) -> Iterator[Set]:
+    """Sets with one or two members left out, one put in their place, or one more."""
+    dropped: list[Set] = [(), *((i,) for i in chosen)]
+    dropped += [
+        (i, j)
+        for a, i in enumerate(chosen)
+        for j in chosen[a + 1 :]
+        if set(search.blocks[i].channels) & set(search.blocks[j].channels)
+    ]
+    for drop in dropped:
+        rest = tuple(i for i in chosen if i not in drop)
+        if drop:
+            yield rest
+        yield from _with_another(search, chosen, rest, drop)
+        yield from _other_forms(search, chosen, rest, drop)
+    yield from _halves(search, chosen)
+
+
+def _with_another(search: Search, chosen: Set, rest: Set, drop: Set) -> Iterator[Set]:
+    """What is left of a set with one more, that gains most, where something was left out."""
+    touched = {c for i in drop for c in search.blocks[i].channels}
+    tried: set[tuple[str, str]] = set()
+    for i in (int(k) for k in np.argsort(-search.gains(rest) / search.widening)):
+        new = search.blocks[i]
+        if i in chosen or new.key in tried or (drop and not touched & set(new.channels)):
+            continue
+        if len(tried) == TRIED:
+            break
+        tried.add(new.key)
+        gone = search.clash(i, rest)
+        yield (*(j for j in rest if j not in gone), i)
+
+
+def _other_forms(search: Search, chosen: Set, rest: Set, drop: Set) -> Iterator[Set]:
+    """What is left of a set with a richer or a plainer form of what was left out."""
+    for i, new in enumerate(search.blocks):
+        if drop and i not in chosen and {search.blocks[j].target for j in drop} == {new.target}:
+            related = {search.blocks[j].name for j in drop} & new.contains
+            related |= {new.name} & frozenset.union(*(search.blocks[j].contains for j in drop))
+            if related and not search.clash(i, rest):
+                yield (*rest, i)
+
+
+def _halves(search: Search, chosen: Set) -> Iterator[Set]:
+    """Unequal friction as a level and an offset."""
+    at = {b.key: i for i, b in enumerate(search.blocks) if not b.shape}
+    for i in chosen:
+        block = search.blocks[i]
+        parts = [at.get((n, block.target)) for n in ("coulomb_friction", "offset")]
+        if block.name == "asymmetric_friction" and None not in parts:
+            yield tuple(dict.fromkeys([*(j for j in chosen if j != i), *(p for p in parts if p is not None)]))
+
+
+def parting(
+    search: Search, chosen: Set, other: Set, motions: dict[str, JointLog], floor: np.ndarray
+) -> tuple[str, float]:
+    """The motion in which two sets part most, with the numbers this log gives both.
+
+    Args:
+        search: knows the blocks.
+        chosen: the one set.
+        other: the other.
+        motions: what could be run next: the sentence for the reader and the log it would give.
+        floor: (C,) noise.
+
+    Returns:
+        (sentence, difference in the channel that shows it best, over its noise).
+    """
+    best = ("", 0.0)
+    pair = [([search.blocks[i] for i in s], search.fit(s)) for s in (chosen, other)]
+    for text, log in motions.items():
+        a, b = (_load(blocks, theta, log, len(floor)) for blocks, theta in pair)
+        apart = float(np.max(np.sqrt(np.mean((a - b) ** 2, axis=0)) / floor))
+        if apart > best[1]:
+            best = (text, apart)
+    return best
+
+
+def _load(blocks: Sequence[Block], theta: np.ndarray, log: JointLog, channels: int) -> np.ndarray:
+    """What a set adds to the model in a log that is not kept, (T_inner, C)."""
+    out, at = np.zeros((len(log.t[log.inner]), channels)), 0
+    for block in blocks:
+        n = len(block.parameters)
+        out[:, list(block.channels)] += block.build(log) @ theta[at : at + n]
+        forget(block, log.name)
+        at += n
+    return out

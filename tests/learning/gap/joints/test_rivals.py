@@ -1,0 +1,45 @@
+import numpy as np
+from caretree.learning.gap.joints.alternatives import experiments
+from caretree.learning.gap.joints.rivals import parting, rivals
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
+
+
+def sets(study):
+    return [{name for name, _ in r.effects} for r in study.rivals()]
+
+
+def test_a_number_holds_whichever_set_is_right(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: np.where(v > 0, 1.6, -0.5) + 12.0 * q, noise=0.2)))
+    effects = study.name()[1]
+    every = [{f.name for f in effects}, *sets(study)]  # a spring may rest anywhere, and that is an offset
+    assert {"coulomb_friction", "spring"} in every
+    assert {"asymmetric_friction", "spring"} in every
+    preload = next(p for f in effects for p in f.parameters if p.name == "preload")
+    assert preload.low < -0.52 < preload.high  # as it is without unequal friction, within the noise
+    assert preload.low < 0.0 < preload.high  # and with it
+
+
+def test_nothing_else_fits_where_the_recordings_tell(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: 6.0 * v, noise=0.1)))
+    search, chosen = study.named.search, study.named.chosen
+    plain = {"spring", "offset", "coulomb_friction", "delay"}
+    assert not [r for r in rivals(search, chosen) if {search.blocks[i].name for i in r} <= plain]
+
+
+def test_what_an_effect_may_have_swallowed_is_told(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: 6.0 * v + 0.06 * np.sign(v), noise=0.4)))
+    assert [f.name for f in study.name()[1]] == ["viscous_friction"]
+    assert {"viscous_friction", "coulomb_friction"} in sets(study) or not sets(study)
+    assert all({"viscous_friction"} < s or "viscous_friction" not in s for s in sets(study))
+
+
+def test_the_motion_that_parts_two_sets_is_found(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: 0.8 * np.sign(v))))
+    search = study.named.search
+    at = {b.name: i for i, b in enumerate(search.blocks) if not b.shape}
+    motions = experiments(study.model, study.fitted[0])
+    text, apart = parting(search, (at["coulomb_friction"],), (at["viscous_friction"],), motions, study.named.noise.rms)
+    assert "speed" in text
+    assert apart > 1.0
+    assert parting(search, (at["offset"],), (at["offset"],), motions, study.named.noise.rms)[1] == 0.0
