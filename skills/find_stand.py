@@ -10,9 +10,8 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture, SleeveOpening
+from ..sim.mechanics.kinematics import kinematics_of
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot import model
-from ..sim.robot.kinematics import default_kinematics
 from ..sim.world import SIDES, Side
 from .belief.person_tracking import watch_arm
 from .belief.sleeve_search import find_sleeve, strap_position, strap_views
@@ -86,7 +85,7 @@ class FindStand(Skill):
 
     def _reaches(self, base: np.ndarray, posture: ArmPosture, sleeve: SleeveOpening) -> bool:
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""
-        arms = model.READY.copy()
+        arms = self.world.robot.ready.copy()
         bed = self.world.room.bed
         tuning, lift = self.tuning, self.tuning.lift
         shoulder, held = posture.points_in_map[0], ArmPath.of(posture).point(lift.grip_coordinate)
@@ -94,7 +93,7 @@ class FindStand(Skill):
         end = over_arm(posture, lift.grip_coordinate, lift=0.0)
         end[:3, 3] = shoulder + np.linalg.norm(held - shoulder) * up
         lifts = [over_arm(posture, lift.grip_coordinate, lift=lift.approach_height), end]
-        views = strap_views(sleeve, self.side, self.pulling, bed)
+        views = strap_views(self.world.robot, sleeve, self.side, self.pulling, bed)
         approach = -np.cos(tuning.grasp_tilt) * outwards(self.side) - np.sin(tuning.grasp_tilt) * UP
         strap = strap_position(sleeve) - tuning.grasp_height * approach
         grasps = [hand_pose(strap, approach, turn * sleeve.closing_in_map) for turn in (1.0, -1.0)]
@@ -108,9 +107,9 @@ class FindStand(Skill):
     def _posture(
         self, hand: Side, poses: Iterable[np.ndarray], base: np.ndarray, arms: np.ndarray
     ) -> np.ndarray | None:
-        """Joint angles (7,) for the first of `poses` that is within reach without touching anything."""
+        """Joint angles (n,) for the first of `poses` that is within reach without touching anything."""
         free = free_postures(collision_checker(self), hand, base, arms)
-        kinematics, start, seeds = default_kinematics(), arms[SIDES.index(hand)], self.tuning.ik_seeds
+        kinematics, start, seeds = kinematics_of(self.world.robot), arms[SIDES.index(hand)], self.tuning.ik_seeds
         for pose in poses:
             with suppress(Unreachable):
                 return solve_ik(kinematics, hand, pose, base, start, seeds=seeds, accept=free)

@@ -126,7 +126,7 @@ class GraspSleeve(Skill):
     def _strap_from(self, far: SleeveOpening) -> Generator[None, None, SleeveOpening]:
         """The strap as the hand's camera sees it from the first of the views of `far` in which it shows."""
         unreachable, hidden = Tries(MotionError), Tries(PerceptionFailure)
-        for pose in strap_views(far, self.side, self.hand, self.world.room.bed):
+        for pose in strap_views(self.world.robot, far, self.side, self.hand, self.world.room.bed):
             with unreachable:
                 speed = careful(self, self.tuning.view_speed)
                 yield from move_hands(self, {self.hand: pose}, way="any", speed=speed)

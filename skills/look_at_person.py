@@ -83,6 +83,7 @@ class LookAtPerson(Skill):
                     return
                 yield from self.wait(self.tuning.look_interval)
         posture = self._remembered(lost)
+        yield from look_towards(self, posture.points_in_map[0])
         self.note(f"takes the {self.side} arm, which is covered, to lie where it was")
         self.posture = posture
 

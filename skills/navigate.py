@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..sim.robot.kinematics import default_kinematics
+from ..sim.mechanics.kinematics import kinematics_of
 from ..sim.world import JointTrajectory
 from .control.base import BASE, drive_to
 from .control.follow import follow
@@ -26,7 +26,7 @@ class Navigate(Skill):
     goal = Input(str | np.ndarray, unit="m, m, rad, map", doc="name of a waypoint, or pose (3,) of the base")
     speed = Input(float, unit="m/s", doc="of the base", default=BASE.speed)
     arms = Input(
-        np.ndarray, unit="rad", doc="joint angles (2, 7) to bring the arms to on the way, or None", default=None
+        np.ndarray, unit="rad", doc="joint angles (2, n) to bring the arms to on the way, or None", default=None
     )
     hand_speed = Input(float, unit="m/s", doc="of the hands on that way, relative to the base", default=0.5)
     reasons = (Reason.PATH_BLOCKED, Reason.COMMAND_LOST, Reason.TIMEOUT, Reason.MOTION_BLOCKED)
@@ -48,7 +48,7 @@ class Navigate(Skill):
         """From where the arms are now to where they should be."""
         seen = self.world.observe()
         return plan_arms(
-            default_kinematics(),
+            kinematics_of(self.world.robot),
             self.arms,
             seen.arm_positions,
             seen.pose_base_in_map,

@@ -11,8 +11,8 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import PreGrasp
 from ..perception.image.cloud import unit
+from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, Side
 from .control.fingers import open_gripper
 from .control.hands import cloth_load, hand_now, move_hands

@@ -295,7 +295,7 @@ class PullAlongArm(Skill):
     def _drift(self) -> PathFollower:
         here = self.world.observe().pose_base_in_map
         way = np.stack((here[:2], self.stand[:2]))
-        return PathFollower(way, float(self.stand[2]), speed=self.tuning.base_speed)
+        return PathFollower(way, float(self.stand[2]), self.world.robot.limits, speed=self.tuning.base_speed)
 
     def _drive(self, pull: _Pull, seen: Observation) -> None:
         """Let the base come along, where it has a stand to go to and is not there."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..perception.estimates import GraspPoint
+from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot.kinematics import planar_pose
 from ..sim.world import Side
 from .control.hands import cloth_load, hand_now, move_hands
 from .core.ports import Input, Output

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot import model
-from ..sim.robot.gripper import GRIPPER
 from ..sim.world import SIDES, Hands, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
@@ -60,7 +58,8 @@ class Retreat(Skill):
     def _first_opening(self, side: Side) -> float:
         """Just enough for cloth to slip out, where that is what the fingers hold: beside the person they would push."""
         holds_cloth = self.world.observe().gripper_opening[SIDES.index(side)] < self.tuning.cloth_opening
-        return self.tuning.cloth_opening if holds_cloth and self.hand_distance > 0.0 else GRIPPER.stroke
+        wide = self.world.robot.gripper.stroke
+        return self.tuning.cloth_opening if holds_cloth and self.hand_distance > 0.0 else wide
 
     def _back(self, ready: bool) -> Iterator[None]:
         tuning = self.tuning
@@ -78,4 +77,4 @@ class Retreat(Skill):
             yield from drive_to(self, goal, straight=True, speed=tuning.base_speed, retreat=True)
         if ready:
             speed = careful(self, tuning.ready_speed)
-            yield from move_arms(self, model.READY, sides=tuple(sides), speed=speed, retreat=True)
+            yield from move_arms(self, self.world.robot.ready, sides=tuple(sides), speed=speed, retreat=True)

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import chest_top, watch_arm
 from .belief.shoulders import drawn_up
-from .control.carry import Carry, carry, ease_off
+from .control.carry import Carry, carry
 from .control.fingers import open_gripper
 from .control.hands import hand_now
-from .control.pinch import pinch_or_back_off, reach_in
+from .control.take_from_above import FromAbove, take_from_above
 from .control.withdraw import withdraw
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
-from .geometry.from_above import from_above
 from .geometry.stances import HEADWARD, outwards
 
 
@@ -29,31 +26,22 @@ from .geometry.stances import HEADWARD, outwards
 class SeatSleeveTuning(Quantities):
     """Numbers of `SeatSleeve`."""
 
-    max_tilt: float = quantity(
-        float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
-    )
-    opening: float = quantity(0.05, "m", "of the fingers on the way in", "choice: about one cell of the cloth")
-    reach_in_speed: float = quantity(
-        0.10,
-        "m/s",
-        "of the hand to before the cloth; half of it on the way in",
-        "choice: slow beside the person; it does not lower the 80 N with which closing fingers met the trunk (101)",
-    )
-    depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the arm is right below it")
+    grasp: FromAbove = field(default_factory=FromAbove)
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
     drawn_to: tuple[float, float, float] = quantity(
-        (0.10, 0.02, 0.10),
+        (0.05, 0.05, 0.14),
         "m",
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
-        "measured: the right armholes of 101 and 102 came from 0.57 and 0.58 to 0.81 and 0.83, drawn 0.03 m inwards to "
-        "0.78 and 0.70; by the strap, 0.65 to 0.75",
+        "measured: five recorded states, ideal hands: armholes at 0.56 to 0.65 came to 0.71 to 0.80 drawn 0.05 m "
+        "inwards, 0.08 headward and 0.16 up; 0.04 m higher to 0.72 to 0.76, 0.10 inwards, 0.02 headward and 0.21 up "
+        "to 0.59 to 0.69; by the strap, 0.65 to 0.75",
     )
     above_chest: float = quantity(
-        0.04,
+        0.01,
         "m",
         "of the hand there, above the front of the chest, at least",
-        "measured: at 0.10 m above the shoulder, which is as high as the chest, fingers met the trunk with 64 to 85 N "
-        "as they opened or before (101, 102, 105)",
+        "measured: at 0.10 m above the shoulder and 0.10 m inwards, below the front of the chest, fingers met the "
+        "trunk with 64 to 85 N as they opened or before (101, 102, 105); from higher, it slides back farther",
     )
     carry: Carry = field(default_factory=lambda: Carry(max_load=8.0))
     withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the sleeve")
@@ -91,20 +79,7 @@ class SeatSleeve(Skill):
         self.note(f"takes the front of the {self.side} armhole")
         arm = watch_arm(self, self.side).points_in_map
         point = self.context.senses.armhole_front(self.world.look("head"), side=self.side, arm_in_map=arm)
-        approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
-        place, closing = point.position_in_map, point.closing_in_map
-        yield from reach_in(
-            self,
-            self.hand,
-            place,
-            approach,
-            closing,
-            opening=tuning.opening,
-            depth=tuning.depth,
-            speed=tuning.reach_in_speed,
-        )
-        yield from ease_off(self, self.hand, tuning.carry)
-        yield from pinch_or_back_off(self, self.hand)
+        yield from take_from_above(self, self.hand, point, self.side, tuning.grasp)
         self.note(f"draws the {self.side} armhole to the shoulder")
         yield from carry(self, self.hand, hand_now(self, self.hand)[:3, 3] + tuning.lift * UP, tuning.carry)
         inward, headward, up = tuning.drawn_to
@@ -112,5 +87,5 @@ class SeatSleeve(Skill):
         goal[2] = max(goal[2], chest_top(self) + tuning.above_chest)
         yield from carry(self, self.hand, goal, tuning.carry)
         drawn_up(self).add(self.side)
-        yield from open_gripper(self, self.hand, tuning.opening)  # wider, a finger would come down to the chest
+        yield from open_gripper(self, self.hand, tuning.grasp.opening)  # wider, a finger would come down to the chest
         yield from withdraw(self, [self.hand], tuning.withdrawal)

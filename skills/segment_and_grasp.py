@@ -34,10 +34,10 @@ class SegmentAndGrasp(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look, step to where the hand reaches it, reach in, pinch."""
-        self.note("looks for the gown's hanging point")
+        self.note("looks where to take hold")
         yield from pan_head(self, 0.0)
         point = self.context.senses.hang_point(self.world.look("head"))
-        self.note("reaches for the gown")
+        self.note("reaches there")
         yield from stand_for(self, self.hand, point.position_in_map)
         yield from reach_in(self, self.hand, point.position_in_map, point.approach_in_map, point.closing_in_map)
         yield from pinch_or_back_off(self, self.hand, force=self.force)

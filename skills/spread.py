@@ -1,4 +1,4 @@
-"""Lift the collar by its middle and lay it down on the midline, below the throat."""
+"""Lift the collar by the cloth below its middle and lay it down near the midline, below the throat."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
+from .belief.person_tracking import watch_arm
 from .belief.shoulders import between_shoulders, look_at_collar, off_middle
 from .control.carry import Carry, carry
 from .control.fingers import open_gripper
 from .control.hands import hand_now
-from .control.pinch import pinch_or_back_off, reach_in
+from .control.take_from_above import FromAbove, take_from_above
 from .control.withdraw import withdraw
 from .core.ports import Input, Output
-from .core.reasons import Reason
+from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import UP
-from .geometry.from_above import from_above
-from .geometry.stances import HEADWARD, outwards
+from .geometry.stances import HEADWARD
 from .motion.errors import MotionError
 
 
@@ -36,34 +36,41 @@ class SpreadTuning(Quantities):
     footward: float = quantity(
         0.03, "m", "of the collar's middle from the line of the shoulders", "choice: below the throat, above the chest"
     )
+    short_of_midline: float = quantity(
+        0.03,
+        "m",
+        "by which the collar is brought less far than to the midline",
+        "measured: each centimetre of its way took the near sleeve down by 0.01 to 0.02 (105); 0.07 m is allowed",
+    )
     lies_well: float = quantity(
         0.05, "m", "from there, aside, within which the collar is left as it is", "choice: 2 cm of the 7 cm allowed"
     )
+    worth_it: float = quantity(
+        0.10,
+        "m",
+        "aside, up to which the collar is left where it lies if the near armhole cannot be held",
+        "measured: brought 0.12 m without that, it took an armhole from 0.78 to 0.67 (102)",
+    )
     lies_along: tuple[float, float] = quantity(
-        (-0.06, 0.07),
+        (-0.06, 0.085),
         "m",
         "headward of the line of the shoulders, within which the collar is left as it is",
-        "choice: 2 and 3 cm of the 8 and 10 cm that are allowed",
+        "choice: 2 and 1.5 cm of the 8 and 10 cm that are allowed; from 0.10 m headward it sprang back (102)",
     )
-    max_tilt: float = quantity(
-        float(np.deg2rad(35.0)), "rad", "of the approach off the vertical", "choice: the hand comes from above"
-    )
-    opening: float = quantity(
-        0.05, "m", "of the fingers on the way in", "choice: wider, one goes down beside the chest"
-    )
-    depth: float = quantity(0.0, "m", "of the fingertips beyond the cloth", "choice: the body is right below it")
+    grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(
         0.10,
         "m",
         "of the collar off the body before it is carried",
         "measured: drawn along the body instead, it sprang back to where it lay; lifted by 0.10 to 0.18 m, it stayed",
     )
-    below: tuple[float, ...] = quantity(
-        (0.05, 0.08, 0.11, 0.15, 0.19),
+    grasped: tuple[tuple[float, float], ...] = quantity(
+        ((0.08, 0.05), (0.08, 0.10), (0.08, 0.15), (0.0, 0.05), (0.0, 0.08), (0.0, 0.11), (0.0, 0.15), (0.0, 0.19)),
         "m",
-        "footward of the collar's middle, where the cloth is grasped, tried one after the other",
-        "measured: at the middle itself the neck was in the hand's way in 5 of 6 whole runs; on a state of 105 a "
-        "collar 14 cm headward came to within 4 cm of its place by any of 0.05, 0.11, 0.15 and 0.19",
+        "towards the midline and footward from the collar's middle, where the cloth is grasped, tried in turn",
+        "measured: at the middle itself the neck was in the hand's way in 5 of 6 whole runs; right below a collar that "
+        "lay 0.2 m aside no cloth was seen (105, 107), and taken there it came 0.04 m nearer, taken 0.08 m towards the "
+        "midline 0.19 m",
     )
     beyond: float = quantity(
         0.09,
@@ -72,10 +79,10 @@ class SpreadTuning(Quantities):
         "measured: let go of at its place, it sprang back by 6 to 16 cm; drawn back to it, by less than 3 cm",
     )
     springs_back: float = quantity(
-        0.06,
-        "m",
-        "across the body, of a collar that was brought to the midline and let go of",
-        "measured: 0.03 to 0.09 m in four spreads on 102 and 105",
+        0.3,
+        "1",
+        "of its way across the body, by a collar that was brought to the midline and let go of",
+        "measured: 0.03 to 0.09 m in four spreads on 102 and 105 from 0.10 to 0.20 m aside; from 0.06 m, none",
     )
     laid_height: float = quantity(
         0.02,
@@ -92,14 +99,19 @@ class Spread(Skill):
     """Looks where the middle of the neckline lies, and brings it over the breastbone where it does not lie there.
 
     A sleeve that is drawn on takes the collar along, to its side or up to the throat; the slack then hides in a fold at
-    one shoulder.  Lifted by the cloth below its middle, carried past the midline and drawn back to it, the collar
-    shares it between both.  A collar that lies well is left alone.  The hand ends open and drawn back, after a missed
+    one shoulder.  Lifted by the cloth below its middle, carried past its place and drawn back to it, the collar
+    shares it between both.  A collar that lies well is left alone.  The hands end open and drawn back, after a missed
     grasp too.
     """
 
     side = Input(Side, doc="side of the bed on which the robot stands")
     hand = Input(Side, doc="the robot's hand that carries the collar")
     tuning = Input(SpreadTuning, default=SpreadTuning(), doc="numbers of this skill")
+    holding = Input(
+        Side,
+        default=None,
+        doc="the other hand, if it holds the near armhole meanwhile, which the collar would take along",
+    )
     grasp = Output(GraspPoint, unit="m, map", doc="where the middle of the collar was seen")
     reasons = (
         Reason.NOTHING_SEEN,
@@ -129,11 +141,15 @@ class Spread(Skill):
         if abs(aside) < tuning.lies_well and lowest < ahead < highest:
             yield
             return
-        yield from self._take(middle)
+        tries = Tries(MotionError, PerceptionFailure)
+        places = self._places(middle, aside, tries)
+        if self.holding and places:
+            yield from self._hold(needed=abs(aside) < tuning.worth_it)
+        yield from self._take(places, tries)
         low = hand_now(self, self.hand)[:3, 3]
         way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
         if abs(aside) >= tuning.lies_well:
-            way[0] -= np.copysign(tuning.springs_back, aside)
+            way[0] = (1.0 + tuning.springs_back) * (np.copysign(tuning.short_of_midline, aside) - aside)
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from carry(self, self.hand, low + tuning.lift * UP, tuning.carry)
@@ -144,19 +160,40 @@ class Spread(Skill):
         yield from carry(self, self.hand, laid + way, tuning.carry)
         yield from open_gripper(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)
+        if self.holding:
+            yield from open_gripper(self, self.holding, tuning.grasp.opening)
+            yield from withdraw(self, [self.holding], tuning.withdrawal)
 
-    def _take(self, middle: np.ndarray) -> Iterator[None]:
-        """Grasp the cloth below the collar's middle, as near to it as the hand gets."""
-        tuning, tries = self.tuning, Tries(MotionError, PerceptionFailure)
-        for below in tuning.below:
+    def _places(self, middle: np.ndarray, aside: float, tries: Tries) -> list[GraspPoint]:
+        """Where the cloth may be taken, best first: on its way to the midline if that is far.
+
+        All are seen before a hand comes in between.
+        """
+        places = []
+        for inward, footward in self.tuning.grasped:
+            if inward <= abs(aside):
+                with tries:
+                    places.append(look_at_collar(self, middle, (-float(np.copysign(inward, aside)), footward)))
+        return places
+
+    def _hold(self, needed: bool) -> Iterator[None]:
+        """Take the front of the near armhole with the other hand; where that fails, go on unless it is `needed`."""
+        self.note(f"holds the {self.side} armhole")
+        try:
+            arm = watch_arm(self, self.side).points_in_map
+            front = self.context.senses.armhole_front(self.world.look("head"), side=self.side, arm_in_map=arm)
+            yield from take_from_above(self, self.holding, front, self.side, self.tuning.grasp)
+        except (MotionError, PerceptionFailure):
+            if needed:
+                raise
+        except SkillFailure as miss:
+            if needed or miss.reason != Reason.GRASP_MISSED:
+                raise
+
+    def _take(self, places: list[GraspPoint], tries: Tries) -> Iterator[None]:
+        """Grasp the cloth at the first of the places that the hand gets to."""
+        for place in places:
             with tries:
-                point = look_at_collar(self, middle, below)
-                approach = from_above(point.approach_in_map, outwards(self.side), tuning.max_tilt)
-                place, closing = point.position_in_map, point.closing_in_map
-                yield from reach_in(
-                    self, self.hand, place, approach, closing, opening=tuning.opening, depth=tuning.depth
-                )
-                break
-        else:
-            raise tries.last
-        yield from pinch_or_back_off(self, self.hand)
+                yield from take_from_above(self, self.hand, place, self.side, self.tuning.grasp)
+                return
+        raise tries.last

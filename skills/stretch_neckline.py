@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot.kinematics import planar_pose
 from ..sim.world import SIDES, HandTwist
 from .control.hands import cloth_load, hand_now, move_hands
 from .core.ports import Input, Output

@@ -9,9 +9,8 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
+from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
-from ..sim.robot import model
-from ..sim.robot.kinematics import planar_pose
 from ..sim.world import GripperOpening, Side
 from .control.fingers import close_gripper, open_gripper
 from .control.hands import cloth_load, hand_now, move_arms, move_hands
@@ -201,7 +200,7 @@ class TakeCorner(Skill):
     def _give_up(self) -> Iterator[None]:
         """Open, draw back, and leave the camera's view."""
         yield from open_gripper(self, self.hand)
-        for way_back in (back_off(self, self.hand), move_arms(self, model.READY, sides=(self.hand,))):
+        for way_back in (back_off(self, self.hand), move_arms(self, self.world.robot.ready, sides=(self.hand,))):
             try:
                 yield from way_back
             except MotionError:  # the other one may do

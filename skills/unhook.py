@@ -37,7 +37,7 @@ class Unhook(Skill):
 
     def steps(self) -> Iterator[None]:
         """Lift straight up, let the gown swing out, weigh it."""
-        self.note("lifts the gown off its hook")
+        self.note("lifts it off")
         pose = hand_now(self, self.hand)
         pose[2, 3] += self.height
         yield from move_hands(self, {self.hand: pose}, speed=self.tuning.speed, free="approach")

@@ -67,7 +67,7 @@ class ViewAround(Skill):
     def steps(self) -> Iterator[None]:
         """Bring the hand up, then turn it to the other end and look on the way."""
         tuning, n = self.tuning, SIDES.index(self.hand)
-        here = turned_by(self.hand, self.world.observe().arm_positions[n])
+        here = turned_by(self.world.robot, self.hand, self.world.observe().arm_positions[n])
         half = (self.count - 1) * tuning.step / 2
         turns = np.linspace(-half, half, self.count)[:: 1 if here is None or here < 0 else -1]
         self.note("looks at the gown from all sides")
@@ -79,7 +79,7 @@ class ViewAround(Skill):
         ends = self.now() + tuning.max_duration * turn.times[-1]
         frames, poses = [], []
         while len(frames) < self.count:
-            here = turned_by(self.hand, self.world.observe().arm_positions[n])
+            here = turned_by(self.world.robot, self.hand, self.world.observe().arm_positions[n])
             if here is not None and abs(here - turns[0]) >= abs(turns[len(frames)] - turns[0]) - tuning.tolerance:
                 frames.append(self.world.look("head"))
                 poses.append(hand_now(self, self.hand))

@@ -40,13 +40,13 @@ def drawn_up(skill: Skill) -> DrawnUp:
     return skill.context.memory.of(DrawnUp, DrawnUp)
 
 
-def look_at_collar(skill: Skill, middle: np.ndarray, below: float = 0.0) -> GraspPoint:
-    """Where the middle of the neckline lies, or the cloth `below` it [m].
+def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] = (0.0, 0.0)) -> GraspPoint:
+    """Where the middle of the neckline lies, or the cloth `away` from it [m].
 
     Args:
         skill: that looks.
         middle: (3,) between the shoulders [m].
-        below: footward of the neckline, where the cloth is to be grasped [m].
+        away: from there to where the cloth is to be grasped, along x and y in the map [m].
 
     Raises:
         PerceptionFailure: too little of it is seen.
@@ -54,7 +54,7 @@ def look_at_collar(skill: Skill, middle: np.ndarray, below: float = 0.0) -> Gras
         SkillFailure: its picture is stale.
     """
     frame, flat = skill.world.look("head"), drawn_up(skill).flat
-    return skill.context.senses.collar_middle(frame, near_in_map=middle, below=below, flat=flat)
+    return skill.context.senses.collar_middle(frame, near_in_map=middle, away=away, flat=flat)
 
 
 def between_shoulders(skill: Skill) -> np.ndarray:

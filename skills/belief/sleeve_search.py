@@ -14,9 +14,9 @@ import numpy as np
 
 from ...perception.errors import PerceptionFailure
 from ...perception.estimates import SleeveOpening
+from ...sim.mechanics.kinematics import kinematics_of
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..control.hands import move_hands
 from ..control.head import look_towards
@@ -172,7 +172,9 @@ def _from_above(
     skill: Skill, side: Side, hand: Side, best: SleeveOpening, tuning: SleeveSearchTuning
 ) -> Generator[None, None, SleeveOpening]:
     """A sleeve that shows badly from the head, as the hand's camera sees it; `best` where that shows it no better."""
-    for pose in strap_views(best, side, hand, skill.world.room.bed, tuning.search_distance, tuning=tuning):
+    for pose in strap_views(
+        skill.world.robot, best, side, hand, skill.world.room.bed, tuning.search_distance, tuning=tuning
+    ):
         try:
             yield from move_hands(skill, {hand: pose}, way="any", speed=careful(skill, tuning.speed))
         except MotionError:
@@ -196,6 +198,7 @@ def strap_position(far: SleeveOpening, *, tuning: SleeveSearchTuning = SLEEVE_SE
 
 
 def strap_views(
+    robot: RobotModel,
     far: SleeveOpening,
     side: Side,
     hand: Side,
@@ -207,6 +210,7 @@ def strap_views(
     """Hand poses (4, 4) in the map, from the robot's side, whose camera has the strap in the middle, best one first.
 
     Args:
+        robot: that looks.
         far: the sleeve as the head's camera sees it.
         side: of the person that the sleeve belongs to.
         hand: of the robot that looks.
@@ -216,7 +220,7 @@ def strap_views(
     """
     hangs = far.position_in_map[2] < bed[1, 2] - tuning.hang_depth
     to_strap = tuning.armhole_to_strap * HEADWARD
-    camera, side_on = _camera_in_hand(hand), np.cross(UP, outwards(side))
+    camera, side_on = _camera_in_hand(robot, hand), np.cross(UP, outwards(side))
     for turn, tilt in product(tuning.turns, tuning.hanging_tilts if hangs else tuning.lying_tilts):
         towards_robot = np.cos(turn) * outwards(side) + np.sin(turn) * side_on
         pose = hand_pose(np.zeros(3), -np.cos(tilt) * towards_robot - np.sin(tilt) * UP, to_strap)
@@ -226,8 +230,8 @@ def strap_views(
         yield pose
 
 
-def _camera_in_hand(hand: Side) -> np.ndarray:
+def _camera_in_hand(robot: RobotModel, hand: Side) -> np.ndarray:
     """Pose (4, 4) of a hand's camera in the hand's frame."""
-    kinematics, n, base = default_kinematics(), SIDES.index(hand), np.zeros(3)
-    camera = kinematics.pose_camera_in_map(f"{hand}_hand", base, model.READY, 0.0)
-    return np.linalg.inv(kinematics.pose_hand_in_map(hand, model.READY[n], base)) @ camera
+    kinematics, n, base = kinematics_of(robot), SIDES.index(hand), np.zeros(3)
+    camera = kinematics.pose_camera_in_map(f"{hand}_hand", base, robot.ready, 0.0)
+    return np.linalg.inv(kinematics.pose_hand_in_map(hand, robot.ready[n], base)) @ camera

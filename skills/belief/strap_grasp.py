@@ -10,8 +10,8 @@ import numpy as np
 
 from ...perception.estimates import SleeveOpening
 from ...perception.image.cloud import unit
+from ...sim.mechanics.kinematics import Kinematics, kinematics_of
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.kinematics import Kinematics, default_kinematics
 from ...sim.world import SIDES, Side
 from ..control.hands import collision_checker
 from ..control.pull_law import PullLaw
@@ -131,7 +131,7 @@ def way_in(
     Raises:
         Unreachable: no way in leads to a grasp with which the sleeve could be presented, or pulled on.
     """
-    seen, kinematics = skill.world.observe(), default_kinematics()
+    seen, kinematics = skill.world.observe(), kinematics_of(skill.world.robot)
     n, base = SIDES.index(hand), seen.pose_base_in_map
     limits = kinematics.limits[hand]
     accept = free_postures(collision_checker(skill), hand, base, seen.arm_positions)
@@ -206,7 +206,7 @@ def _presented(
     accept: Callable[[np.ndarray], bool],
     tuning: StrapGraspTuning,
 ) -> np.ndarray:
-    """Arm angles (7,) that present the sleeve as far out as can be reached."""
+    """Arm angles (n,) that present the sleeve as far out as can be reached."""
     tries = Tries(Unreachable)
     for beyond in tuning.presenting_distances:
         pose = presenting(grip, path.hand_direction, presenting_position(path, beyond))

@@ -9,9 +9,8 @@ import numpy as np
 
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
+from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.gripper import GRIPPER
-from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, Side
 from ..core.skill import Skill
 from ..core.tries import Tries
@@ -75,7 +74,7 @@ def top_down_reachable(
     Raises:
         Unreachable: neither can be reached.
     """
-    seen, kinematics = skill.world.observe(), default_kinematics()
+    seen, kinematics = skill.world.observe(), kinematics_of(skill.world.robot)
     n, limits = SIDES.index(side), kinematics.limits[side]
     checker = collision_checker(skill) if clear else None
     accept = checker and free_postures(checker, side, seen.pose_base_in_map, seen.arm_positions)
@@ -99,7 +98,7 @@ def top_down_reachable(
 def holds_arm(skill: Skill, side: Side, *, tuning: ArmGripTuning = ARM_GRIP) -> bool:
     """Whether fingers that are neither open nor on each other hold what is as thick as an arm."""
     opening = skill.world.observe().gripper_opening[SIDES.index(side)]
-    return bool(tuning.min_gap <= opening < GRIPPER.stroke - FINGERS.open_tolerance)
+    return bool(tuning.min_gap <= opening < skill.world.robot.gripper.stroke - FINGERS.open_tolerance)
 
 
 def lost_arm(skill: Skill, side: Side, *, tuning: ArmGripTuning = ARM_GRIP) -> bool:

@@ -15,9 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import planar_pose
 from ...sim.world import Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
@@ -31,7 +30,7 @@ class BaseTuning(Quantities):
     """Numbers of driving the base and of choosing where to stand."""
 
     speed: float = quantity(
-        float(model.BASE_VELOCITY[0]), "m/s", "of the base", "datasheet: half of what a Ridgeback can do, for indoors"
+        0.5, "m/s", "of the base", "choice: half of what a Ridgeback can do by its datasheet, for indoors"
     )
     ease: tuple[float, float] = quantity(
         (0.95, 0.22),
@@ -100,7 +99,7 @@ def drive_to(
     goal = waypoint(skill, goal)
     start = skill.world.observe().pose_base_in_map
     path = np.stack((start[:2], goal[:2])) if straight else plan_path(skill.world.room, start, goal)
-    follower = PathFollower(path, float(goal[2]), speed=speed, turn_from=turn_from)
+    follower = PathFollower(path, float(goal[2]), skill.world.robot.limits, speed=speed, turn_from=turn_from)
     end = skill.now() + tuning.timeout + tuning.timeout_factor * path_length(path) / speed
     anchor, since = start, skill.now()
     while not follower.done(pose := skill.world.observe().pose_base_in_map):

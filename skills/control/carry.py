@@ -1,4 +1,4 @@
-"""Carrying gripped cloth on a straight way, no farther than it comes along, and easing off a body below."""
+"""Carrying gripped cloth on a straight way, no farther than it comes along."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, HandTwist, Side
 from ..core.skill import Skill
-from ..geometry.arm_path import UP
 from .hands import cloth_load, hand_now
 
 
@@ -24,8 +23,6 @@ class Carry(Quantities):
         6.0, "N", "of the cloth, at which it is carried no farther", "measured: 5 to 6 N bring a collar to the midline"
     )
     touch_load: float = quantity(3.0, "N", "upwards, of a hand that touches the body", "choice: cloth never pushes up")
-    ease_speed: float = quantity(0.02, "m/s", "up, of a hand that presses on the body", "choice: in steps of 1 mm")
-    ease_way: float = quantity(0.02, "m", "up, at most", "choice: open fingers reach 2 cm down round a fold")
     tolerance: float = quantity(0.01, "m", "to the end of a way", "choice: the width of a thread")
     timeout_factor: float = quantity(
         2.5, "1", "of the time that a way takes at full speed", "choice: room for a guard that slows it down"
@@ -52,18 +49,4 @@ def carry(skill: Skill, hand: Side, goal: np.ndarray, law: Carry, speed: float |
         if np.linalg.norm(rest) < law.tolerance or pulls or load[2] > law.touch_load:
             return
         skill.world.send(HandTwist(side=hand, twist_in_map=np.append(speed * unit(rest), np.zeros(3))))
-        yield
-
-
-def ease_off(skill: Skill, hand: Side, law: Carry) -> Iterator[None]:
-    """Up, until the hand no longer presses on the body that the cloth lies on.
-
-    Args:
-        skill: that takes hold of the cloth.
-        hand: with open fingers around it.
-        law: from which load on it presses, and how it goes up.
-    """
-    end = skill.now() + law.ease_way / law.ease_speed
-    while skill.now() < end and cloth_load(skill, hand)[2] > law.touch_load:
-        skill.world.send(HandTwist(side=hand, twist_in_map=np.append(law.ease_speed * UP, np.zeros(3))))
         yield

@@ -10,7 +10,6 @@ from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.gripper import GRIPPER
 from ...sim.world import SIDES, GripperOpening, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
@@ -38,7 +37,7 @@ FINGERS = FingersTuning()
 def open_gripper(
     skill: Skill,
     side: Side,
-    opening: float = GRIPPER.stroke,
+    opening: float | None = None,
     *,
     timeout: float = FINGERS.timeout,
     tuning: FingersTuning = FINGERS,
@@ -48,7 +47,7 @@ def open_gripper(
     Args:
         skill: that opens them.
         side: which hand.
-        opening: between the fingertips [m].
+        opening: between the fingertips, as far as they go by default [m].
         timeout: when to give up [s].
         tuning: how far they may be from it.
 
@@ -56,9 +55,10 @@ def open_gripper(
         SkillFailure: COMMAND_LOST when they are not open in time.
     """
     n = SIDES.index(side)
-    skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
+    wide = skill.world.robot.gripper.stroke if opening is None else opening
+    skill.world.send(GripperOpening(side=side, opening=wide), retreat=True)
     yield from skill.until(
-        lambda: skill.world.observe().gripper_opening[n] > opening - tuning.open_tolerance,
+        lambda: skill.world.observe().gripper_opening[n] > wide - tuning.open_tolerance,
         timeout=timeout,
         reason=Reason.COMMAND_LOST,
     )

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import ARM_JOINTS, SIDES, JointTrajectory, Observation
+from ...sim.world import JointTrajectory, Observation
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 
@@ -27,15 +28,10 @@ class FollowTuning(Quantities):
 FOLLOW = FollowTuning()
 
 
-def joint_values(observation: Observation, joints: tuple[str, ...]) -> np.ndarray:
-    """Measured angles (n,) of named joints [rad]."""
-    values = {
-        f"{side}_{joint}": observation.arm_positions[n, k]
-        for n, side in enumerate(SIDES)
-        for k, joint in enumerate(ARM_JOINTS)
-    }
-    values["head_pan"] = observation.head_pan
-    return np.array([values[joint] for joint in joints])
+def joint_values(robot: RobotModel, observation: Observation, joints: tuple[str, ...]) -> np.ndarray:
+    """Measured angles (n,) of named joints of a robot [rad]."""
+    places = [robot.place_of(joint) for joint in joints]
+    return np.array([observation.head_pan if place is None else observation.arm_positions[place] for place in places])
 
 
 def follow(
@@ -60,15 +56,18 @@ def follow(
     Raises:
         SkillFailure: COMMAND_LOST when nothing moved, MOTION_BLOCKED when it did not arrive.
     """
-    start = joint_values(skill.world.observe(), trajectory.joints)
+    robot = skill.world.robot
+    start = joint_values(robot, skill.world.observe(), trajectory.joints)
     goal = np.asarray(trajectory.positions, float)[-1]
     sent = skill.world.send(trajectory, retreat=retreat)
     assert isinstance(sent, JointTrajectory)
     yield from skill.wait(float(sent.times[-1]))
     end = skill.now() + patience
-    while (error := float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - goal).max())) > tolerance:
+    while (
+        error := float(np.abs(joint_values(robot, skill.world.observe(), trajectory.joints) - goal).max())
+    ) > tolerance:
         if skill.now() >= end:
-            moved = float(np.abs(joint_values(skill.world.observe(), trajectory.joints) - start).max())
+            moved = float(np.abs(joint_values(robot, skill.world.observe(), trajectory.joints) - start).max())
             lost = moved < tuning.min_motion * float(np.abs(goal - start).max())
             raise SkillFailure(Reason.COMMAND_LOST if lost else Reason.MOTION_BLOCKED, f"{error:.2f} rad short")
         yield

@@ -2,7 +2,7 @@
 
     yield from move_hands(self, {"right": pose})  # straight, poses (4, 4) in the map
     yield from move_hands(self, {"left": a, "right": b}, speed=0.5, way="any")
-    yield from move_arms(self, model.READY)
+    yield from move_arms(self, self.world.robot.ready)
 
 Speeds are of the `hand` point [m/s]; near the person the guard slows every motion down by itself.  Poses that
 cannot be reached raise Unreachable or MotionBlocked, which a skill passes on as its reason.
@@ -16,10 +16,10 @@ from typing import Literal
 
 import numpy as np
 
+from ...sim.mechanics.capsules import RobotCapsules
+from ...sim.mechanics.collision import CollisionChecker
+from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.capsules import RobotCapsules
-from ...sim.robot.collision import CollisionChecker
-from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, JointTrajectory, Side
 from ..core.reasons import Reason
 from ..core.skill import Skill
@@ -48,8 +48,8 @@ HANDS = HandsTuning()
 
 def hand_now(skill: Skill, side: Side) -> np.ndarray:
     """Pose (4, 4) of a hand in the map, from the joint angles."""
-    seen = skill.world.observe()
-    return default_kinematics().pose_hand_in_map(side, seen.arm_positions[SIDES.index(side)], seen.pose_base_in_map)
+    seen, kinematics = skill.world.observe(), kinematics_of(skill.world.robot)
+    return kinematics.pose_hand_in_map(side, seen.arm_positions[SIDES.index(side)], seen.pose_base_in_map)
 
 
 def cloth_load(skill: Skill, side: Side) -> np.ndarray:
@@ -59,9 +59,9 @@ def cloth_load(skill: Skill, side: Side) -> np.ndarray:
 
 def collision_checker(skill: Skill) -> CollisionChecker:
     """The run's checker of the arms against the robot itself, the bed, and the person as it is tracked now."""
-    bed, guard = skill.world.room.bed, skill.context.guard
-    checker = skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(default_kinematics(), bed[None]))
-    links = skill.context.memory.of(RobotCapsules, lambda: RobotCapsules(default_kinematics()))
+    bed, guard, kinematics = skill.world.room.bed, skill.context.guard, kinematics_of(skill.world.robot)
+    checker = skill.context.memory.of(CollisionChecker, lambda: CollisionChecker(kinematics, bed[None]))
+    links = skill.context.memory.of(RobotCapsules, lambda: RobotCapsules(kinematics))
     return ClearOfPerson(checker, links, guard.zone, dict(guard.held_arms()), skill.world.observe())
 
 
@@ -118,7 +118,7 @@ def move_hands(
 
     def plan(planner: Callable[..., JointTrajectory]) -> JointTrajectory:
         return planner(
-            default_kinematics(),
+            kinematics_of(skill.world.robot),
             goals,
             seen.arm_positions,
             seen.pose_base_in_map,
@@ -151,7 +151,7 @@ def move_arms(
 
     Args:
         skill: that moves.
-        target: (2, 7) joint angles, such as `model.READY` [rad].
+        target: (2, n) joint angles, such as `robot.ready` [rad].
         sides: that move; the other row of `target` does not count.
         speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
         retreat: the motion takes load off the person.
@@ -162,7 +162,7 @@ def move_arms(
     """
     seen = skill.world.observe()
     trajectory = plan_arms(
-        default_kinematics(),
+        kinematics_of(skill.world.robot),
         target,
         seen.arm_positions,
         seen.pose_base_in_map,

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.kinematics import kinematics_of
+from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import default_kinematics, planar_pose
 from ...sim.world import JointTrajectory
 from ..core.skill import Skill
-from .follow import follow, joint_values
+from .follow import follow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ def look_towards(skill: Skill, point_in_map: np.ndarray, *, tolerance: float = H
     """Pan the head so that `point_in_map` (2,) or (3,) lies in the middle of the image's width."""
     seen = skill.world.observe()
     x, y, yaw = seen.pose_base_in_map
-    neck = planar_pose(seen.pose_base_in_map)[:3, :3] @ model.TORSO_IN_BASE + (x, y, 0.0)
+    neck = planar_pose(seen.pose_base_in_map)[:3, :3] @ skill.world.robot.neck_in_base + (x, y, 0.0)
     wanted = np.arctan2(point_in_map[1] - neck[1], point_in_map[0] - neck[0]) - yaw
     yield from pan_head(skill, float((wanted + np.pi) % (2 * np.pi) - np.pi), tolerance=tolerance)
 
@@ -46,13 +46,12 @@ def pan_head(
     skill: Skill, angle: float, *, tolerance: float = HEAD.tolerance, tuning: HeadTuning = HEAD
 ) -> Iterator[None]:
     """Turn the head to `angle` [rad], positive to the left, as far as the neck can."""
-    low, high = default_kinematics().head_range
-    here, angle = float(joint_values(skill.world.observe(), ("head_pan",))[0]), float(np.clip(angle, low, high))
+    robot = skill.world.robot
+    low, high = kinematics_of(robot).head_range
+    here, angle = float(skill.world.observe().head_pan), float(np.clip(angle, low, high))
     if abs(angle - here) <= tolerance:
         return
-    duration = tuning.peak * abs(angle - here) / model.HEAD_VELOCITY + tuning.extra_time
-    yield from follow(
-        skill,
-        JointTrajectory(joints=("head_pan",), times=np.array((0.0, duration)), positions=np.array(((here,), (angle,)))),
-        tolerance=tolerance,
-    )
+    duration = tuning.peak * abs(angle - here) / robot.limits.head_velocity + tuning.extra_time
+    times, positions = np.array((0.0, duration)), np.array(((here,), (angle,)))
+    turn = JointTrajectory(joints=(robot.head_joint,), times=times, positions=positions)
+    yield from follow(skill, turn, tolerance=tolerance)

@@ -14,9 +14,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from ...sim.mechanics.kinematics import kinematics_of
+from ...sim.mechanics.planar import planar_pose
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import default_kinematics, planar_pose
 from ...sim.world import SIDES, JointTrajectory, Side
 from ..core.skill import Skill
 from ..motion.errors import MotionBlocked
@@ -25,19 +26,11 @@ from ..motion.trajectory import plan_joint_motion
 from .follow import follow
 from .hands import HANDS, collision_checker, move_arms
 
-_MIRROR = np.array((-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0))  # left and right arm are mirror images
-
 
 @dataclass(frozen=True, kw_only=True)
 class HoldUpTuning(Quantities):
     """How a hand is held up before the head camera."""
 
-    posture: tuple[float, float, float, float, float, float, float] = quantity(
-        (0.284, -1.137, 1.275, 0.913, -0.47, 2.046, 0.517),
-        "rad",
-        "of the right arm: fingertips 0.70 m ahead, 0.15 m aside, 1.33 m above the floor, pointing down",
-        "choice: the camera sees what hangs from the fingers under the arm",
-    )
     max_turn: float = quantity(
         math.radians(150.0),
         "rad",
@@ -56,15 +49,15 @@ class HoldUpTuning(Quantities):
 HOLD_UP = HoldUpTuning()
 
 
-def presenting(side: Side, angle: float = 0.0, *, tuning: HoldUpTuning = HOLD_UP) -> np.ndarray:
-    """Angles (2, 7) with one hand held up and turned by `angle`, the other arm ready [rad]."""
-    arms = model.READY.copy()
-    arms[SIDES.index(side)] = presented(side, angle, tuning=tuning)
+def presenting(robot: RobotModel, side: Side, angle: float = 0.0, *, tuning: HoldUpTuning = HOLD_UP) -> np.ndarray:
+    """Angles (2, n) of a robot with one hand held up and turned by `angle`, the other arm ready [rad]."""
+    arms = robot.ready.copy()
+    arms[SIDES.index(side)] = presented(robot, side, angle, tuning=tuning)
     return arms
 
 
-def presented(side: Side, angle: float, *, tuning: HoldUpTuning = HOLD_UP) -> np.ndarray:
-    """Angles (7,) of the arm whose hand is held up, turned about the vertical by `angle`, positive to the left [rad].
+def presented(robot: RobotModel, side: Side, angle: float, *, tuning: HoldUpTuning = HOLD_UP) -> np.ndarray:
+    """Angles (n,) of the arm whose hand is held up, turned about the vertical by `angle`, positive to the left [rad].
 
     The same angle always gives the same elbow, whatever the arm did before.
 
@@ -76,7 +69,7 @@ def presented(side: Side, angle: float, *, tuning: HoldUpTuning = HOLD_UP) -> np
             f"a presented hand turns by at most {np.rad2deg(tuning.max_turn):.0f} degrees to either side, "
             f"not by {np.rad2deg(angle):.0f}"
         )
-    return _chain(side, round(float(angle), 6), tuning)[-1].copy()
+    return _chain(robot, side, round(float(angle), 6), tuning)[-1].copy()
 
 
 def present(
@@ -90,8 +83,9 @@ def present(
         MotionError: something is in the way.
         SkillFailure: COMMAND_LOST or MOTION_BLOCKED.
     """
-    if turned_by(side, skill.world.observe().arm_positions[SIDES.index(side)], tuning=tuning) is None:
-        yield from move_arms(skill, presenting(side, angle, tuning=tuning), speed=speed)
+    robot = skill.world.robot
+    if turned_by(robot, side, skill.world.observe().arm_positions[SIDES.index(side)], tuning=tuning) is None:
+        yield from move_arms(skill, presenting(robot, side, angle, tuning=tuning), speed=speed)
     else:
         yield from follow(skill, plan_turn(skill, side, angle, tuning=tuning))
 
@@ -106,13 +100,14 @@ def plan_turn(
     """
     seen = skill.world.observe()
     q = seen.arm_positions[SIDES.index(side)]
-    here = turned_by(side, q, tuning=tuning)
+    robot = skill.world.robot
+    here = turned_by(robot, side, q, tuning=tuning)
     if here is None:
         raise MotionBlocked(f"the {side} hand is not held up, so it cannot turn there")
     between = np.linspace(here, angle, int(np.ceil(abs(angle - here) / tuning.turn_step)) + 1)[1:]
-    points = np.array([q, *(presented(side, turn, tuning=tuning) for turn in between)])
+    points = np.array([q, *(presented(robot, side, turn, tuning=tuning) for turn in between)])
     return plan_joint_motion(
-        default_kinematics(),
+        kinematics_of(robot),
         {side: points},
         seen.pose_base_in_map,
         speed_scale=scale,
@@ -121,23 +116,22 @@ def plan_turn(
     )
 
 
-def turned_by(side: Side, q: np.ndarray, *, tuning: HoldUpTuning = HOLD_UP) -> float | None:
-    """By how much the hand of an arm (7,) [rad] is turned [rad], or None when it is not held up."""
-    pose = default_kinematics().pose_hand_in_base(side, q)
+def turned_by(robot: RobotModel, side: Side, q: np.ndarray, *, tuning: HoldUpTuning = HOLD_UP) -> float | None:
+    """By how much the hand of an arm (n,) [rad] is turned [rad], or None when it is not held up."""
+    pose = kinematics_of(robot).pose_hand_in_base(side, q)
     angle = float(np.arctan2(-pose[0, 1], pose[1, 1]))
     if abs(angle) > tuning.max_turn + tuning.turn_tolerance:
         return None
     angle = float(np.clip(angle, -tuning.max_turn, tuning.max_turn))
-    off = np.abs(presented(side, angle, tuning=tuning) - q).max()
+    off = np.abs(presented(robot, side, angle, tuning=tuning) - q).max()
     return angle if off < tuning.posture_tolerance else None
 
 
 @lru_cache(maxsize=256)
-def _chain(side: Side, angle: float, tuning: HoldUpTuning) -> tuple[np.ndarray, ...]:
+def _chain(robot: RobotModel, side: Side, angle: float, tuning: HoldUpTuning) -> tuple[np.ndarray, ...]:
     """Angles on the way from no turn to `angle`, in steps of at most `turn_step`."""
-    kinematics = default_kinematics()
-    right = np.array(tuning.posture)
-    chain = [right if side == "right" else _MIRROR * right]
+    kinematics = kinematics_of(robot)
+    chain = [robot.held_up[SIDES.index(side)]]
     start = kinematics.pose_hand_in_base(side, chain[0])
     for share in np.linspace(0.0, 1.0, int(np.ceil(abs(angle) / tuning.turn_step)) + 1)[1:]:
         pose = start.copy()

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
 from ...sim.world import Side
 from ..belief.person_tracking import careful
 from ..core.skill import Skill
@@ -49,6 +48,6 @@ def let_arm_go(skill: Skill, hand: Side, ready: str, *, tuning: LetArmGoTuning =
         yield from withdraw(skill, [hand], tuning.distance, tuning.withdraw)
         if ready:
             speed = careful(skill, tuning.ready_speed)
-            yield from move_arms(skill, model.READY, sides=(hand,), speed=speed, retreat=True)
+            yield from move_arms(skill, skill.world.robot.ready, sides=(hand,), speed=speed, retreat=True)
 
     yield from ready_or_not(skill, ready, leave)

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
+from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.gripper import GRIPPER
-from ...sim.robot.kinematics import default_kinematics
 from ...sim.world import SIDES, GripperOpening, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
@@ -69,7 +68,7 @@ def reach_in(
     approach: np.ndarray,
     closing: np.ndarray,
     *,
-    opening: float = GRIPPER.stroke,
+    opening: float | None = None,
     standoff: float = PINCH.standoff,
     depth: float = PINCH.depth,
     speed: float = HANDS.speed,
@@ -83,7 +82,7 @@ def reach_in(
         position: (3,) of the cloth in the map [m].
         approach: (3,) unit vector from the hand to the cloth.
         closing: (3,) along which the fingers should close; the nearest roll that the arm can take is used.
-        opening: of the fingers on the way in [m].
+        opening: of the fingers on the way in, as far as they go by default [m].
         standoff: where to begin the straight way [m].
         depth: how far the fingertips go beyond the position [m].
         speed: of the hand until it waits in front of the cloth; less of it on the straight way [m/s].
@@ -96,9 +95,10 @@ def reach_in(
     before, inside = grasp_poses(
         skill, side, position, approach, closing, standoff=standoff, depth=depth, tuning=tuning
     )
-    skill.world.send(GripperOpening(side=side, opening=opening), retreat=True)
+    wide = skill.world.robot.gripper.stroke if opening is None else opening
+    skill.world.send(GripperOpening(side=side, opening=wide), retreat=True)
     yield from move_hands(skill, {side: before}, speed=speed, way="any")
-    yield from open_gripper(skill, side, opening)
+    yield from open_gripper(skill, side, wide)
     yield from move_hands(skill, {side: inside}, speed=tuning.inwards_share * speed)
 
 
@@ -122,7 +122,7 @@ def grasp_poses(
         Unreachable: with no roll.
     """
     seen, n = skill.world.observe(), SIDES.index(side)
-    kinematics, base = default_kinematics(), seen.pose_base_in_map
+    kinematics, base = kinematics_of(skill.world.robot), seen.pose_base_in_map
     accept = free_postures(collision_checker(skill), side, base, seen.arm_positions)
     across = np.cross(approach, closing)
     tries = Tries(Unreachable)

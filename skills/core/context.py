@@ -10,6 +10,7 @@ import numpy as np
 
 from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import Clock, Command, Frame, Observation, RoomMap, Side
 from ..geometry.person_zone import PersonZone
 from .lease import MotionLease
@@ -27,6 +28,11 @@ class SafeWorld(Protocol):
 
     clock: Clock
     room: RoomMap
+
+    @property
+    def robot(self) -> RobotModel:
+        """What the robot is made of: skills plan with it."""
+        ...
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""

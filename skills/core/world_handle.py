@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...sim.errors import CaretreeError
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import BaseVelocity, Clock, Command, Frame, HandTwist, JointTrajectory, Observation, RoomMap
 from .context import Context
 from .lease import Owner
@@ -40,6 +41,11 @@ class WorldHandle:
     def room(self) -> RoomMap:
         """The mapped room."""
         return self._context.world.room
+
+    @property
+    def robot(self) -> RobotModel:
+        """What the robot is made of."""
+        return self._context.world.robot
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""

@@ -46,7 +46,7 @@ class LinkClearance:
     """What each link of one robot has to keep from each part of the person.
 
     Args:
-        names: (r,) of the links' capsules (`sim/robot/capsules.py`).
+        names: (r,) of the links' capsules (`sim/mechanics/capsules.py`).
         radii: (r,) of them [m].
         tuning: the least gaps.
     """

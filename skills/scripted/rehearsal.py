@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.known_robots import robot_named
+from ...sim.mechanics.kinematics import kinematics_of
+from ...sim.mechanics.robot_model import RobotModel
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot import model
-from ...sim.robot.kinematics import default_kinematics
 from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import room_map
 from ...sim.scripted.world import ScriptedWorld
@@ -50,6 +51,7 @@ class RehearsalWorld(ScriptedWorld):
 
     Args:
         seed: of the sensor noise.
+        robot: that is rehearsed with; the usual one by default.
         tuning: what the hands meet.
 
     Attributes:
@@ -58,8 +60,11 @@ class RehearsalWorld(ScriptedWorld):
 
     initial_states = tuple(InitialState)
 
-    def __init__(self, seed: int = 0, *, tuning: RehearsalTuning = REHEARSAL) -> None:
-        super().__init__(seed=seed, room=room_map(), kinematics=default_kinematics(), arm_positions=model.READY)
+    def __init__(self, seed: int = 0, *, robot: RobotModel | None = None, tuning: RehearsalTuning = REHEARSAL) -> None:
+        robot = robot or robot_named()
+        super().__init__(
+            seed=seed, room=room_map(), robot=robot, kinematics=kinematics_of(robot), arm_positions=robot.ready
+        )
         self._tuning = tuning
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
 
@@ -90,14 +95,17 @@ class RehearsalWorld(ScriptedWorld):
 
     def observe(self) -> Observation:
         """The scripted world's senses, with the load of what the hands hold."""
-        tuning = self._tuning
         for side in SIDES:
             self.load[side] = np.zeros(6)
             if side in self._taken and self.between_fingers[side] > 0.0:
-                drag = tuning.stiffness * (self._taken[side] - self._hand(side))
-                self.load[side][:3] = drag * min(1.0, tuning.max_drag / max(length(drag), 1e-9))
-                self.load[side][2] -= tuning.hanging_load
+                self.load[side][:3] = self.held_back(side)
         return super().observe()
+
+    def held_back(self, side: Side) -> np.ndarray:
+        """Force (3,) in the map on a hand by what it holds [N]; a task whose things do otherwise says so here."""
+        drag = self._tuning.stiffness * (self._taken[side] - self._hand(side))
+        drag = drag * min(1.0, self._tuning.max_drag / max(length(drag), 1e-9))
+        return drag - (0.0, 0.0, self._tuning.hanging_load)
 
     def _hand(self, side: Side) -> np.ndarray:
         return self._hand_poses()[SIDES.index(side), :3, 3].copy()
@@ -110,7 +118,7 @@ def _distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     return float(np.linalg.norm(start + share * along - point))
 
 
-def rehearsal(seed: int) -> tuple[RehearsalWorld, ScriptedSenses]:
-    """A world to rehearse the dressing task on, and what is seen there."""
-    world = RehearsalWorld(seed)
+def rehearsal(seed: int, robot: RobotModel | None = None) -> tuple[RehearsalWorld, ScriptedSenses]:
+    """A world to rehearse the dressing task on, with the usual robot by default, and what is seen there."""
+    world = RehearsalWorld(seed, robot=robot)
     return world, ScriptedSenses(world)

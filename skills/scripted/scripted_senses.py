@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -28,8 +29,8 @@ from ...perception.estimates import (
 )
 from ...perception.person.person_facts import PERSON
 from ...perception.senses import Senses
+from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.robot.kinematics import planar_pose
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import Frame, Observation, Side
 from .scripted_person import laid_strap, lying_arm, lying_posture
@@ -74,6 +75,12 @@ class ScriptedSenses(Senses):
         self._world = world
         self._moved_before = self._moved()
         self._collar_aside = 0.06  # [m]
+
+    def on(self, world: Proprioception) -> Self:
+        """The same senses for another robot, such as one behind a ROS master."""
+        other = copy(self)
+        other._world = world
+        return other
 
     def hang_point(self, frame: Frame) -> GraspPoint:
         """Straight ahead."""
@@ -196,11 +203,16 @@ class ScriptedSenses(Senses):
         return ChestFront(stamp=frame.stamp, confidence=0.9, height=height, breastbone=height)
 
     def collar_middle(
-        self, frame: Frame, *, near_in_map: np.ndarray, below: float = 0.0, flat: Side | None = None
+        self,
+        frame: Frame,
+        *,
+        near_in_map: np.ndarray,
+        away: tuple[float, float] = (0.0, 0.0),
+        flat: Side | None = None,
     ) -> GraspPoint:
         """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
-        place = np.array((self._collar_aside, -0.5 + below, 0.83))
-        self._collar_aside *= below == 0.0
+        place = np.array((self._collar_aside + away[0], -0.5 + away[1], 0.83))
+        self._collar_aside *= not any(away)
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,

@@ -31,7 +31,7 @@ class OpenGuard:
     """
 
     def __init__(self, inner: World) -> None:
-        self.clock, self.room = inner.clock, inner.room
+        self.clock, self.room, self.robot = inner.clock, inner.room, inner.robot
         self._inner = inner
         self.zone = PersonZone(inner.room.bed)
         self._grip: dict[str, Grip] = dict.fromkeys(SIDES, "nothing")

@@ -23,8 +23,8 @@ MODULES = (  # of caretree, with what is below them
     "sim.compiled",
     "sim.errors",
     "sim.freshness",
+    "sim.mechanics",
     "sim.quantity",
-    "sim.robot",
     "sim.segments",
     "sim.vector",
     "sim.world",
@@ -35,7 +35,7 @@ MODULES = (  # of caretree, with what is below them
     "trees.run.stages",
     "trees.tasks",
 )
-EXCEPT = ("sim.robot.body", "sim.robot.visual", "skills.scripted", "skills.testing")  # they hold or draw a world
+EXCEPT = ("skills.scripted", "skills.testing")  # they hold a world
 
 
 def _words(text: str) -> frozenset[str]:

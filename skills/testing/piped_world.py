@@ -13,6 +13,8 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from ...sim.abilities import HandKinematics, SupportsInitialStates
+from ...sim.errors import CaretreeError
+from ...sim.known_robots import robot_named
 from ...sim.remote.values import ERRORS, packed, unpacked
 from ...sim.scripted.clock import SteppedClock
 from ...sim.world import Command, Frame, Observation, World, WorldError
@@ -42,7 +44,8 @@ class PipedWorld(World):
         far_end.close()
         try:
             self.room = self._ask("room")
-        except WorldError:
+            self.robot = robot_named(self._ask("robot"))
+        except CaretreeError:
             self.close()
             raise
         self.clock = _PipedClock(self)
@@ -113,6 +116,7 @@ def serve(pipe: Connection, world: World) -> None:
     """Answer with a world what is asked at the other end of a pipe, until that is closed; then close the world."""
     answers = {name: getattr(world, name) for name in CALLS}
     answers |= {"now": world.clock.now, "wait_until": world.clock.wait_until, "room": lambda: world.room}
+    answers["robot"] = lambda: world.robot.name
     try:
         while True:
             what, values = pipe.recv()

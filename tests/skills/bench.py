@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 from caretree.perception.person.arm_fit import turned_about_shoulder
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scene.scene import room_map
 from caretree.sim.world import SIDES, GripperOpening
 from caretree.skills.control.arm_grip import over_arm
@@ -90,8 +91,8 @@ def beside_bed(*, stand=None, hands=None, held=None, load=None, deaf_to=(), **an
         arms = model.READY.copy()
         for side, pose in (hands or {}).items():
             n = SIDES.index(side)
-            arms[n] = solve_ik(default_kinematics(), side, pose, base, model.READY[n])
-        world = DeafWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=arms)
+            arms[n] = solve_ik(kinematics_of(BAXTER), side, pose, base, model.READY[n])
+        world = DeafWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=arms)
         for side, thickness in (held or {}).items():
             world.between_fingers[side] = thickness
             world.send(GripperOpening(side=side, opening=0.0, force_limit=30.0))

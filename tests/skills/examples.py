@@ -34,6 +34,9 @@ from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
+from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
+from caretree.trees.tasks.wipe_forearm.put_back import PutBack
+from caretree.trees.tasks.wipe_forearm.wipe import Wipe
 
 ALWAYS = LowerArmTuning(lies_below=0.0)  # an arm that lies would be left alone
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
@@ -59,6 +62,7 @@ EXAMPLES = {
     FlipSideCheck: lambda context: FlipSideCheck("flip side check", context),
     GraspSleeve: lambda context: GraspSleeve("grasp sleeve", context, side="right", hand="right"),
     LayGown: lambda context: LayGown("lay gown", context, width=0.8),
+    LayOnHand: lambda context: LayOnHand("lay on hand", context, side="right", hand="right"),
     LaySleeve: lambda context: LaySleeve("lay sleeve", context, grip=GRIP),
     LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),
     LookAtPerson: lambda context: LookAtPerson("look at person", context, side="right"),
@@ -69,6 +73,7 @@ EXAMPLES = {
     PresentSleeve: lambda context: PresentSleeve("present sleeve", context, grip=GRIP),
     PullAlongArm: lambda context: PullAlongArm("pull along arm", context, grip=GRIP, grip_goal=1.45),
     RaiseCorner: lambda context: RaiseCorner("raise corner", context, hand="right", hook=hook(context), min_load=-1.0),
+    PutBack: lambda context: PutBack("put back", context, hand="right", grasp=hook(context)),
     ReleaseArm: lambda context: ReleaseArm("release arm", context, hand="left", lower=True),
     Retreat: lambda context: Retreat("retreat", context, base_distance=0.3),
     SegmentAndGrasp: lambda context: SegmentAndGrasp("segment and grasp", context, hand="right"),
@@ -81,6 +86,7 @@ EXAMPLES = {
     TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), min_load=-1.0, min_load_each=-1.0),
     Unhook: lambda context: Unhook("unhook", context, hand="right", height=0.05),
     ViewAround: lambda context: ViewAround("view around", context, hand="right"),
+    Wipe: lambda context: Wipe("wipe", context, side="right", hand="right", strokes=1),
     MoveJoint: lambda context: MoveJoint("move joint", context, side="left", joint="w1", angle=0.3),
     HoldStill: lambda context: HoldStill("hold still", context),
 }

@@ -2,8 +2,10 @@
 
 import numpy as np
 from caretree.perception.estimates import GraspPoint
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.mechanics.planar import planar_pose
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics, planar_pose
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES, GripperOpening
 from caretree.skills.core.context import Context
@@ -42,7 +44,7 @@ def holding(**places):
         approach = np.sqrt(0.75) * AHEAD + inwards * LEFT
         pose = hand_pose(place, approach, np.cross(-DOWN, approach))
         n = SIDES.index(side)
-        arms[n] = solve_ik(default_kinematics(), side, pose, STAND, arms[n])
+        arms[n] = solve_ik(kinematics_of(BAXTER), side, pose, STAND, arms[n])
     return arms
 
 
@@ -59,7 +61,7 @@ class PullingWorld(ScriptedWorld):
     def __init__(self, arms):
         room = scripted_room()
         room.waypoints["start"] = tuple(STAND)
-        super().__init__(seed=1, room=room, kinematics=default_kinematics(), arm_positions=arms)
+        super().__init__(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=arms)
         self.closed = {}
 
     def hand(self, side):

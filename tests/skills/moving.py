@@ -1,8 +1,9 @@
 """A robot of numbers, away from the bed, that carries out one motion of `skills.control` at a time."""
 
 import numpy as np
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.skills.core.context import Context
 from caretree.skills.core.reasons import Reason
@@ -45,7 +46,7 @@ def robot(base=(2.5, -2.5, 0.0), *, deaf_to=(), **answers):
     room = scripted_room()
     room.waypoints["start"] = base
     room.bed[1, 2] = 0.6  # as in the simulated room: hands that are ready pass over the person's legs
-    world = DeafWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    world = DeafWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     world.deaf_to = deaf_to
     guard = GuardedWorld(world)
     return world, Context(world=guard, guard=guard, seed=1, senses=fake_senses(**answers))

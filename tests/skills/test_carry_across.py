@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.belief.sleeve_search import SleeveMemory
@@ -26,7 +27,7 @@ def ran(sleeve, load=(0.0, 0.0, -1.0)):
     room = scripted_room()
     room.waypoints["start"] = tuple(stance("right", "shoulder") + (0.25, 0.0, 0.0))
     room.bed[1, 2] = 0.64  # low enough for hands that are ready to pass over the person
-    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
     context = Context(
         world=guard,

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.control.hands import hand_now
@@ -33,7 +34,7 @@ def let_go_at(seen, taut_until=1.0):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
     room.waypoints["start"] = START
-    world = ScriptedWorld(seed=1, room=room, kinematics=default_kinematics(), arm_positions=model.READY)
+    world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen))
     skill = LayGown("lay", context, width=WIDTH)

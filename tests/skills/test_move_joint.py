@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from caretree.sim.world import JointTrajectory
+from caretree.skills.core.ports import PortError
 from caretree.skills.core.reasons import Reason
 from caretree.skills.move_joint import MoveJoint
 
@@ -34,3 +35,8 @@ def test_a_joint_turns_by_an_angle_or_to_one_and_says_where_it_was(relative, tur
 
 def test_one_that_does_not_turn_is_told():
     assert bench(0.4, deaf_to=(JointTrajectory,)).ended() == Reason.COMMAND_LOST
+
+
+def test_a_joint_that_the_robot_does_not_have_is_refused_before_anything_moves():
+    with pytest.raises(PortError, match="joint is 'knee', but the robot baxter has s0, s1, e0, e1, w0, w1, w2"):
+        LeafBench(lambda context: MoveJoint("turn", context, side="left", joint="knee", angle=0.1), beside_bed())

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, LayerCount, PreGrasp
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 from caretree.skills.control.hold_up import presenting
 from caretree.skills.core.reasons import Reason
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
@@ -12,8 +13,8 @@ from caretree.skills.view_around import Views
 
 from .hung_gown import AHEAD, DOWN, LEFT, STAND, at, bench_with, ended
 
-ARMS = presenting("right", 0.0)
-HELD = default_kinematics().pose_hand_in_map("right", ARMS[1], STAND)
+ARMS = presenting(BAXTER, "right", 0.0)
+HELD = kinematics_of(BAXTER).pose_hand_in_map("right", ARMS[1], STAND)
 GOOD, POOR = at(0.75, 0.10, 1.05), at(0.75, 0.14, 0.90)  # two ends of the neckline below the holding hand
 SIDEWAYS = -0.05 * LEFT  # of a sweep [m]
 BACK = 0.08  # [m] from the corner, at least, of a hand that has drawn back

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.person.arm_fit import turned_about_shoulder
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.model import READY
 from caretree.sim.world import GripperOpening, HandTwist, JointTrajectory, SensorLost
 from caretree.skills.belief.person_tracking import Watch
@@ -181,7 +182,7 @@ def test_an_open_hand_is_not_lowered():
 def test_one_that_is_to_be_ready_ends_in_the_ready_posture():
     run = bench(ready="always")
     assert run.ended() is None
-    ready = default_kinematics().pose_hand_in_map("left", READY[0], run.world.observe().pose_base_in_map)
+    ready = kinematics_of(BAXTER).pose_hand_in_map("left", READY[0], run.world.observe().pose_base_in_map)
     assert run.way("left")[-1] == pytest.approx(ready[:3, 3], abs=0.03)
     stays = bench(ready="never")
     assert stays.ended() is None

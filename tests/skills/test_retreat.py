@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.model import READY
 from caretree.sim.world import SIDES, BaseVelocity, GripperOpening, JointTrajectory
 from caretree.skills.control.withdraw import WithdrawTuning
@@ -70,7 +71,7 @@ def test_the_arms_are_ready_in_the_end_and_the_base_stays_if_it_may():
     run = bench()
     assert run.ended() is None
     last = run.seen[-1]
-    ready = [default_kinematics().pose_hand_in_map(side, READY[n], STAND) for n, side in enumerate(SIDES)]
+    ready = [kinematics_of(BAXTER).pose_hand_in_map(side, READY[n], STAND) for n, side in enumerate(SIDES)]
     assert last.pose_hand_in_map[:, :3, 3] == pytest.approx(np.array(ready)[:, :3, 3], abs=0.03)
     assert last.pose_base_in_map == pytest.approx(STAND, abs=0.005)
 

@@ -18,6 +18,17 @@ HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
+ARM = lying_posture("right").points_in_map
+FRONT = GraspPoint(
+    stamp=0.0,
+    confidence=0.9,
+    target="sleeve_right",
+    position_in_map=ARM[0] + 0.2 * (ARM[1] - ARM[0]) + (0.0, 0.0, 0.06),
+    approach_in_map=np.array((0.0, 0.0, -1.0)),
+    closing_in_map=np.array((1.0, 0.0, 0.0)),
+)
+
+
 def collar_at(aside, y):
     """The collar's middle `aside` of the midline and at `y` in the map [m]."""
     return GraspPoint(
@@ -30,14 +41,15 @@ def collar_at(aside, y):
     )
 
 
-def bench(*, aside=0.14, cloth=HELD, collar=None, each_tick=lambda bench: None):
+def bench(*, aside=0.14, cloth=HELD, collar=None, holding=None, front=FRONT, each_tick=lambda bench: None):
     """The right hand, from the right side of the bed; the collar's middle lies `aside` [m]."""
     return LeafBench(
-        lambda context: Spread("spread", context, side="right", hand="right"),
+        lambda context: Spread("spread", context, side="right", hand="right", holding=holding),
         beside_bed(
             stand=STAND,
             collar_middle=collar or collar_at(aside, -0.50),
             gripped_cloth=cloth,
+            armhole_front=front,
             arm=lambda frame, side, **_: lying_posture(side),
         ),
         each_tick=each_tick,
@@ -53,10 +65,10 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_at_the_midline():
     run = bench()
     assert run.ended() is None
     way = carried(run)
-    assert way[0] == pytest.approx((0.14, -0.50, HEIGHT), abs=0.03)
+    assert way[0] == pytest.approx((0.14, -0.50, HEIGHT), abs=0.03), "where it was seen"
     assert way[:, 2].max() - way[0, 2] == pytest.approx(0.10, abs=0.02)  # [m]
     assert way[-1, 2] - way[0, 2] == pytest.approx(0.02, abs=0.02)
-    assert way[-1, 0] - way[0, 0] == pytest.approx(-0.20, abs=0.03), "on beyond the midline, as it springs back"
+    assert way[-1, 0] - way[0, 0] == pytest.approx(-0.14, abs=0.03), "to 3 cm beside the midline, and beyond"
     assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] - way[-1, 2] == pytest.approx(0.12, abs=0.03), "drawn back"
 
@@ -112,19 +124,36 @@ def test_a_collar_that_does_not_show_is_told_and_no_hand_moves():
     assert run.way("right")[-1] == pytest.approx(run.start.pose_hand_in_map[1, :3, 3], abs=0.005)
 
 
-def test_where_the_hand_does_not_get_to_the_collar_it_takes_the_cloth_farther_down():
+def test_a_collar_far_aside_is_taken_by_the_cloth_on_its_way_to_the_midline_and_farther_down_where_no_hand_gets():
     asked = []
 
-    def collar(frame, *, near_in_map, below=0.0, flat=None):
-        asked.append(below)
-        near = seen.position_in_map + ((0.0, 0.0, 0.9) if 0.0 < below < 0.06 else (0.0, below, 0.0))  # out of reach
-        return dataclasses.replace(seen, position_in_map=near)
+    def collar(frame, *, near_in_map, away=(0.0, 0.0), flat=None):
+        asked.append(away)
+        out_of_reach = 0.9 if 0.0 < away[1] < 0.06 else 0.0  # [m]
+        return dataclasses.replace(seen, position_in_map=seen.position_in_map + (*away, out_of_reach))
 
     seen = collar_at(0.14, -0.50)
     run = bench(collar=collar)
     assert run.ended() is None
-    assert asked == [0.0, 0.05, 0.08]
-    assert carried(run)[0] == pytest.approx((0.14, -0.42, HEIGHT), abs=0.03)
+    x, y = np.transpose(asked)
+    assert asked[0] == (0.0, 0.0), "first, where it lies"
+    assert (x[1:3] < 0.0).all(), "towards the midline"
+    assert y[1] < y[2]
+    assert carried(run)[0] == pytest.approx((0.14 + x[2], -0.50 + y[2], HEIGHT), abs=0.03)
+
+
+def test_a_collar_near_the_midline_is_taken_below_its_middle():
+    asked = []
+
+    def collar(frame, *, near_in_map, away=(0.0, 0.0), flat=None):
+        asked.append(away)
+        return dataclasses.replace(seen, position_in_map=seen.position_in_map + (*away, 0.0))
+
+    seen = collar_at(0.06, -0.50)
+    run = bench(collar=collar)
+    assert run.ended() is None
+    assert asked[1][0] == 0.0
+    assert asked[1][1] > 0.0
 
 
 def test_the_hand_on_its_way_down_stops_where_it_touches_the_body():
@@ -137,3 +166,31 @@ def test_the_hand_on_its_way_down_stops_where_it_touches_the_body():
     assert run.ended() is None
     way = carried(run)
     assert way[way[:, 0] < -0.05, 2].min() > HEIGHT + 0.04  # [m]
+
+
+def test_the_other_hand_holds_the_near_armhole_while_the_collar_is_carried_and_lets_go_last():
+    run = bench(aside=0.07, holding="left")
+    assert run.ended() is None
+    held, carrying = run.openings("left") < 0.005, run.openings("right") < 0.005
+    assert run.way("left")[held] == pytest.approx(np.broadcast_to(FRONT.position_in_map, (held.sum(), 3)), abs=0.03)
+    assert held[carrying].all()
+    assert run.openings("left")[-1] > 0.04
+    assert run.way("left")[-1, 2] > FRONT.position_in_map[2] + 0.08, "drawn back"
+
+
+AWAY = dataclasses.replace(FRONT, position_in_map=FRONT.position_in_map + 2.0)
+
+
+@pytest.mark.parametrize("front", [HIDDEN, AWAY])
+def test_a_collar_far_aside_is_brought_though_the_armhole_cannot_be_held(front):
+    run = bench(aside=0.14, holding="left", front=front)
+    assert run.ended() is None
+    assert len(carried(run))
+    assert run.openings("left").min() > 0.04
+
+
+@pytest.mark.parametrize(("front", "reason"), [(HIDDEN, Reason.NOTHING_SEEN), (AWAY, Reason.UNREACHABLE)])
+def test_a_collar_that_lies_nearly_well_is_left_where_the_armhole_cannot_be_held(front, reason):
+    run = bench(aside=0.07, holding="left", front=front)
+    assert run.ended() == reason
+    assert not len(carried(run))

@@ -29,10 +29,11 @@ CONDITIONS = (fingers_apart,)
 def build(context: Context, side: Annotated[Side, Parameter("hand of the robot that waves")] = "left") -> Behaviour:
     """Wave once with `side`; if a command is lost, wait and try again."""
     where = Key("wave_before")
+    joint = context.world.robot.arm_joints[-2]  # of the wrist
     wave = sequence(
         "wave once",
-        MoveJoint("hand up", context, side=side, joint="w1", angle=0.6, before=where),
-        MoveJoint("hand back", context, side=side, joint="w1", angle=where, relative=False, speed=0.6),
+        MoveJoint("hand up", context, side=side, joint=joint, angle=0.6, before=where),
+        MoveJoint("hand back", context, side=side, joint=joint, angle=where, relative=False, speed=0.6),
     )
     again = RecoverBy(
         "wave, again if lost", wave, {Reason.COMMAND_LOST: lambda: HoldStill("wait", context)}, attempts=3

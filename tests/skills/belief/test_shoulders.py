@@ -44,7 +44,7 @@ def test_aside_is_to_the_right_of_the_bed_and_headward_away_from_the_feet():
 def test_the_neckline_lies_flat_on_the_side_that_was_drawn_up_second():
     asked = []
 
-    def collar(frame, *, near_in_map, below, flat):
+    def collar(frame, *, near_in_map, away, flat):
         asked.append(flat)
         return COLLAR
 

@@ -2,8 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 from caretree.skills.belief.strap_grasp import presenting_position, way_in
 from caretree.skills.geometry.arm_path import ArmPath
@@ -30,8 +31,8 @@ def test_the_way_in_is_straight_from_above_and_within_reach(arm, worn):
     deeper = way.inside[:3, 3] - strap.position_in_map
     np.testing.assert_allclose(deeper, (deeper @ approach) * approach, atol=1e-9)
     assert 0.0 < deeper @ approach < 0.03
-    q = solve_ik(default_kinematics(), hand, way.before, base, model.READY[SIDES.index(hand)])
-    solve_ik(default_kinematics(), hand, way.inside, base, q)
+    q = solve_ik(kinematics_of(BAXTER), hand, way.before, base, model.READY[SIDES.index(hand)])
+    solve_ik(kinematics_of(BAXTER), hand, way.inside, base, q)
 
 
 def test_a_strap_out_of_reach_is_told():

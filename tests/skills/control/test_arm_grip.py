@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.person.arm_fit import turned_about_shoulder
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.skills.control.arm_grip import holds_arm, lost_arm, over_arm, top_down_reachable
 from caretree.skills.control.fingers import close_gripper
 from caretree.skills.core.reasons import Reason
@@ -42,7 +43,7 @@ def test_of_two_turns_one_that_the_arm_can_take_is_chosen():
     chosen = top_down_reachable(idle(context), "left", pose)
     np.testing.assert_allclose(chosen[:3, 3], pose[:3, 3])
     assert abs(chosen[:3, 1] @ pose[:3, 1]) == pytest.approx(1.0), "the same, or turned by half a turn"
-    solve_ik(default_kinematics(), "left", chosen, stance("right", "lift"), model.READY[0])
+    solve_ik(kinematics_of(BAXTER), "left", chosen, stance("right", "lift"), model.READY[0])
 
 
 def test_where_no_turn_leads_it_is_told():

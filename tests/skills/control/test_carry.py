@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.skills.control.carry import Carry, carry, ease_off
+from caretree.skills.control.carry import Carry, carry
 from caretree.skills.core.skill import Skill
 
 from ..bench import LeafBench, beside_bed, pulls
@@ -36,25 +36,3 @@ def test_a_load_against_the_way_ends_it_and_one_along_it_does_not():
 
 def test_a_hand_that_touches_the_body_stops():
     assert lifted(lambda bench: pulls(bench.world, "right", (0.0, 0.0, 4.0)))[2] < 0.02  # [m]
-
-
-class Ease(Skill):
-    """Eases the right hand off the body."""
-
-    def steps(self):
-        yield from ease_off(self, "right", Carry())
-        yield
-
-
-@pytest.mark.parametrize(("pressed", "rise"), [(0.01, 0.01), (0.05, 0.02), (0.0, 0.0)])
-def test_a_hand_that_presses_on_the_body_goes_up_until_it_does_not_and_no_farther_than_two_centimetres(pressed, rise):
-    start = []
-
-    def body(bench):
-        height = bench.world.observe().pose_hand_in_map[1, 2, 3]
-        start.append(height)
-        pulls(bench.world, "right", (0.0, 0.0, 20.0 if height < start[0] + pressed else 0.0))
-
-    run = LeafBench(lambda context: Ease("ease", context), beside_bed(stand=STAND), each_tick=body)
-    assert run.ended() is None
-    assert run.way("right")[-1, 2] - start[0] == pytest.approx(rise, abs=0.006)  # [m]

@@ -10,7 +10,7 @@ from ..moving import carry_out, robot
 def swing(world, by):
     """A trajectory of one joint of the left arm and the head, `by` [rad] in 2 s."""
     joints = ("left_s1", "head_pan")
-    here = joint_values(world.observe(), joints)
+    here = joint_values(world.robot, world.observe(), joints)
     return JointTrajectory(joints=joints, times=np.array((0.0, 2.0)), positions=np.stack((here, here + by)))
 
 
@@ -20,7 +20,9 @@ def test_it_ends_where_the_trajectory_ends_and_not_before():
     skill = carry_out(world, context, lambda skill: follow(skill, trajectory))
     assert skill.failure is None
     assert world.clock.now() >= 2.0
-    np.testing.assert_allclose(joint_values(world.observe(), trajectory.joints), trajectory.positions[-1], atol=0.01)
+    np.testing.assert_allclose(
+        joint_values(world.robot, world.observe(), trajectory.joints), trajectory.positions[-1], atol=0.01
+    )
 
 
 def test_a_command_that_moves_nothing_is_lost():

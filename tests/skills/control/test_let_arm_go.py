@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.skills.control.arm_grip import over_arm
 from caretree.skills.control.let_arm_go import let_arm_go
 from caretree.skills.geometry.stances import stance
@@ -30,5 +31,5 @@ def test_it_opens_goes_up_and_is_ready_if_asked_to(ready):
     opened = int(np.argmax(opening > 0.08))
     assert np.linalg.norm(way[:opened] - way[0], axis=1).max() < 0.005
     assert way[:, 2].max() - way[0, 2] > 0.15
-    there = default_kinematics().pose_hand_in_map("left", model.READY[0], stance("right", "lift"))[:3, 3]
+    there = kinematics_of(BAXTER).pose_hand_in_map("left", model.READY[0], stance("right", "lift"))[:3, 3]
     assert bool(np.linalg.norm(way[-1] - there) < 0.03) is (ready != "never")

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.skills.control.withdraw import WithdrawTuning, withdraw
 from caretree.skills.core.context import Context
@@ -18,7 +19,7 @@ class Mover(Skill):
 
 def way(min_rise):
     """The way back (3,) of the right hand [m], and the unit vector against which it pointed."""
-    world = ScriptedWorld(seed=1, room=scripted_room(), kinematics=default_kinematics(), arm_positions=model.READY)
+    world = ScriptedWorld(seed=1, room=scripted_room(), kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1)
     skill = Mover("draw back", context)

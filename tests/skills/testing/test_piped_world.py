@@ -9,8 +9,9 @@ from types import FrameType, FunctionType, ModuleType
 import numpy as np
 import pytest
 from caretree.sim.bullet.world import BulletWorld
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.remote.values import UndeclaredError, packed, unpacked
-from caretree.sim.robot.kinematics import default_kinematics
+from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scene.scene import Scene
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import CAMERAS, Frame, HandTwist, Observation, RoomMap, SensorLost, World, WorldError
@@ -50,7 +51,7 @@ def piped():
     worlds = []
 
     def make(kind, **options):
-        worlds.append(PipedWorld(kind, kinematics=default_kinematics(), **options))
+        worlds.append(PipedWorld(kind, kinematics=kinematics_of(BAXTER), **options))
         return worlds[-1]
 
     yield make
@@ -114,7 +115,7 @@ def test_the_contract_declares_this_and_no_more():
     assert {field.name for field in fields(Frame)} == PICTURED
     assert {field.name for field in fields(RoomMap)} == MAPPED
     assert {name for name in dir(World) if not name.startswith("_")} == {"observe", "look", "send", "stop", "close"}
-    assert set(World.__annotations__) == {"clock", "room"}
+    assert set(World.__annotations__) == {"clock", "room", "robot"}
     assert CAMERAS == ("head", "left_hand", "right_hand")
 
 

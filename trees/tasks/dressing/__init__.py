@@ -18,6 +18,7 @@ from py_trees.behaviour import Behaviour
 
 from ....perception.classical import ClassicalSenses
 from ....perception.senses import Senses
+from ....sim.mechanics.robot_model import RobotModel
 from ....sim.world import World
 from ....skills.core.context import Context
 from ....skills.scripted.rehearsal import rehearsal
@@ -53,6 +54,6 @@ def build(context: Context, stages: Sequence[str] = tuple(STAGES)) -> Behaviour:
     return FailSafe("dress safely", body, make_safe(context))
 
 
-def scripted(seed: int) -> tuple[World, ScriptedSenses]:
+def scripted(seed: int, robot: RobotModel | None = None) -> tuple[World, ScriptedSenses]:
     """The world on which the task is rehearsed: every grasp succeeds, and what is seen is made up."""
-    return rehearsal(seed)
+    return rehearsal(seed, robot)

@@ -12,7 +12,7 @@ from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
-from ....skills.geometry.stances import PULLING, stance
+from ....skills.geometry.stances import LIFTING, PULLING, stance
 from ....skills.look_at_person import LookAtPerson
 from ....skills.navigate import Navigate
 from ....skills.seat_sleeve import SeatSleeve
@@ -28,7 +28,6 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_room
 MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown)
-NOT_ASIDE = CheckCollarTuning(max_headward=DRESSING.collar_room[2], max_footward=DRESSING.collar_room[2])
 ROOM = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
 
 
@@ -37,15 +36,16 @@ def spread(context: Context) -> Stage:
 
     The right sleeve, which the left one has pulled down, comes first.  A sleeve that is drawn up takes the front along,
     and with it the other one down, by about half as much as it gains itself: after the left one both are seen to again.
-    The collar, which is taken along by up to 9 cm, comes last, and is seen from where the last sleeve was drawn up.
+    The collar is taken along too, by up to 20 cm: from the left sleeve on it is straightened after each, which one hand
+    holds meanwhile.
     Only then is judged whether the sleeves will do: one that seems low is no reason to leave the rest undone.
     """
-    once_more = [settle_sleeve(context, "right", " 2"), settle_sleeve(context, "left", " 2")]
+    once_more = [settle_sleeve(context, side, " 2", collar=True) for side in ("right", "left")]
     return timed_stage(
         "spread",
         settle_sleeve(context, "right"),
-        settle_sleeve(context, "left", then=once_more),
-        straighten_collar(context, "left"),
+        settle_sleeve(context, "left", then=once_more, collar=True),
+        straighten_collar(context, "left", "last collar"),
         will_do(context, "left"),
         CheckCollar("the collar lies in the middle", Scope(context, "collar"), tuning=MIDDLE),
         will_do(context, "right"),
@@ -60,7 +60,7 @@ def straighten_collar(context: Context, side: Side, name: str = "collar") -> Beh
 
     Where the hand cannot bring it there, it may lie well enough all the same, which is looked at in the end.
     """
-    collar = Scope(context, f"{side} {name}", side=side, hand=PULLING[side])
+    collar = Scope(context, f"{side} {name}", side=side, hand=PULLING[side], holding=LIFTING[side])
     return sequence(
         "straighten the collar",
         Navigate("go round to its side", collar, goal=f"bed_{side}"),
@@ -75,16 +75,19 @@ def straighten_collar(context: Context, side: Side, name: str = "collar") -> Beh
     )
 
 
-def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[Behaviour] = ()) -> Behaviour:
+def settle_sleeve(
+    context: Context, side: Side, when: str = "", then: Sequence[Behaviour] = (), *, collar: bool = False
+) -> Behaviour:
     """See to a sleeve that has slipped down: far down, by its strap first; then by the front of its armhole.
 
-    The arm lies: lowered afterwards, it would draw the sleeve down again.
+    Where that front cannot be taken, the strap is.  The arm lies: lowered later, it would draw the sleeve down again.
 
     Args:
         context: shared services.
         side: of the sleeve.
         when: what is added to the names of its nodes; another time a sleeve that will do is left as it is.
-        then: what follows once the armhole was drawn up by its front.
+        then: what follows once it was drawn up.
+        collar: whether the collar is straightened before that.
     """
     sleeve = arm_scope(context, f"{side} sleeve{when}", side)
 
@@ -110,8 +113,18 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
                 CheckCollar("leaves room now", sleeve, tuning=ROOM),
             ),
         )
-        drawn = SeatSleeve("seat", sleeve, hand=sleeve["pulling"])
-        return sequence("seat the sleeve", room, drawn, back_off("leave it", sleeve), *(then or go("look again")))
+        strap = Scope(sleeve, "strap")
+        by_strap = sequence(
+            f"the {side} armhole's front is hidden{when}",
+            back_off("leave the front", sleeve),
+            grasp_worn("grasp", strap),
+            up_arm(strap, DRESSING.again_load),
+        )
+        front = SeatSleeve("seat", sleeve, hand=sleeve["pulling"])
+        drawn = [fallback("by front or strap", front, by_strap), back_off("leave it", sleeve)]
+        if collar:
+            drawn.append(straighten_collar(context, side, f"collar{when}"))
+        return sequence("seat the sleeve", room, *drawn, *(then or go("look again")))
 
     once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
     drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
@@ -119,11 +132,7 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
         "draw the sleeve up again", drawn, back_off("leave", sleeve, DRESSING.back_off_distance), *go("return")
     )
     near = CheckSleeve("is near the shoulder", sleeve, min_reach=DRESSING.armhole_in_reach)
-    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_will_do if when else DRESSING.armhole_sits)
-    unsettled: tuple[Reason, ...] = LOW
-    if when and side == "right":  # the left one has drawn the collar to this side
-        unsettled = (*LOW, Reason.COLLAR_ASIDE)
-        sits = sequence("sits well", sits, CheckCollar("takes it back", sleeve, tuning=NOT_ASIDE))
+    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_low if when else DRESSING.armhole_sits)
     return sequence(
         f"settle the {side} sleeve{when}",
         Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
@@ -132,7 +141,7 @@ def settle_sleeve(context: Context, side: Side, when: str = "", then: Sequence[B
         fallback("near the shoulder", near, draw_up, back_off("leave it there", sleeve, DRESSING.back_off_distance)),
         fallback(
             "as far as the sleeve goes",
-            RecoverBy("until the sleeve sits", sits, dict.fromkeys(unsettled, seat), attempts=DRESSING.settle_attempts),
+            RecoverBy("until the sleeve sits", sits, dict.fromkeys(LOW, seat), attempts=DRESSING.settle_attempts),
             back_off("leave it as it is", sleeve, DRESSING.back_off_distance),
         ),
         put_down("at last", sleeve),

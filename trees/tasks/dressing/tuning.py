@@ -126,6 +126,12 @@ class DressingTuning(Quantities):
         "choice: what is asked for, 0.7, and what the collar and the other sleeve take away again, 0.03 to 0.08; "
         "drawn up from 0.83, one came to rest at 0.69 (105)",
     )
+    armhole_low: float = quantity(
+        0.68,
+        "1",
+        "of the upper arm, below which the armhole is drawn up a second time",
+        "choice: clearly low, as what is seen is off by 0.044, and drawing one sleeve up takes the other one down",
+    )
     armhole_will_do: float = quantity(
         0.72,
         "1",
