@@ -18,11 +18,15 @@ from ..sim.errors import CaretreeError
 SELF_PARSED = {
     "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
     "serve-world": (".commands.serve_world", "offer a world to a tree in another process"),
+    "serve-robot": (".commands.serve_robot", "have a simulated world be the robot behind a ROS 1 master"),
+    "robot": (".commands.robot", "say what a robot behind a ROS 1 master lacks, before anything moves"),
     "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed and unharmed"),
 }
 # said by --help, which must not import what knows them; a test compares
 WORLDS = ("bullet", "scripted")
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
+ROBOTS = "baxter, ur5-pair"
+LOOKS = "taped, plain, printed, random"
 WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
     "easy+wrench_bias, easy+depth_noise, easy+thinking_time, hard"
@@ -30,7 +34,7 @@ WORLD_KINDS = (
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 EXPORTS = ("xml",)
 SHELLS = ("bash", "zsh")
-DELEGATED = {"gap": "..learning.gap.cli", "learn": "..learning.cli"}
+DELEGATED = {"gap": "..learning.gap.cli", "learn": ".commands.learn"}
 
 
 class _Version(argparse.Action):
@@ -72,10 +76,19 @@ def _world_choice(parser: argparse.ArgumentParser, default: str) -> None:
     _kind_option(parser)
 
 
+def _robot_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot",
+        metavar="NAME",
+        help=f"{ROBOTS}, or package.module:NAME of a RobotModel; of the scripted world (default: baxter)",
+    )
+
+
 def _world_options(parser: argparse.ArgumentParser) -> None:
     _world_choice(parser, "bullet")
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
+    parser.add_argument("--look", metavar="NAME", help=f"of gown, person and room: {LOOKS} (default: taped)")
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
     parser.add_argument(
         "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"
@@ -92,6 +105,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     run.add_argument("--seed", type=seed, default=0, metavar="N", help="of all that varies (default 0)")
     _world_options(run)
+    _robot_option(run)
     run.add_argument(
         "--inject",
         action="append",
@@ -108,6 +122,12 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         "that skill, see `caretree skills SKILL`; may be repeated",
     )
     run.add_argument("--tuning", metavar="FILE", help="YAML file of both: parameter, value; skill, number, value")
+    run.add_argument(
+        "--senses",
+        default="own",
+        choices=("own", "scripted"),
+        help="what sees: the task's own senses, or made up ones, to rehearse on a robot with nothing to see",
+    )
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")
     run.add_argument("--port", type=port, metavar="N", help="of the view (default: the first free one from 8080 on)")
@@ -123,12 +143,14 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
     check.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    _robot_option(check)
     check.add_argument("--tree", action="store_true", help="draw the tree instead: nodes, recoveries and data")
 
     inject = commands.add_parser("inject", help="fault campaign: every node, phase and fault")
     inject.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
     inject.add_argument("--seed", type=seed, default=0, metavar="N", help="of every run (default 0)")
     _world_choice(inject, "scripted")
+    _robot_option(inject)
     inject.add_argument(
         "--fault",
         action="append",

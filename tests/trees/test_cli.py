@@ -10,9 +10,10 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from caretree.sim import faults, world_kind
+from caretree.sim import faults, known_robots, world_kind
 from caretree.sim.record.file_lock import lock_file
 from caretree.sim.record.recorder import Recorder
+from caretree.sim.render import looks
 from caretree.sim.scene import scene
 from caretree.trees import cli
 from caretree.trees.cli import main
@@ -78,8 +79,8 @@ def test_a_failed_run_is_recorded_and_returns_1(tmp_path, capsys):
         (["run", "wave", "--seed", "-1"], "'-1' is no seed"),
         (["run", "wave", "--seed", "one"], "'one' is no seed: a whole number from 0"),
         (["run", "wave", "--seed", "4294967296"], "is no seed"),
-        (["run", "wave", "--world", "mars"], "unknown world 'mars'; there are bullet, scripted, remote, or give"),
-        (["run", "wave", "--world", "ros1"], "unknown world 'ros1'; there are bullet, scripted, remote"),
+        (["run", "wave", "--world", "mars"], "unknown world 'mars'; there are bullet, scripted, remote, ros1, or give"),
+        (["run", "wave", "--world", "ros1", "--world-arg", "site=attic"], "no site 'attic'"),
         (["run", "wave", "--world", "scripted", "--gown", "red"], "--gown needs the bullet world"),
         (["run", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
         (["inject", "wave", "--world-kind", "heavy"], "unknown world kind 'heavy'; there are easy, hard"),
@@ -277,8 +278,10 @@ def test_gap_and_learn_are_handed_on_or_said_to_be_missing(monkeypatch, capsys):
 
 def test_help_names_what_there_is():
     assert ", ".join(scene.GOWNS) == cli.GOWNS
+    assert ", ".join(known_robots.ROBOTS) == cli.ROBOTS
     assert cli.WORLDS == worlds.WORLDS
     assert ", ".join(scene.PERSONS) == cli.PERSONS
+    assert ", ".join(looks.LOOKS) == cli.LOOKS
     assert ", ".join(faults.FAULTS) == cli.FAULTS
     assert ", ".join(("easy", *(f"easy+{one}" for one in world_kind.DIFFICULTIES), "hard")) == cli.WORLD_KINDS
 

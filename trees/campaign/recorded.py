@@ -24,7 +24,7 @@ class Recorded:
         seed: of the run.
         world: name.
         world_args: what a world that the package does not bring was given, name -> value.
-        gown, person, model, stage: as on the command line; None where nothing was given.
+        robot, gown, person, model, stage: as on the command line; None where nothing was given.
         world_kind: name.
         rate_hz: ticks a second.
         inject: faults, as on the command line.
@@ -36,10 +36,12 @@ class Recorded:
     task: str
     seed: int
     world: str
+    robot: str | None = None
     gown: str | None = None
     person: str | None = None
     model: str | None = None
     stage: str | None = None
+    look: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
     inject: tuple[str, ...] = ()
@@ -58,7 +60,8 @@ def recorded(directory: Path) -> Recorded:
     run = read_finished_run(directory)
     file = directory / RUN_FILE
     given = _value(file, run, "parameters", dict, _is_mapping, {})
-    optional = {name: _value(file, given, name, str, _is_text, None) for name in ("gown", "person", "model", "stage")}
+    names = ("robot", "gown", "person", "model", "stage", "look")
+    optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(
         task=_value(file, run, "task", str, _is_text),
         seed=_value(file, run, "seed", int, _is_seed),

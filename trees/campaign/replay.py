@@ -42,7 +42,7 @@ def replay(directory: Path) -> Replay:
     """
     given = recorded(directory)
     before = read_trace(directory / TRACE_FILE)
-    loaded = load_task(given.task)
+    loaded = load_task(given.task, robot=given.robot)
     faults = [parse_fault(text) for text in given.inject]
     inner, senses = make_world(
         given.world,
@@ -52,6 +52,7 @@ def replay(directory: Path) -> Replay:
         person=given.person,
         model=given.model,
         kind=given.world_kind,
+        look=given.look,
         arguments=given.world_args,
     )
     try:

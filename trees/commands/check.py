@@ -15,7 +15,7 @@ def main(options: argparse.Namespace) -> int:
     Raises:
         CaretreeError: the task is unknown or broken.
     """
-    task = load_task(options.task)
+    task = load_task(options.task, robot=options.robot)
     if options.tree:
         print("\n".join(drawn(fresh_tree(task))))
         return 0

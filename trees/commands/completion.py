@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ... import skills
-from ..cli import DELEGATED, FAULTS, GOWNS, PERSONS, SELF_PARSED, WORLD_KINDS, WORLDS, build_parser
+from ..cli import DELEGATED, FAULTS, GOWNS, LOOKS, PERSONS, SELF_PARSED, WORLD_KINDS, WORLDS, build_parser
 from ..tasks import task_names
 
 Paths = Literal["", "tasks", "files", "folders"]
@@ -19,6 +19,7 @@ PATHS: dict[str, Paths] = {"": "", "TASK": "tasks", "FILE": "files", "DIR": "fol
 NAMED = {
     "--gown": GOWNS,
     "--person": PERSONS,
+    "--look": LOOKS,
     "--world": ", ".join(WORLDS),
     "--world-kind": WORLD_KINDS,
     "--fault": FAULTS,

@@ -32,13 +32,14 @@ def main(options: argparse.Namespace) -> int:
     Raises:
         CaretreeError: bad input, or the rows cannot be kept.
     """
-    task = load_task(options.task)
+    task = load_task(options.task, robot=options.robot)
     for fault in options.fault:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
     kind = WorldKind.named(options.world_kind)
     read_world_arguments(options.world, options.world_arg)
-    world = "-".join((re.sub(r"[^\w.]+", "_", options.world), *kind.difficulties))
+    parts = [re.sub(r"[^\w.-]+", "_", part) for part in (options.world, options.robot) if part]
+    world = "-".join((*parts, *kind.difficulties))
     name = "-".join((Path(options.task).stem, *([options.stage] if options.stage else []), world))
     usual = Path("runs") / f"inject-{name}-seed{options.seed}"
     path = Path(options.out or usual) / ROWS
@@ -69,6 +70,7 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
     given = (options.world, options.world_kind, str(options.seed), str(options.stage), *options.world_arg)
+    given += () if options.robot is None else (options.robot,)
     key = campaign_key(task, given, world=options.world)
     rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)

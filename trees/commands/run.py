@@ -30,7 +30,7 @@ from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given
-from ..run.worlds import make_world, prepare_stage, read_world_arguments
+from ..run.worlds import make_world, prepare_stage, read_world_arguments, senses_for
 from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
@@ -59,7 +59,7 @@ def main(options: argparse.Namespace) -> int:
     Raises:
         CaretreeError: the input is bad, or some of the record could not be written.
     """
-    task = load_task(options.task)
+    task = load_task(options.task, robot=options.robot)
     if not options.unchecked:
         _refuse_faulty(task, options.stage)
     faults = [parse_fault(text) for text in options.inject]
@@ -69,9 +69,12 @@ def main(options: argparse.Namespace) -> int:
     parameters = {
         "world_kind": WorldKind.named(options.world_kind).name,
         "world_args": arguments,
+        "robot": options.robot,
+        "senses": None if options.senses == "own" else options.senses,
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
+        "look": options.look,
         "inject": options.inject,
         "rate_hz": RATE_HZ,
         "stage": options.stage,
@@ -96,9 +99,11 @@ def main(options: argparse.Namespace) -> int:
                     person=options.person,
                     model=options.model,
                     kind=options.world_kind,
+                    look=options.look,
                     arguments=arguments,
                 )
                 try:
+                    senses = senses or senses_for(options.senses, task, inner, options.seed)
                     return _run(options, task, inner, senses, faults, given, parameters, claim, signals, watchers)
                 finally:
                     inner.close()
