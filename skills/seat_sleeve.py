@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
@@ -29,13 +31,21 @@ class SeatSleeveTuning(Quantities):
     grasp: FromAbove = field(default_factory=FromAbove)
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
     drawn_to: tuple[float, float, float] = quantity(
-        (0.05, 0.05, 0.14),
+        (0.05, 0.06, 0.28),
         "m",
-        "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to",
-        "measured: five recorded states, ideal hands: armholes at 0.56 to 0.65 came to 0.71 to 0.80 drawn 0.05 m "
-        "inwards, 0.08 headward and 0.16 up; 0.04 m higher to 0.72 to 0.76, 0.10 inwards, 0.02 headward and 0.21 up "
-        "to 0.59 to 0.69; by the strap, 0.65 to 0.75",
+        "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to: until it is taut, and "
+        "its far side, below the arm, comes along",
+        "measured with ideal hands from 0.30 (103): the far side came to 0.80 and the armhole to rest at 0.76; drawn "
+        "0.15 m up and no higher, to 0.67 and 0.63; 0.10 m headward, to 0.87 and 0.81, the collar 0.05 m farther "
+        "headward",
     )
+    laid_at: tuple[float, float, float] = quantity(
+        (0.04, 0.05, 0.13),
+        "m",
+        "inwards, headward and up from the shoulder, where that edge is laid down and let go of",
+        "measured: let go of where it is taut, it springs back by 0.1 more",
+    )
+    laying_speed: float = quantity(0.06, "m/s", "of the hand on its way down", "choice: it may meet the chest")
     above_chest: float = quantity(
         0.01,
         "m",
@@ -48,7 +58,7 @@ class SeatSleeveTuning(Quantities):
 
 
 class SeatSleeve(Skill):
-    """Takes the armhole by its front edge, on top of the arm, and draws it to the shoulder and inwards.
+    """Takes the armhole by its front edge, draws it up and to the shoulder until it is taut, and lays it down there.
 
     Drawn by the strap, an armhole is drawn long, and goes back as the strap is let go of: the sleeve resists being
     bent along the arm, and its far side stays where it lies.  Its front edge takes the whole armhole along.  The arm
@@ -74,7 +84,7 @@ class SeatSleeve(Skill):
         yield from while_person_rests(self, self._seat())
 
     def _seat(self) -> Iterator[None]:
-        """Look, take, lift, draw, let go."""
+        """Look, take, lift, draw, lay down, let go."""
         tuning = self.tuning
         self.note(f"takes the front of the {self.side} armhole")
         arm = watch_arm(self, self.side).points_in_map
@@ -82,10 +92,15 @@ class SeatSleeve(Skill):
         yield from take_from_above(self, self.hand, point, self.side, tuning.grasp)
         self.note(f"draws the {self.side} armhole to the shoulder")
         yield from carry(self, self.hand, hand_now(self, self.hand)[:3, 3] + tuning.lift * UP, tuning.carry)
-        inward, headward, up = tuning.drawn_to
-        goal = arm[0] - inward * outwards(self.side) + headward * HEADWARD + up * UP
-        goal[2] = max(goal[2], chest_top(self) + tuning.above_chest)
-        yield from carry(self, self.hand, goal, tuning.carry)
+        yield from carry(self, self.hand, self._place(arm[0], tuning.drawn_to), tuning.carry)
+        laid = self._place(arm[0], tuning.laid_at)
+        laid[2] = max(laid[2], chest_top(self) + tuning.above_chest)
+        yield from carry(self, self.hand, laid, tuning.carry, tuning.laying_speed)
         drawn_up(self).add(self.side)
         yield from open_gripper(self, self.hand, tuning.grasp.opening)  # wider, a finger would come down to the chest
         yield from withdraw(self, [self.hand], tuning.withdrawal)
+
+    def _place(self, shoulder: np.ndarray, place: tuple[float, float, float]) -> np.ndarray:
+        """(3,) in the map of a place inwards, headward and up from the shoulder [m]."""
+        inward, headward, up = place
+        return shoulder - inward * outwards(self.side) + headward * HEADWARD + up * UP

@@ -187,10 +187,3 @@ def test_a_collar_far_aside_is_brought_though_the_armhole_cannot_be_held(front):
     assert run.ended() is None
     assert len(carried(run))
     assert run.openings("left").min() > 0.04
-
-
-@pytest.mark.parametrize(("front", "reason"), [(HIDDEN, Reason.NOTHING_SEEN), (AWAY, Reason.UNREACHABLE)])
-def test_a_collar_that_lies_nearly_well_is_left_where_the_armhole_cannot_be_held(front, reason):
-    run = bench(aside=0.07, holding="left", front=front)
-    assert run.ended() == reason
-    assert not len(carried(run))
