@@ -99,6 +99,7 @@ class Run:
         settings: numbers of skills that this run sets otherwise than the tree does.
         before_tick: called before each tick; may wait, and a simulated world waits too.  An error of it ends the run
             in the safe stop.
+        wall: the clock by which the watchdog misses a tick of a world whose time passes by itself [s].
 
     Attributes:
         context: shared by the skills.
@@ -123,13 +124,14 @@ class Run:
         limits: Limits = DEFAULT,
         settings: Settings | None = None,
         before_tick: Callable[[], None] | None = None,
+        wall: Callable[[], float] = time.monotonic,
     ) -> None:
         if not rate_hz > 0:
             raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
         self.world = world
         self.limits = limits
         self._stepped = isinstance(world.clock, SteppedClock)
-        self._watchdog = None if self._stepped else TickWatchdog(world.stop, limits)
+        self._watchdog = None if self._stepped else TickWatchdog(world.stop, limits, now=wall)
         self.guard = GuardedWorld(
             world,
             limits,
