@@ -13,7 +13,8 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from functools import partial
+from typing import Any, Literal, NamedTuple
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -27,19 +28,24 @@ from ...skills.core.reasons import Failure, Reason
 from ...skills.core.skill import Skill
 from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
+from .quick_nodes import REMEMBERING, quickened, remembers
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
 FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE, Reason.EMERGENCY_STOP)
 OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20
-_VALUES = {status: status.value for status in Status}
 ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
 
 
 # Nodes that go on with the child that runs and do nothing else in a tick, and so may be ticked once more.
 RESUMING = (FailSafe, RecoverBy, Retry, Stage, Timeout)
-REMEMBERING = (py_trees.composites.Selector, py_trees.composites.Sequence)
+# Attributes of every node that no tick changes, or that nobody reads again.
+FIXED = frozenset(vars(py_trees.behaviours.Success("any"))) - {"status", "feedback_message"} | {
+    "context",
+    "tick",
+    "stop",
+}
 
 
 class _Known(Exception):  # noqa: N818 ends an execution, no defect
@@ -66,7 +72,10 @@ class Stub(Behaviour):
         self.reads = [key.name for key in asked]
         self.writes = [k.name for k in self._bound(leaf, "outputs")]
         self.failure: Failure | None = None
+        self._failures: dict[Reason, Failure] = {}  # by what was chosen: most of an exploration meets them again
         self._explorer = explorer
+        self._change = partial(explorer.changed.add, self)
+        self.tick = self.tick_at_once  # type: ignore[assignment] whoever ticks it takes what it gives
 
     @staticmethod
     def _bound(leaf: Behaviour, which: str) -> list[Key]:
@@ -74,15 +83,17 @@ class Stub(Behaviour):
             return []
         return [bound for name, _ in getattr(leaf, which)() if isinstance(bound := leaf.bindings[name], Key)]
 
-    def tick(self) -> Iterator[Behaviour]:
-        """As any leaf of py_trees, without its log: most of an exploration is ticks of stubs."""
-        if self.status != Status.RUNNING:
+    def tick_at_once(self) -> Iterable[Behaviour]:
+        """As any leaf of py_trees, without its log and at once: most of an exploration is ticks of stubs."""
+        self._change()
+        if self.status is not Status.RUNNING:
             self.initialise()
         self.status = self.update()
-        yield self
+        return (self,)
 
     def stop(self, new_status: Status = Status.INVALID) -> None:
         """Take the status; there is nothing to end."""
+        self._change()
         self.status = new_status
 
     def initialise(self) -> None:
@@ -101,12 +112,13 @@ class Stub(Behaviour):
         if outcome is True:
             self._explorer.board.update(self.writes)
             return Status.SUCCESS
-        self.failure = Failure(outcome, "", self.name)
+        if outcome not in self._failures:
+            self._failures[outcome] = Failure(outcome, "", self.name)
+        self.failure = self._failures[outcome]
         return Status.FAILURE
 
 
-@dataclass(frozen=True)
-class _Point:
+class _Point(NamedTuple):
     """An execution between two ticks.
 
     Attributes:
@@ -114,16 +126,17 @@ class _Point:
         board: keys written so far.
         time: of the clock [s].
         way: leaves and outcomes so far.
+        moved: whether one of them moved the robot outside of a safe branch.
     """
 
     states: list[Any]
     board: frozenset[str]
     time: float
     way: tuple[tuple[Stub, Any], ...]
+    moved: bool
 
 
-@dataclass(frozen=True)
-class _Branch:
+class _Branch(NamedTuple):
     """A way to follow: `choices` from `point` on, whatever comes then; `trail` are the situations up to there."""
 
     point: _Point
@@ -140,6 +153,7 @@ class Explorer:
 
     Attributes:
         board: keys written in the present execution.
+        changed: nodes that are no longer as they were at the last point.
         executions: how many were followed.
         situations: how many different ones were met.
         complete: whether everything was explored.
@@ -148,6 +162,7 @@ class Explorer:
 
     def __init__(self, root: Behaviour, limit: int = 200_000) -> None:
         self.board: set[str] = set()
+        self.changed: set[Behaviour] = set()
         self.executions = 0
         self.complete = False
         self.findings: list[str] = []
@@ -165,7 +180,7 @@ class Explorer:
         self._forms = {node: _Form.of(node) for node in self._nodes}
         self._place = {node: n for n, node in enumerate(self._nodes)}
         self._states: list[Any] = [None] * len(self._nodes)  # of the nodes that have not changed since
-        self._changed = set(self._nodes)
+        self.changed.update(self._nodes)
         self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
         self._resumes = all(_resumes(node) for node in self._inner)
         self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
@@ -177,9 +192,11 @@ class Explorer:
         self._trail: tuple[int, ...] = ()  # situations of the present execution, those before its point first
         self._met: set[int] = set()  # the same ones
         self._way: list[tuple[Stub, Any]] = []
+        self._moved = False  # some leaf on that way moved the robot outside of a safe branch
+        self._active = {leaf: frozenset((leaf, *(above for above, _ in _ancestors(leaf)))) for leaf in self._options}
         self._asked: Stub | None = None  # the leaf that lets a tick go by
         self._hung = False  # some leaf chose in this tick never to end
-        for node in self._nodes:
+        for node in self._inner:
             self._watch(node)
         self._point = self._here()
         self._stack = [_Branch(self._point, [], ())]
@@ -217,6 +234,7 @@ class Explorer:
             self._stack += [_Branch(self._point, way, self._trail) for way in ways]
         self._taken.append(choice)
         self._way.append((leaf, options[choice]))
+        self._moved |= leaf.commands and leaf not in self._in_safe
         self._hung |= options[choice] is None
         return options[choice]
 
@@ -274,9 +292,12 @@ class Explorer:
 
     def _watch(self, node: Behaviour) -> None:
         """Hear of every tick and stop of a node: nothing else changes one, but for a stage that counts attempts."""
+        if remembers(node):
+            node.tick, node.stop = quickened(node, partial(self.changed.add, node))  # type: ignore[arg-type,assignment]
+            return
         counted = [below for below in node.iterate() if isinstance(below, (Retry, RecoverBy))]
         changing = (node, *counted) if isinstance(node, Stage) else (node,)
-        change, tick, stop = self._changed.update, node.tick, node.stop
+        change, tick, stop = self.changed.update, node.tick, node.stop
 
         def ticked() -> Iterator[Behaviour]:
             change(changing)
@@ -289,14 +310,15 @@ class Explorer:
         node.tick, node.stop = ticked, stopped
 
     def _here(self) -> _Point:
-        for node in self._changed if self._resumes else self._nodes:
+        for node in self.changed if self._resumes else self._nodes:
             self._states[self._place[node]] = _state_of(node)
-        self._changed.clear()
+        self.changed.clear()
         return _Point(
             states=self._states.copy(),
             board=frozenset(self.board),
             time=self._clock.time,
             way=tuple(self._way),
+            moved=self._moved,
         )
 
     def _go_to(self, branch: _Branch) -> None:
@@ -305,36 +327,34 @@ class Explorer:
         if self._resumes:
             if point is not self._point:
                 states = zip(self._nodes, self._states, point.states, strict=True)
-                self._changed.update([node for node, now, then in states if now is not then])
-            moved = self._changed
+                self.changed.update([node for node, now, then in states if now is not then])
+            moved = self.changed
         for node in moved:
             _restore(node, point.states[self._place[node]])
-        self._changed.clear()
+        self.changed.clear()
         self._point, self._states = point, point.states.copy()
         self.board.clear()
         self.board |= point.board
-        self._clock.time, self._way = point.time, list(point.way)
+        self._clock.time, self._way, self._moved = point.time, list(point.way), point.moved
         self._trail, self._met = branch.trail, set(branch.trail)
         self._given, self._taken, self._asked, self._hung = branch.choices, [], None, False
 
     def _situation(self, leaf: Stub) -> Any:
         """All that decides what can happen from here on."""
-        active = {leaf, *(above for above, _ in _ancestors(leaf))}
-        moved = any(each.commands and each not in self._in_safe for each, _ in self._way)
-        return leaf, self._read & self.board, moved, self._state(self._root, active)
+        return leaf, self._read & self.board, self._moved, self._state(self._root, self._active[leaf])
 
-    def _state(self, node: Behaviour, active: set[Behaviour]) -> Any:
+    def _state(self, node: Behaviour, active: frozenset[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
         status = node.status
         if node not in active and status is not Status.RUNNING:
-            return _VALUES[status]
+            return status._value_  # as text: that of an enum is hashed in Python
         kind: Any = node  # with the attributes that its form says it has
         form = self._forms[node]
-        state: list[Any] = [_VALUES[status]]
+        state: list[Any] = [status._value_]
         if form.counts:
             state.append(kind.tried)
         if form.keeps_failure and (not form.recovers or kind.recovering is not None):
-            state.append(kind.failure.reason if kind.failure else None)
+            state.append(kind.failure.reason._name_ if kind.failure else None)
         if form.remembers:
             child = kind.current_child
             return (*state, child, child and self._state(child, active))
@@ -406,12 +426,18 @@ class _Form:
 
 def _state_of(node: Behaviour) -> Any:
     """All that a tick may change of a node."""
-    return (node.status, node.failure) if type(node) is Stub else dict(vars(node))
+    if type(node) is Stub:
+        return node.status, node.failure
+    if type(node) in REMEMBERING:
+        return node.status, node.current_child  # type: ignore[attr-defined]
+    return {name: value for name, value in vars(node).items() if name not in FIXED}
 
 
 def _restore(node: Behaviour, state: Any) -> None:
     if type(node) is Stub:
         node.status, node.failure = state
+    elif type(node) in REMEMBERING:
+        node.status, node.current_child = state  # type: ignore[attr-defined]
     else:
         vars(node).update(state)
 
@@ -425,7 +451,7 @@ def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:
 
 
 def _resumes(node: Behaviour) -> bool:
-    return type(node) in RESUMING or (type(node) in REMEMBERING and getattr(node, "memory", False) is True)
+    return type(node) in RESUMING or remembers(node)
 
 
 def _said(outcome: Any) -> str:
