@@ -50,6 +50,16 @@ class TakesJointVelocities(Protocol):
 
 
 @runtime_checkable
+class HasPace(Protocol):
+    """A world without physics, in which nothing happens between two ticks: its trees may be ticked less often."""
+
+    @property
+    def pace(self) -> float:
+        """Usual ticks from one tick to the next; a velocity that is sent holds until then."""
+        ...
+
+
+@runtime_checkable
 class HasTiming(Protocol):
     """A world that keeps account of its time."""
 

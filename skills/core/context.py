@@ -118,6 +118,7 @@ class Context:
         senses: to be used instead of those that the task offers.
         seed: of the run's chance; the scene is drawn from it too, so skills see only what it makes of chance.
         settings: numbers that the run sets otherwise than its tree does.
+        hold: a velocity that is sent holds at least so long [s]; 0 leaves it as the skill says.
 
     Attributes:
         board: values of ports by key.
@@ -136,11 +137,13 @@ class Context:
         senses: Senses | None = None,
         seed: int = 0,
         settings: Settings | None = None,
+        hold: float = 0.0,
     ) -> None:
         self.world = world
         self.guard = guard
         self._senses = senses
         self.settings = settings or Settings()
+        self.hold = hold
         self.board = Board()
         self.memory = Memory()
         self.rng = _chance(seed)

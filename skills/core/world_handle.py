@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...sim.errors import CaretreeError
 from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import BaseVelocity, Clock, Command, Frame, HandTwist, JointTrajectory, Observation, RoomMap
@@ -63,6 +65,8 @@ class WorldHandle:
             SkillFailure: the guard refuses.
         """
         self._require()
+        if isinstance(command, (HandTwist, BaseVelocity)) and command.duration < self._context.hold:
+            command = replace(command, duration=self._context.hold)
         sent = self._context.world.send(command, retreat=retreat)
         self.moving_until = max(self.moving_until, self.clock.now() + duration_of(sent))
         return sent

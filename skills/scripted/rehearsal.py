@@ -37,6 +37,12 @@ class RehearsalTuning(Quantities):
     arm_width: float = quantity(0.07, "m", "of an arm between the fingers", "choice: a forearm")
     cloth_width: float = quantity(0.002, "m", "of cloth between the fingers", "choice: two layers and a hem")
     hanging_load: float = quantity(1.4, "N", "of what hangs on a hand", "choice: two hands carry a light gown")
+    pace: float = quantity(
+        5.0,
+        "1",
+        "usual ticks from one tick to the next",
+        "measured: shipped tasks end alike from 1 to 6, and from 8 on miss places and time limits",
+    )
     stiffness: float = quantity(100.0, "N/m", "with which cloth holds a hand back", "choice: felt within centimetres")
     max_drag: float = quantity(
         1.1, "N", "with which cloth holds a hand back at most", "choice: below the loads at which skills stop"
@@ -56,6 +62,7 @@ class RehearsalWorld(ScriptedWorld):
 
     Attributes:
         initial_states: names of the states in which a run may begin.
+        pace: usual ticks from one tick to the next.
     """
 
     initial_states = tuple(InitialState)
@@ -66,6 +73,7 @@ class RehearsalWorld(ScriptedWorld):
             seed=seed, room=room_map(), robot=robot, kinematics=kinematics_of(robot), arm_positions=robot.ready
         )
         self._tuning = tuning
+        self.pace = tuning.pace
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
 
     def set_initial_state(self, name: str) -> None:
