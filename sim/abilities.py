@@ -50,12 +50,12 @@ class TakesJointVelocities(Protocol):
 
 
 @runtime_checkable
-class HasPace(Protocol):
-    """A world without physics, in which nothing happens between two ticks: its trees may be ticked less often."""
+class HasTickRate(Protocol):
+    """A world in which so little happens by itself that its trees may be ticked less often than on others."""
 
     @property
-    def pace(self) -> float:
-        """Usual ticks from one tick to the next; a velocity that is sent holds until then."""
+    def tick_rate(self) -> float:
+        """Ticks a second that suffice."""
         ...
 
 

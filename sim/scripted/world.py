@@ -142,6 +142,7 @@ class ScriptedWorld(World):
         self._twist_until: dict[Side, float] = {}
         self._motions: list[_Motion] = []
         self._rates: dict[int, tuple[np.ndarray, float]] = {}  # of an arm's joints, and until when
+        self._longest_step = STEP
         self._stopping_time = stopping_time
         self._coast_start, self._coast_q, self._coast_base = -np.inf, np.zeros(shape), np.zeros(3)
         self._opening = np.full(2, robot.gripper.stroke)
@@ -295,7 +296,7 @@ class ScriptedWorld(World):
             if self._rests():
                 self._dq = np.zeros_like(self._q)
                 break
-            self._step(min(STEP, time - self.time.time))
+            self._step(min(self._longest_step, time - self.time.time))
         self.time.time = max(self.time.time, time)  # without the rounding of the sum
 
     def _rests(self) -> bool:

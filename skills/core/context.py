@@ -118,7 +118,7 @@ class Context:
         senses: to be used instead of those that the task offers.
         seed: of the run's chance; the scene is drawn from it too, so skills see only what it makes of chance.
         settings: numbers that the run sets otherwise than its tree does.
-        hold: a velocity that is sent holds at least so long [s]; 0 leaves it as the skill says.
+        hold: a velocity that is sent holds at least so long [s]: until the next tick, where these are rare.
 
     Attributes:
         board: values of ports by key.

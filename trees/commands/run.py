@@ -30,11 +30,10 @@ from ..run.runner import Progress, Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given
-from ..run.worlds import make_world, prepare_stage, read_world_arguments, senses_for
+from ..run.worlds import TICK_RATE, make_world, prepare_stage, read_world_arguments, senses_for, tick_rate_of
 from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
-RATE_HZ = 15.0
 GONE = {errno.EIO: "the terminal was closed", errno.EPIPE: "nobody reads the output any more"}
 
 
@@ -76,7 +75,6 @@ def main(options: argparse.Namespace) -> int:
         "model": options.model,
         "look": options.look,
         "inject": options.inject,
-        "rate_hz": RATE_HZ,
         "stage": options.stage,
         "tuning": given.settings.values,
         "build": given.parameters,
@@ -138,12 +136,14 @@ def _run(
     watchers: Watchers,
 ) -> int:
     world = FaultyWorld(inner, faults) if faults else inner
+    rate_hz = TICK_RATE if faults else tick_rate_of(inner)  # how soon a fault is answered is looked at
+    parameters = {**parameters, "rate_hz": rate_hz}
     events = _Events()
     run = Run(
         task,
         world,
         seed=options.seed,
-        rate_hz=RATE_HZ,
+        rate_hz=rate_hz,
         recorder=events,
         on_progress=events.progress,
         senses=senses,

@@ -20,6 +20,7 @@ from ..nodes.decorators import FailSafe, RecoverBy, Retry, Wrapper
 from ..run.runner import Run
 from ..run.task import Task
 from ..run.trace import paths_of
+from ..run.worlds import tick_rate_of
 from .explore import FROM_OUTSIDE, Explorer
 from .leaves import leaf_findings
 from .wiring import Wiring
@@ -107,7 +108,7 @@ def rehearse(task: Task) -> CheckReport:
     report = CheckReport(complete=True)
     world, senses = task.scripted(0)
     try:
-        run = Run(task, world, senses=senses)
+        run = Run(task, world, rate_hz=tick_rate_of(world), senses=senses)
         result = run.run()
     finally:
         world.close()

@@ -218,6 +218,7 @@ class Explorer:
                 self._execute(self._stack.pop())
             self.complete = True
         finally:
+            self._numbers.clear()  # as much garbage to look through for whatever comes next
             if collects:
                 gc.enable()
 

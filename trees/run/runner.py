@@ -26,7 +26,6 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.senses import Senses
-from ...sim.abilities import HasPace
 from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
 from ...sim.fence import fenced, said
@@ -91,7 +90,7 @@ class Run:
         task: what to do.
         world: unguarded; the run puts the guard around it.
         seed: of the run's chance.
-        rate_hz: ticks per second of world time; fewer in a world that says so (`HasPace`).
+        rate_hz: ticks per second of world time.
         recorder: gets every event of the trace; an error of it ends the run in the safe stop.
         on_progress: told of stages and skills as they begin and end; an error of it ends the run in the safe stop.
         senses: to be used instead of those that the task offers.
@@ -140,15 +139,14 @@ class Run:
             before_command=self._beat,
             on_sample=self._watchdog.sampled if self._watchdog else lambda: None,
         )
-        pace = world.pace if self._stepped and isinstance(world, HasPace) else 1.0
-        self._period = pace / rate_hz
+        self._period = 1.0 / rate_hz
         self.context = Context(
             world=self.guard,
             guard=self.guard,
             senses=senses,
             seed=seed,
             settings=settings,
-            hold=self._period if pace > 1.0 else 0.0,
+            hold=self._period,
         )
         self.context.lease.patience = limits.stop_patience
         self.root = task.build(self.context, **(params or {}))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ...sim.abilities import SupportsInitialStates, SupportsObjects
+from ...sim.abilities import HasTickRate, SupportsInitialStates, SupportsObjects
 from ...sim.errors import CaretreeError
 from ...sim.known_robots import DEFAULT
 from ...sim.world_kind import EASY, WorldKind
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .task import Task
 
 WORLDS = ("bullet", "scripted")
+TICK_RATE = 15.0  # [Hz] of trees
 
 
 def make_world(
@@ -105,6 +106,11 @@ def read_world_arguments(name: str, texts: Sequence[str]) -> dict[str, Any]:
     if texts:
         raise CaretreeError(f"the {name} world takes no --world-arg")
     return {}
+
+
+def tick_rate_of(world: World) -> float:
+    """Ticks a second of a run in which nobody injects faults."""
+    return world.tick_rate if isinstance(world, HasTickRate) else TICK_RATE
 
 
 def _open_world(name: str) -> OpenWorld:
