@@ -17,7 +17,7 @@ class Stopwatch:
 
     Attributes:
         wall: part -> wall time [s].
-        processor: part -> processor time of this process, all its threads together [s].
+        processor: part -> processor time of the thread that counts [s]; not of others that draw or record meanwhile.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class Stopwatch:
 
     def _switch(self, part: str | None) -> str | None:
         before, (wall, processor) = self._part, self._since
-        self._part, self._since = part, (time.perf_counter(), time.process_time())
+        self._part, self._since = part, (time.perf_counter(), time.thread_time())
         if before is not None:
             self.wall[before] += self._since[0] - wall
             self.processor[before] += self._since[1] - processor

@@ -89,7 +89,7 @@ class Recorder:
             "parameters": dict(parameters or {}),
             "versions": versions(),
         }
-        self._started = time.perf_counter(), time.process_time()
+        self._started = time.perf_counter(), time.process_time(), time.thread_time()
         self._hash = hashlib.sha256()
         self._spool: Spool | None = None
         self._video: VideoWriter | None = None
@@ -244,16 +244,18 @@ class Recorder:
             raise self._problem
 
     def _finish(self, result: RunResult) -> None:
-        began = time.perf_counter(), time.process_time()
+        began = time.perf_counter(), time.thread_time()
         if self._spool is not None and self._spool.frames:
             with suppress(RecordError), self._noted():
                 write_npz(self._spool.folder, self.directory / TRUTH_FILE)
                 shutil.rmtree(self._spool.folder)
-        ended = time.perf_counter(), time.process_time()
+        ended = time.perf_counter(), time.thread_time()
+        whole = time.process_time() - self._started[1]
         self._run.update(
             result.fields(),
             wall_time_s=round(ended[0] - self._started[0], 3),
-            processor_time_s=round(ended[1] - self._started[1], 3),
+            processor_time_s=round(whole, 3),
+            beside_time_s=round(max(whole - (ended[1] - self._started[2]), 0.0), 3),  # of other threads: the video
             trace_hash=result.trace_hash or self._hash.hexdigest(),
         )
         for name, now, before in zip(("timing", "processor_timing"), ended, began, strict=True):

@@ -10,7 +10,7 @@ def clock(monkeypatch):
     """A clock whose wall runs twice as fast as its processor: `clock[0]` is the wall time."""
     now = [0.0]
     monkeypatch.setattr(stopwatch.time, "perf_counter", lambda: now[0])
-    monkeypatch.setattr(stopwatch.time, "process_time", lambda: now[0] / 2)
+    monkeypatch.setattr(stopwatch.time, "thread_time", lambda: now[0] / 2)
     return now
 
 
