@@ -158,18 +158,17 @@ class RobotBody:
     def read(self) -> JointReading:
         """Joint positions, velocities and efforts as the sensors see them."""
         states = self._client.getJointStates(self.body, self._joints)
-        q = np.array([state[0] for state in states])
-        dq = np.array([state[1] for state in states])
-        torque = np.array([state[3] for state in states])
+        columns = tuple(zip(*states, strict=True))  # called at every step of the robot
+        q, dq, torque = np.array(columns[0]), np.array(columns[1]), np.array(columns[3])
         yaw = float(q[2])
         c, s = np.cos(yaw), np.sin(yaw)
-        fingers = q[18:22].reshape(2, 2)
+        opening = q[18:22:2] + q[19:22:2]
         # Each finger's motor pushes towards closed with minus its force.
-        squeeze = np.maximum(-torque[18:22].reshape(2, 2).mean(axis=1), 0.0)
+        squeeze = np.maximum((torque[18:22:2] + torque[19:22:2]) / -2.0, 0.0)
         # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
-        closed = (fingers.sum(axis=1) < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
+        closed = (opening < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
         squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
-        arms, opening = q[3:17].reshape(2, 7), fingers.sum(axis=1)
+        arms = q[3:17].reshape(2, 7)
         carried = self.kinematics.gravity_torque(self.kinematics.configuration(q[:3], arms, float(q[17]), opening))
         return JointReading(
             arm_positions=arms,

@@ -190,7 +190,6 @@ class Explorer:
         self._given: list[int] = []  # choices to begin with
         self._taken: list[int] = []  # choices made since the point where this execution began
         self._trail: tuple[int, ...] = ()  # situations of the present execution, those before its point first
-        self._met: set[int] = set()  # the same ones
         self._way: list[tuple[Stub, Any]] = []
         self._moved = False  # some leaf on that way moved the robot outside of a safe branch
         self._active = {leaf: frozenset((leaf, *(above for above, _ in _ancestors(leaf)))) for leaf in self._options}
@@ -242,9 +241,8 @@ class Explorer:
     def _meet(self, leaf: Stub) -> Literal["now", "later"]:
         """Note the situation in which `leaf` has to choose; when it shall do so."""
         situation = self._numbers.setdefault(self._situation(leaf), len(self._numbers))
-        if situation in self._met:
+        if situation in self._trail:
             raise _Round(f"the tree goes round for ever at {leaf.name}")
-        self._met.add(situation)
         self._trail = (*self._trail, situation)
         if situation in self._seen:
             raise _Known
@@ -337,7 +335,7 @@ class Explorer:
         self.board.clear()
         self.board |= point.board
         self._clock.time, self._way, self._moved = point.time, list(point.way), point.moved
-        self._trail, self._met = branch.trail, set(branch.trail)
+        self._trail = branch.trail
         self._given, self._taken, self._asked, self._hung = branch.choices, [], None, False
 
     def _situation(self, leaf: Stub) -> Any:
