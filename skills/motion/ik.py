@@ -185,7 +185,7 @@ def _descend(
     limits = kinematics.limits[side]
     rows = _task_rows(free)
     turn, (shrink, grow), (least, most) = tuning.rotation_weight, tuning.damping_factors, tuning.damping_range
-    weight = np.array((1.0, 1.0, 1.0, turn, turn, turn))[rows]
+    weight, unity = np.array((1.0, 1.0, 1.0, turn, turn, turn))[rows], np.eye(len(rows))
     q = q.copy()
     last = np.inf
     damping = tuning.damping
@@ -205,22 +205,28 @@ def _descend(
         if step > tuning.stuck_after and size > tuning.stuck_ratio * last and size > tuning.stuck_error:
             break  # stuck far away: another seed is cheaper
         last = size
-        J = weight[:, None] * jacobian[rows]
-        # Joints at a limit that the step would push further are taken out of the solve.
-        free_joints = np.ones(len(q), bool)
-        step_q = np.zeros(len(q))
-        for _ in range(tuning.active_set_rounds):
-            Jf = J[:, free_joints]
-            A = Jf @ Jf.T + damping * np.eye(len(rows))
-            drift = tuning.posture_gain * (posture - q)[free_joints]  # in the null space
-            step_q = np.zeros(len(q))
-            step_q[free_joints] = drift + Jf.T @ np.linalg.solve(A, e - Jf @ drift)
-            blocked = ((q <= limits.lower) & (step_q < 0)) | ((q >= limits.upper) & (step_q > 0))
-            if not blocked.any():
-                break
-            free_joints &= ~blocked
-        q = limits.clip(q + step_q * min(1.0, tuning.max_step / max(float(np.abs(step_q).max()), 1e-9)))
+        J = np.asfortranarray(weight[:, None] * jacobian[rows])
+        drift = tuning.posture_gain * (posture - q)  # in the null space
+        step_q = _step(J, e, drift, damping * unity)
+        low, high = q <= limits.lower, q >= limits.upper
+        if low.any() or high.any():
+            # Joints at a limit that the step would push further are taken out of the solve.
+            free_joints = np.ones(len(q), bool)
+            for _ in range(tuning.active_set_rounds - 1):
+                blocked = (low & (step_q < 0)) | (high & (step_q > 0))
+                if not blocked.any():
+                    break
+                free_joints &= ~blocked
+                step_q = np.zeros(len(q))
+                step_q[free_joints] = _step(J[:, free_joints], e, drift[free_joints], damping * unity)
+        q = q + step_q * min(1.0, tuning.max_step / max(float(np.abs(step_q).max()), 1e-9))
+        q = np.minimum(np.maximum(q, limits.lower), limits.upper)
     return result
+
+
+def _step(J: np.ndarray, error: np.ndarray, drift: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """Change of the joints (n,) that takes out `error` (k,), and drifts where a Jacobian (k, n) leaves them free."""
+    return drift + J.T @ np.linalg.solve(J @ J.T + damping, error - J @ drift)
 
 
 def _task_rows(free: FreeAxis) -> list[int]:

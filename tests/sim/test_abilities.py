@@ -3,6 +3,7 @@
 import pytest
 from caretree.sim.abilities import (
     HasKinematics,
+    HasTickRate,
     HasTiming,
     SupportsFaults,
     SupportsInitialStates,
@@ -12,7 +13,7 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import World
 from caretree.skills.scripted.rehearsal import RehearsalWorld
 
-ABILITIES = (HasKinematics, HasTiming, SupportsFaults, SupportsInitialStates, SupportsRecording)
+ABILITIES = (HasKinematics, HasTickRate, HasTiming, SupportsFaults, SupportsInitialStates, SupportsRecording)
 
 
 class Bare(World):
@@ -29,7 +30,7 @@ class Bare(World):
     [
         (Bare, set()),
         (ScriptedWorld, {HasKinematics, SupportsFaults}),
-        (RehearsalWorld, {HasKinematics, SupportsFaults, SupportsInitialStates}),
+        (RehearsalWorld, {HasKinematics, HasTickRate, SupportsFaults, SupportsInitialStates}),
     ],
 )
 def test_each_world_offers_what_it_has(make, offered):

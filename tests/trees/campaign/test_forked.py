@@ -43,6 +43,18 @@ def test_a_scripted_trial_is_forked_and_kept_with_its_record_and_log(tmp_path):
     assert "success: The task is done." in folder.with_name("seed-0003.log").read_text()
 
 
+def test_children_are_told_to_take_one_thread_each(tmp_path, monkeypatch):
+    started = {}
+    monkeypatch.setattr(trial_module, "ForkedRun", lambda arguments, log, environment: started.update(environment))
+    trial_module._started(("run", "wave", *SCRIPTED), tmp_path / "log")
+    assert started == trial_module.ONE_THREAD
+    started.clear()
+    monkeypatch.setattr(trial_module.subprocess, "Popen", lambda command, env, **others: started.update(env))
+    trial_module._started(("run", "wave"), tmp_path / "log")
+    assert started.items() >= trial_module.ONE_THREAD.items()
+    assert set(trial_module.ONE_THREAD.values()) == {"1"}
+
+
 def test_a_trial_that_hangs_is_killed_and_counts_as_timeout(tmp_path, hangs, monkeypatch):
     monkeypatch.setattr(trial_module, "ENDING", 0.2)
     folder = tmp_path / "campaign" / "overall" / "seed-0000"

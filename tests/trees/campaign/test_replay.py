@@ -97,6 +97,14 @@ def test_a_run_repeats_from_its_record(record):
     assert not result.versions
 
 
+@pytest.mark.parametrize(("inject", "rate"), [([], 3.0), (["--inject", "occlusion@towel/look:start"], 15.0)])
+def test_a_rehearsal_is_ticked_more_often_where_a_fault_is_looked_at_and_repeats(tmp_path, monkeypatch, inject, rate):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "hand_towel", "--world", "scripted", "--out", "run", *inject]) == 0
+    assert json.loads((tmp_path / "run/run.json").read_text())["parameters"]["rate_hz"] == rate
+    assert replay(tmp_path / "run").same
+
+
 def test_a_changed_trace_is_told_with_its_first_difference(record, capsys):
     def later(events):
         events[3]["t"] += 0.1

@@ -1,0 +1,54 @@
+"""A rehearsal that is ticked as seldom as it suffices is the same rehearsal."""
+
+import numpy as np
+import pytest
+from caretree.sim.world import BaseVelocity
+from caretree.skills.core.skill import Skill
+from caretree.skills.scripted.rehearsal import REHEARSAL, RehearsalWorld
+from caretree.trees.run.runner import Run
+from caretree.trees.run.task import load_task
+from caretree.trees.run.worlds import TICK_RATE
+
+from ...trees.planted import run_of
+
+
+def ended(name, rate_hz):
+    """How a task ends at a tick rate, and which leaves and nodes did, in order and how."""
+    task = load_task(name)
+    world, senses = task.scripted(0)
+    run = Run(task, world, rate_hz=rate_hz, senses=senses)
+    outcome = run.run().outcome
+    nodes = [event for event in run.trace.events if event["kind"] == "node" and event["status"] != "RUNNING"]
+    return outcome, [(event["node"], event["status"], event.get("reason")) for event in nodes]
+
+
+@pytest.mark.parametrize("name", ["hand_towel", "wash_arm", "wave", "wipe_forearm"])
+def test_tasks_go_the_same_way_at_the_rate_that_suffices(name):
+    assert ended(name, REHEARSAL.tick_rate) == ended(name, TICK_RATE)
+
+
+def test_the_dressing_succeeds_at_the_rate_that_suffices():
+    outcome, nodes = ended("dressing", REHEARSAL.tick_rate)
+    assert outcome == "success"
+    stages = [node.rpartition("/")[2] for node, status, _ in nodes if node.count("/") == 2 and status == "SUCCESS"]
+    assert stages == ["take down", "lay", "dress", "spread"]
+
+
+class Drives(Skill):
+    """Sends one velocity, and looks on the next tick how far it went."""
+
+    way = 0.0
+
+    def steps(self):
+        start = self.world.observe().pose_base_in_map[0]
+        self.world.send(BaseVelocity(velocity=np.array((0.0, -0.1, 0.0)), duration=0.2))
+        yield
+        self.way = self.world.observe().pose_base_in_map[0] - start
+
+
+@pytest.mark.parametrize(("rate_hz", "lasts"), [(TICK_RATE, 1 / 15), (5.0, 0.2), (3.0, 1 / 3)])
+def test_a_velocity_holds_until_the_next_tick_however_late(rate_hz, lasts):
+    run = run_of(lambda context: Drives("drives", context), RehearsalWorld(), rate_hz=rate_hz)
+    assert run.run().outcome == "success"
+    turned = 0.1 * np.sin(RehearsalWorld().observe().pose_base_in_map[2])
+    assert run.root.way == pytest.approx(turned * lasts, abs=1e-9)
