@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from .estimates import (
     SleeveOpening,
     WornSleeve,
 )
+
+if TYPE_CHECKING:
+    from typing_extensions import Self  # in typing from 3.11 on
 
 
 class Senses(ABC):

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from .errors import CaretreeError
+from .extras import missing_extra
 
 BAD_INPUT = 2
 INTERRUPTED = 130  # as shells count a Ctrl-C
@@ -81,7 +82,7 @@ def _complain(text: str) -> None:
 
 
 def answered(program: str, command: Callable[[], int], *, interrupted: str = "interrupted") -> int:
-    """Run a command and tell a user's mistake, a lost file or a Ctrl-C in one sentence.
+    """Run a command and tell a user's mistake, a lost file, a missing extra or a Ctrl-C in one sentence.
 
     Args:
         program: name in front of the sentence.
@@ -95,6 +96,12 @@ def answered(program: str, command: Callable[[], int], *, interrupted: str = "in
         return command()
     except CaretreeError as error:
         _complain(f"{program}: {error}")
+        return BAD_INPUT
+    except ModuleNotFoundError as error:
+        missing = missing_extra(error, program)
+        if missing is None:
+            raise  # of the user's own files, or a mistake of ours
+        _complain(f"{program}: {missing}")
         return BAD_INPUT
     except BrokenPipeError:  # the reader of our output has gone
         drop_output()

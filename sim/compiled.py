@@ -1,13 +1,24 @@
-"""Loops compiled by numba, kept on disk where there is a place for them."""
+"""Loops compiled by numba, kept on disk where there is a place for them; without numba they run as plain Python."""
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from typing import Any
 
-import numba
-from numba import types
-from numba.extending import intrinsic
+
+def _numba() -> Any:
+    """The package, or None: the core does without it, and its loops are then some hundred times slower."""
+    try:
+        importlib.import_module("numba.extending")
+        return importlib.import_module("numba")
+    except ModuleNotFoundError as error:
+        if error.name != "numba":
+            raise
+        return None
+
+
+numba = _numba()
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -18,6 +29,8 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
+        if numba is None:
+            return function
         try:
             return numba.njit(cache=True, **options)(function)
         except RuntimeError as error:
@@ -34,7 +47,13 @@ def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)
 
-    return types.float64(types.float64, types.float64, types.float64), generate
+    number = numba.types.float64
+    return number(number, number, number), generate
 
 
-fma: Any = intrinsic(_fma)
+def _rounded_twice(a: float, b: float, c: float) -> float:
+    """The sum a * b + c, where nothing is compiled that could round it once."""
+    return a * b + c
+
+
+fma: Any = _rounded_twice if numba is None else numba.extending.intrinsic(_fma)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import yaml
+from .extras import later
+
+if TYPE_CHECKING:
+    import yaml
+else:
+    yaml = later("yaml")
+
 
 PARTS_MAX = 1_000_000  # values of a file once its aliases are written out
-
-
-class YamlProblem(yaml.MarkedYAMLError):
-    """What YAML allows and settings do not; has the place as the others have."""
 
 
 def load_yaml(text: str) -> Any:
@@ -25,9 +27,9 @@ def load_yaml(text: str) -> Any:
             _size(node, {})
         return yaml.safe_load(text)
     except RecursionError:
-        raise YamlProblem(problem="values lie too deep in each other") from None
+        raise yaml.MarkedYAMLError(problem="values lie too deep in each other") from None
     except ValueError as error:  # a date that is none, a number too long for Python
-        raise YamlProblem(problem=str(error).split(" (")[0].split(";")[0]) from None
+        raise yaml.MarkedYAMLError(problem=str(error).split(" (")[0].split(";")[0]) from None
 
 
 def _size(node: yaml.Node, known: dict[int, int | None]) -> int:
@@ -35,7 +37,7 @@ def _size(node: yaml.Node, known: dict[int, int | None]) -> int:
     if id(node) in known:
         size = known[id(node)]
         if size is None:
-            raise YamlProblem(problem="a value contains itself", problem_mark=node.start_mark)
+            raise yaml.MarkedYAMLError(problem="a value contains itself", problem_mark=node.start_mark)
         return size
     known[id(node)] = None
     size = 1
@@ -44,12 +46,14 @@ def _size(node: yaml.Node, known: dict[int, int | None]) -> int:
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):
                 if key.value in seen:
-                    raise YamlProblem(problem=f"{key.value!r} is given twice", problem_mark=key.start_mark)
+                    raise yaml.MarkedYAMLError(problem=f"{key.value!r} is given twice", problem_mark=key.start_mark)
                 seen.add(key.value)
             size += _size(key, known) + _size(value, known)
     elif isinstance(node, yaml.SequenceNode):
         size += sum(_size(item, known) for item in node.value)
     if size > PARTS_MAX:
-        raise YamlProblem(problem="its aliases stand for more values than any setting", problem_mark=node.start_mark)
+        raise yaml.MarkedYAMLError(
+            problem="its aliases stand for more values than any setting", problem_mark=node.start_mark
+        )
     known[id(node)] = size
     return size

@@ -12,6 +12,7 @@ ALLOWED_SIM = {
     "world",
     "abilities",
     "errors",
+    "extras",
     "command_line",
     "quantity",
     "stopwatch",

@@ -6,15 +6,19 @@ import difflib
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import yaml
-
+from ..extras import later
 from ..yaml_text import load_yaml
 from .body.body_registry import BODY_EFFECTS
 from .effect import EffectError
 from .joint.joint_registry import JOINT_EFFECTS
 from .joint.link_inertia import BODY_PARAMETERS, BODY_TERMS
+
+if TYPE_CHECKING:
+    import yaml
+else:
+    yaml = later("yaml")
 
 FORMAT = "caretree-model-1"
 KEYS = (

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
 from ..compiled import fma, njit
+from ..extras import later
 from .kinematics import Kinematics
+
+if TYPE_CHECKING:
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+else:
+    pin = later("pinocchio")
 
 
 class RobotCapsules:

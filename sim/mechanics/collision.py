@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-import coal  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
-import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ..extras import later
 from ..world import SIDES
 from .kinematics import Kinematics
 from .shape import Shape
+
+if TYPE_CHECKING:
+    import coal  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+else:
+    coal = later("coal")
+    pin = later("pinocchio")
 
 
 class CollisionChecker:

@@ -8,13 +8,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
+from ..extras import later
 from ..world import SIDES, Side
 from .planar import planar_pose
 from .robot_model import RobotModel
+
+if TYPE_CHECKING:
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+else:
+    pin = later("pinocchio")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ..extras import later
 from ..world import SIDES, HandTwist, Side
 from .kinematics import Kinematics
 from .planar import planar_pose
+
+if TYPE_CHECKING:
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+else:
+    pin = later("pinocchio")
 
 _GAIN = 8.0  # of the position feedback that takes out the drift of integrating joint rates [1/s]
 _MAX_LAG = np.array((0.01, 0.06))  # the pose to follow never runs further ahead than this [m, rad]

@@ -8,12 +8,17 @@ the answer or the error's sentence, and the world's clock [s] afterwards.
 from __future__ import annotations
 
 import socket
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import msgpack
 import numpy as np
 
+from ..extras import later
 from ..world import WorldError
+
+if TYPE_CHECKING:
+    import msgpack
+else:
+    msgpack = later("msgpack")
 
 VERSION = 2
 LARGEST = 64 * 2**20  # [bytes] of one message: an image of 12 million pixels

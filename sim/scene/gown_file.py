@@ -15,13 +15,17 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
-
-import yaml
+from typing import TYPE_CHECKING, Any
 
 from ..errors import CaretreeError
+from ..extras import later
 from ..yaml_text import load_yaml
 from .gown import GOWNS, GownSpec
+
+if TYPE_CHECKING:
+    import yaml
+else:
+    yaml = later("yaml")
 
 FORMAT = "caretree-gown-1"
 UNITS = {

@@ -7,7 +7,7 @@ import enum
 from ..world import WorldError
 
 
-class InitialState(enum.StrEnum):
+class InitialState(str, enum.Enum):
     """Where the gown is when a run begins; whatever is not on the hook has been put there by hand."""
 
     GOWN_ON_HOOK = "gown_on_hook"  # it hangs on its rail; the robot stands at `start`
@@ -17,6 +17,9 @@ class InitialState(enum.StrEnum):
         "gown_worn"  # both arms are in their sleeves, not all of them far up, and up unless they fall; `bed_left`
     )
 
+    def __str__(self) -> str:
+        return self.value
+
     @classmethod
     def named(cls, name: str) -> InitialState:
         """The state of that name.
@@ -25,5 +28,5 @@ class InitialState(enum.StrEnum):
             WorldError: there is none.
         """
         if name not in tuple(cls):
-            raise WorldError(f"no run begins with {name!r}; there are {', '.join(cls)}")
+            raise WorldError(f"no run begins with {name!r}; there are {', '.join(state.value for state in cls)}")
         return cls(name)

@@ -8,17 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
+from ...sim.extras import later
 from ...sim.mechanics.kinematics import Kinematics
 from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross, length
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
+
+if TYPE_CHECKING:
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+else:
+    pin = later("pinocchio")
 
 FreeAxis = Literal["none", "approach", "closing", "any"]
 

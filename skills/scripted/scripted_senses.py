@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Protocol, Self
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import Frame, Observation, Side
 from .scripted_person import laid_strap, lying_arm, lying_posture
+
+if TYPE_CHECKING:
+    from typing_extensions import Self  # in typing from 3.11 on
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.command_line import drop_output
 from ...sim.errors import CaretreeError, DisplayError, RecordError
 from ...sim.evaluate.run_record import Judgement
+from ...sim.extras import missing_extra
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.fence import said
 from ...sim.record.folder_claim import FolderClaim, claim_free
@@ -263,6 +264,9 @@ def _report(directory: Path) -> Path | None:
         from ..report.page import write_report  # matplotlib is needed only here
 
         return write_report(directory)
+    except ModuleNotFoundError as error:
+        print(f"no report: {missing_extra(error) or said(error)}")
+        return None
     except Exception as error:  # a font without a sign of a skill's name must not end what has run
         print(f"no report: {said(error)}")
         return None

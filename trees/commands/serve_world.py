@@ -6,6 +6,7 @@ import argparse
 
 from ...sim.command_line import INTERRUPTED, PORTS, seed
 from ...sim.errors import CaretreeError
+from ...sim.extras import need
 from ...sim.remote.server import WorldServer
 from ...sim.remote.world import PORT
 from ..run.task import load_task
@@ -42,6 +43,7 @@ def main(options: argparse.Namespace) -> int:
     host, _, port = options.bind.rpartition(":")
     if not (host and port.isascii() and port.isdigit() and int(port) < PORTS):
         raise CaretreeError(f"--bind is {options.bind!r}, but HOST:PORT is asked for")
+    need("msgpack", "a world in another process")
     task = load_task(options.task)
     arguments = read_world_arguments(options.world, options.world_arg)
     world, _ = make_world(options.world, task, seed=options.seed, arguments=arguments)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ...sim.extras import need
+
 
 def main(options: argparse.Namespace) -> int:
     """Serve the page until Ctrl-C.
@@ -12,6 +14,7 @@ def main(options: argparse.Namespace) -> int:
     Raises:
         CaretreeError: the record cannot be read, or the page cannot be served.
     """
+    need("viser", "the view")
     from ..watch.playback import Playback  # viser is needed only here
 
     playback = Playback(Path(options.directory), options.port)

@@ -183,7 +183,10 @@ class LookLog:
                 self._write(look, node, float(event["t"]))
 
     def _write(self, look: Look, node: str, t: float) -> None:
-        import cv2
+        try:
+            import cv2
+        except ModuleNotFoundError:  # then no page is drawn either, which these pictures are for
+            return
 
         folder, self._count = self._directory / LOOKS_FOLDER, self._count + 1
         line = {

@@ -15,6 +15,7 @@ from ...sim.evaluate import limits
 from ...sim.evaluate.run_record import Judgement
 from ...sim.evaluate.series import read_series
 from ...sim.evaluate.verdict import Verdict, evaluate
+from ...sim.extras import need
 from ...sim.record.record import REPORT_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, is_finished, read_run
 from ...sim.record.spool import disk_error
 from ...sim.record.video import read_pictures
@@ -71,6 +72,7 @@ def write_report(directory: Path | str) -> Path:
         CaretreeError: run.json is missing or damaged, or the page cannot be written.
     """
     directory = Path(directory)
+    need("matplotlib", "the report")
     page = build_report(directory)
     path = directory / REPORT_FILE
     part = path.with_name(f"{REPORT_FILE}.part")

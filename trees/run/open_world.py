@@ -20,16 +20,20 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
-
-import yaml
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from ...sim.errors import CaretreeError
+from ...sim.extras import later
 from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import World
 from ...sim.yaml_text import load_yaml
 from .parameters import PLAIN, BuildParameter, Parameter, ParameterError
 from .time_limit import LOADING, TimeLimit, TookTooLongError
+
+if TYPE_CHECKING:
+    import yaml
+else:
+    yaml = later("yaml")
 
 GROUP = "caretree.worlds"
 OWN = {  # made like any other

@@ -8,13 +8,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
-
-import yaml
+from typing import TYPE_CHECKING, Any
 
 from ...sim.errors import CaretreeError
+from ...sim.extras import later
 from ...sim.yaml_text import load_yaml
 from ...skills.core.settings import Settings
+
+if TYPE_CHECKING:
+    import yaml
+else:
+    yaml = later("yaml")
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ import socket
 from typing import Any
 
 from ...sim.errors import CaretreeError
+from ...sim.extras import need
 
 HOST = "127.0.0.1"  # whoever can reach it can stop the robot
 PORT = 8080
-INSTALL = "pip install 'viser==1.1.1'"
 
 
 def open_server(title: str, port: int | None) -> Any:
@@ -25,10 +25,9 @@ def open_server(title: str, port: int | None) -> Any:
     Raises:
         CaretreeError: viser is not installed, or the port is taken.
     """
-    try:
-        import viser
-    except ImportError as error:
-        raise CaretreeError(f"the view needs viser, which is not installed: {INSTALL}") from error
+    need("viser", "the view")
+    import viser
+
     if port is not None:
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...sim.errors import CaretreeError
+from ...sim.extras import need
 from ...sim.fence import fenced, said
 from ...sim.world import World
 from ..report.looks import Witness
@@ -39,6 +40,7 @@ class Watchers:
             self._groot = Publisher(options.groot)
             print(f"Groot2 finds the tree at {self._groot.address}", flush=True)
         if options.view:
+            need("viser", "the view")
             from .live import LiveView
 
             try:

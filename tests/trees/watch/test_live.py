@@ -157,7 +157,7 @@ def test_without_viser_one_sentence_says_how_to_install_it(monkeypatch, tmp_path
     monkeypatch.setitem(sys.modules, "viser", None)
     command = ["run", str(FILE), "--world", "scripted", "--out", str(tmp_path / "r")]
     assert main([*command, "--view"]) == 2
-    assert "the view needs viser, which is not installed: pip install 'viser==" in capsys.readouterr().err
+    assert "the view needs viser, which is not installed: pip install 'caretree[view]'" in capsys.readouterr().err
     assert not (tmp_path / "r").exists()
     assert main([*command, "--port", "8080"]) == 2
     assert "give --view too" in capsys.readouterr().err

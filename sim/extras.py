@@ -1,0 +1,106 @@
+"""Packages that the core does without: imported with their first use, and their extra named where they are missing.
+
+    pin: Any = later("pinocchio")        # at the top of a file of the core; nothing is imported yet
+
+The core is numpy and py_trees: trees, the base of the skills, the guard, the scripted world, records and XML.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import types
+from typing import Any
+
+from .errors import CaretreeError
+
+# What is imported -> the extra of setup.cfg that brings it; a test compares.
+EXTRA_OF = {
+    "PIL": "sim",
+    "av": "sim",
+    "coal": "sim",
+    "cv2": "sim",
+    "filterpy": "sim",
+    "h5py": "gap",
+    "matplotlib": "view",
+    "mcap": "log",
+    "msgpack": "remote",
+    "numba": "sim",
+    "onnx": "learn",
+    "openpyxl": "gap",
+    "pinocchio": "sim",
+    "pooch": "gap",
+    "pybullet": "sim",
+    "pybullet_utils": "sim",
+    "pysindy": "gap",
+    "ray": "ray",
+    "ruptures": "gap",
+    "safetensors": "learn",
+    "scipy": "sim",
+    "sklearn": "learn",
+    "toppra": "sim",
+    "torch": "learn",
+    "viser": "view",
+    "yaml": "yaml",
+    "zmq": "groot",
+}
+
+
+class MissingExtra(CaretreeError):  # noqa: N818 it names a state of the installation
+    """What was asked for needs a package that this installation is without."""
+
+    def __init__(self, package: str, what: str = "this", extra: str | None = None) -> None:
+        extra = extra or EXTRA_OF[package]
+        super().__init__(f"{what} needs {package}, which is not installed: pip install 'caretree[{extra}]'")
+
+
+def missing_extra(error: ModuleNotFoundError, command: str = "") -> MissingExtra | None:
+    """The sentence about a package that could not be imported; None for one that no extra brings.
+
+    Args:
+        error: of the import.
+        command: `caretree gap` has an extra of its own, which brings all that it needs.
+    """
+    package = (error.name or "").partition(".")[0]
+    if package not in EXTRA_OF:
+        return None
+    return MissingExtra(package, extra="gap" if command == "caretree gap" else None)
+
+
+def need(package: str, what: str = "this") -> None:
+    """Refuse at once what could only fail later.
+
+    Args:
+        package: that it needs.
+        what: needs it.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    if importlib.util.find_spec(package) is None:
+        raise MissingExtra(package, what)
+
+
+class Later(types.ModuleType):
+    """Stands for a package until something of it is used."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Import the package; what has been asked for once is found at once from then on.
+
+        Raises:
+            MissingExtra: it is not installed.
+        """
+        if name.startswith("__"):  # asked for by tools that look at every module
+            raise AttributeError(name)
+        try:
+            package = importlib.import_module(self.__name__)
+        except ModuleNotFoundError as error:
+            raise missing_extra(error) or error from error
+        value = getattr(package, name)
+        setattr(self, name, value)
+        return value
+
+
+def later(package: str) -> Any:
+    """The package of this name, imported when something of it is first used."""
+    return Later(package)
