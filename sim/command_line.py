@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from .errors import CaretreeError
-from .extras import missing_extra
+from .extras import MissingExtra, missing_extra
 
 BAD_INPUT = 2
 INTERRUPTED = 130  # as shells count a Ctrl-C
@@ -81,27 +81,30 @@ def _complain(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
-def answered(program: str, command: Callable[[], int], *, interrupted: str = "interrupted") -> int:
+def answered(
+    program: str, command: Callable[[], int], *, interrupted: str = "interrupted", extra: str | None = None
+) -> int:
     """Run a command and tell a user's mistake, a lost file, a missing extra or a Ctrl-C in one sentence.
 
     Args:
         program: name in front of the sentence.
         command: returns the exit status.
         interrupted: what is said after a Ctrl-C.
+        extra: that brings all that the command needs; by default the one of the package that is missing.
 
     Returns:
         The exit status: the command's own, `BAD_INPUT`, `INTERRUPTED`, or 1 where the reader of the output has gone.
     """
     try:
         return command()
-    except CaretreeError as error:
-        _complain(f"{program}: {error}")
-        return BAD_INPUT
-    except ModuleNotFoundError as error:
-        missing = missing_extra(error, program)
+    except (ModuleNotFoundError, MissingExtra) as error:
+        missing = missing_extra(error, extra)
         if missing is None:
             raise  # of the user's own files, or a mistake of ours
         _complain(f"{program}: {missing}")
+        return BAD_INPUT
+    except CaretreeError as error:
+        _complain(f"{program}: {error}")
         return BAD_INPUT
     except BrokenPipeError:  # the reader of our output has gone
         drop_output()

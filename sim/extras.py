@@ -50,21 +50,21 @@ class MissingExtra(CaretreeError):  # noqa: N818 it names a state of the install
     """What was asked for needs a package that this installation is without."""
 
     def __init__(self, package: str, what: str = "this", extra: str | None = None) -> None:
-        extra = extra or EXTRA_OF[package]
-        super().__init__(f"{what} needs {package}, which is not installed: pip install 'caretree[{extra}]'")
+        self.package, self.what, self.extra = package, what, extra or EXTRA_OF[package]
+        super().__init__(f"{what} needs {package}, which is not installed: pip install 'caretree[{self.extra}]'")
 
 
-def missing_extra(error: ModuleNotFoundError, command: str = "") -> MissingExtra | None:
+def missing_extra(error: ModuleNotFoundError | MissingExtra, extra: str | None = None) -> MissingExtra | None:
     """The sentence about a package that could not be imported; None for one that no extra brings.
 
     Args:
         error: of the import.
-        command: `caretree gap` has an extra of its own, which brings all that it needs.
+        extra: that brings all that the command needs, if one does.
     """
+    if isinstance(error, MissingExtra):
+        return MissingExtra(error.package, error.what, extra or error.extra)
     package = (error.name or "").partition(".")[0]
-    if package not in EXTRA_OF:
-        return None
-    return MissingExtra(package, extra="gap" if command == "caretree gap" else None)
+    return MissingExtra(package, extra=extra) if package in EXTRA_OF else None
 
 
 def need(package: str, what: str = "this") -> None:

@@ -34,6 +34,7 @@ WORLD_KINDS = (
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 EXPORTS = ("xml",)
 SHELLS = ("bash", "zsh")
+EXTRAS = {"gap": "gap", "learn": "learn", "robot": "ros", "serve-robot": "ros"}  # of commands that need one
 DELEGATED = {"gap": "..learning.gap.cli", "learn": ".commands.learn"}
 
 
@@ -221,7 +222,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without an accent must not end a run
-    return answered("caretree", lambda: _dispatch(list(sys.argv[1:] if argv is None else argv)))
+    given = list(sys.argv[1:] if argv is None else argv)
+    return answered("caretree", lambda: _dispatch(given), extra=EXTRAS.get(given[0]) if given else None)
 
 
 if __name__ == "__main__":

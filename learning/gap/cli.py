@@ -88,6 +88,7 @@ def main(argv: list[str] | None = None) -> int:
         "caretree gap",
         lambda: _dispatch(parser().parse_args(argv)),
         interrupted="interrupted; what is finished is kept",
+        extra="gap",
     )
 
 

@@ -23,7 +23,7 @@ from types import ModuleType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from ...sim.errors import CaretreeError
-from ...sim.extras import later
+from ...sim.extras import later, missing_extra
 from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import World
 from ...sim.yaml_text import load_yaml
@@ -40,6 +40,7 @@ OWN = {  # made like any other
     "remote": "caretree.sim.remote.world:RemoteWorld",
     "ros1": "caretree.sim.ros1.world:Ros1World",
 }
+EXTRA = {"remote": "remote", "ros1": "ros"}  # of these
 HOW = "or give package.module:Class or file.py:Class"
 FROM_ITS_CODE = (Exception, SystemExit, GeneratorExit, TookTooLongError)
 REQUIRED: Any = inspect.Parameter.empty
@@ -181,6 +182,8 @@ def _loaded(name: str) -> Callable[..., Any]:
         with TimeLimit(LOADING):
             module = _module_in(Path(place)) if place.endswith(".py") else _module_called(place)
     except FROM_ITS_CODE as error:
+        if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error, EXTRA.get(name))) is not None:
+            raise missing from error
         raise CaretreeError(f"world {name} cannot be loaded: {_said(error)}") from error
     made: Any = module
     for part in attribute.split("."):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...sim.abilities import HasTickRate, SupportsInitialStates, SupportsObjects
 from ...sim.errors import CaretreeError
+from ...sim.extras import missing_extra
 from ...sim.known_robots import DEFAULT
 from ...sim.world_kind import EASY, WorldKind
 from .open_world import HOW, OpenWorld, installed_worlds
@@ -72,6 +73,8 @@ def make_world(
     try:
         from ...sim.bullet.world import BulletWorld  # pyright: ignore[reportMissingImports] pulls pybullet and pinocchio
     except ImportError as error:
+        if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error, "sim")) is not None:
+            raise missing from error
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind, "look": look}
     options = {key: value for key, value in options.items() if value is not None}
