@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -26,8 +26,7 @@ from .estimates import (
     WornSleeve,
 )
 
-if TYPE_CHECKING:
-    from typing_extensions import Self  # in typing from 3.11 on
+_Senses = TypeVar("_Senses", bound="Senses")
 
 
 class Senses(ABC):
@@ -40,7 +39,7 @@ class Senses(ABC):
         CaretreeError: on construction, a class lacks some of the methods; says which.
     """
 
-    def __new__(cls, *_args: Any, **_options: Any) -> Self:
+    def __new__(cls: type[_Senses], *_args: Any, **_options: Any) -> _Senses:
         """Refuse a class that is not whole in one sentence."""
         if lacking := sorted(cls.__abstractmethods__):
             raise CaretreeError(f"the senses {cls.__name__} lack {', '.join(lacking)}")

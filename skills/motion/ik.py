@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ...sim.extras import later
 from ...sim.mechanics.kinematics import Kinematics
 from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
@@ -22,8 +21,6 @@ from .errors import Unreachable
 
 if TYPE_CHECKING:
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
-else:
-    pin = later("pinocchio")
 
 FreeAxis = Literal["none", "approach", "closing", "any"]
 
@@ -107,6 +104,8 @@ def solve_ik(
     Raises:
         Unreachable: no starting point led there; carries the best residual.
     """
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
     target = pin.SE3(np.linalg.inv(planar_pose(pose_base_in_map)) @ np.asarray(pose_hand_in_map, float))
     best, refused = (np.inf, np.inf, np.asarray(q_seed, float)), 0
     ready = kinematics.robot.ready[SIDES.index(side)]
@@ -243,6 +242,8 @@ def _task_rows(free: FreeAxis) -> list[int]:
 
 def _error(pose: pin.SE3, target: pin.SE3, free: FreeAxis) -> np.ndarray:
     """What is left (6,), along the hand's axes; the free axis carries none."""
+    import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
     R = pose.rotation
     error = np.zeros(6)
     error[:3] = R.T @ (target.translation - pose.translation)

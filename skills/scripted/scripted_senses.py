@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -35,8 +35,7 @@ from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import Frame, Observation, Side
 from .scripted_person import laid_strap, lying_arm, lying_posture
 
-if TYPE_CHECKING:
-    from typing_extensions import Self  # in typing from 3.11 on
+_Senses = TypeVar("_Senses", bound="ScriptedSenses")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +78,7 @@ class ScriptedSenses(Senses):
         self._moved_before = self._moved()
         self._collar_aside = 0.06  # [m]
 
-    def on(self, world: Proprioception) -> Self:
+    def on(self: _Senses, world: Proprioception) -> _Senses:
         """The same senses for another robot, such as one behind a ROS master."""
         other = copy(self)
         other._world = world

@@ -207,6 +207,7 @@ def test_a_full_disk_tears_no_line_of_the_trace(tmp_path, monkeypatch, freed):
         assert lines[2:] == ['{"t":2}', '{"t":3}']
 
 
+@pytest.mark.extra
 def test_an_error_of_closing_does_not_keep_the_outcome_from_being_written(tmp_path, monkeypatch):
     record = recorder(tmp_path)
     record.begin(static())
@@ -307,6 +308,7 @@ def test_missing_record_is_one_sentence(tmp_path):
         RunResult(outcome="won", reason="", sim_time_s=0.0)  # type: ignore[arg-type] - the mistake under test
 
 
+@pytest.mark.extra
 def test_pictures_are_drawn_beside_the_run_and_all_are_in_the_video_at_the_end(tmp_path):
     recorder = Recorder(tmp_path / "run", task="dressing", seed=0, world="bullet")
     for k in range(4):  # so far apart that none may be left out

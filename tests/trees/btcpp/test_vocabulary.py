@@ -2,7 +2,7 @@ from types import ModuleType
 
 import pytest
 from caretree.sim.errors import CaretreeError
-from caretree.skills import HoldStill, Skill
+from caretree.skills import HoldStill, Skill, Spread
 from caretree.trees.btcpp.vocabulary import Vocabulary, identifier, ports_of_condition, ports_of_skill
 
 
@@ -46,6 +46,7 @@ def test_a_task_brings_its_own_skills_and_conditions():
     ],
 )
 def test_names_that_mean_two_things_are_refused(names, said):
+    assert Spread.__name__ == "Spread"  # known to the vocabulary once it is imported
     with pytest.raises(CaretreeError) as refused:
         Vocabulary.of([module(**names)])
     assert said in str(refused.value)

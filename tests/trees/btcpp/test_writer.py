@@ -57,7 +57,9 @@ def read_again(task, tmp_path, stage=None):
     return load_task(str(path))
 
 
-@pytest.mark.parametrize("name", task_names())
+@pytest.mark.parametrize(
+    "name", [name if name == "wave" else pytest.param(name, marks=pytest.mark.extra) for name in task_names()]
+)
 def test_every_task_comes_back_as_the_same_tree_and_runs_to_the_same_trace(name, tmp_path):
     task = load_task(name)
     again = read_again(task, tmp_path)
@@ -70,6 +72,7 @@ def test_every_task_comes_back_as_the_same_tree_and_runs_to_the_same_trace(name,
     assert exported(again, folder=tmp_path) == exported(task, folder=tmp_path), "written again, it is the same file"
 
 
+@pytest.mark.extra
 @pytest.mark.parametrize("stage", load_task("dressing").stages)
 def test_a_stage_alone_is_written_too(stage, tmp_path):
     task = load_task("dressing")
@@ -101,6 +104,7 @@ def build(context):
     Skill.registry[:] = before
 
 
+@pytest.mark.extra
 def test_the_file_is_what_the_schema_of_behaviortree_cpp_asks_for(tmp_path):
     root = ElementTree.fromstring(exported(load_task("dressing"), folder=tmp_path))
     assert root.attrib == {"BTCPP_format": "4", "main_tree_to_execute": "Task"}
@@ -121,7 +125,9 @@ def test_the_file_is_what_the_schema_of_behaviortree_cpp_asks_for(tmp_path):
 
 
 @pytest.mark.skipif("BTCPP_ACCEPTS" not in os.environ, reason="BTCPP_ACCEPTS names the program built from accepts.cpp")
-@pytest.mark.parametrize("name", task_names())
+@pytest.mark.parametrize(
+    "name", [name if name == "wave" else pytest.param(name, marks=pytest.mark.extra) for name in task_names()]
+)
 def test_behaviortree_cpp_accepts_every_task(name, tmp_path):
     path = tmp_path / "task.xml"
     path.write_text(exported(load_task(name), folder=tmp_path))

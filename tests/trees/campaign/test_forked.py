@@ -35,6 +35,7 @@ def begun(run: ForkedRun, log) -> None:
         time.sleep(0.01)
 
 
+@pytest.mark.extra
 def test_a_scripted_trial_is_forked_and_kept_with_its_record_and_log(tmp_path):
     folder = tmp_path / "campaign" / "overall" / "seed-0003"
     trial = run_trial("wave", 3, folder, SCRIPTED, patience=60.0, stop=threading.Event(), key="now")

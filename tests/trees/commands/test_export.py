@@ -10,6 +10,7 @@ def in_an_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.extra
 def test_an_exported_task_is_checked_run_and_replayed(capsys):
     assert main(["export", "xml", "wave", "--out", "deep/wave.xml"]) == 0
     assert capsys.readouterr().out == "deep/wave.xml\n"

@@ -46,6 +46,7 @@ def assert_put_down(tmp_path, reason):
     assert not (folder / "reserve").exists()
 
 
+@pytest.mark.extra
 @pytest.mark.parametrize(
     ("number", "reason"),
     [
@@ -64,6 +65,7 @@ def test_a_signal_puts_the_arm_down(tmp_path, number, reason):
     assert_put_down(tmp_path, re.escape(reason))
 
 
+@pytest.mark.extra
 def test_a_reader_that_leaves_puts_the_arm_down(tmp_path):
     with started(tmp_path, HEARING, stdout=subprocess.PIPE) as run:
         until_held(run.stdout)
@@ -73,6 +75,7 @@ def test_a_reader_that_leaves_puts_the_arm_down(tmp_path):
     assert_put_down(tmp_path, r"The run can no longer be shown\. \[display\] nobody reads the output any more")
 
 
+@pytest.mark.extra
 @pytest.mark.skipif(not hasattr(os, "login_tty"), reason="no terminals on this system")
 @pytest.mark.parametrize(
     "hearing", [HEARING, "signal.signal(signal.SIGHUP, signal.SIG_IGN)"], ids=["it is told", "it finds out"]
@@ -89,6 +92,7 @@ def test_a_terminal_that_is_closed_puts_the_arm_down(tmp_path, hearing):
     assert_put_down(tmp_path, r"The run can no longer be shown\. \[display\] the terminal was closed( \(SIGHUP\))?")
 
 
+@pytest.mark.extra
 def test_a_disk_that_takes_no_more_puts_the_arm_down(tmp_path):
     with started(tmp_path, ON_A_SMALL_DISK, stdout=subprocess.PIPE) as run:
         out, error = run.communicate()

@@ -57,6 +57,7 @@ def findings(build):
     return check(task_of(build)).findings
 
 
+@pytest.mark.extra
 def test_the_shipped_tasks_hold():
     from caretree.trees.run.task import task_names
 

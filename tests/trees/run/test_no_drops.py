@@ -149,6 +149,7 @@ def test_everything_at_once_and_again():
     assert "SIGTERM" in result.reason
 
 
+@pytest.mark.extra
 def test_the_dressing_lowers_an_arm_before_it_lets_go():
     task = load_task("dressing")
     world, senses = task.scripted(100)
