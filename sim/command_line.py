@@ -19,6 +19,7 @@ BAD_INPUT = 2
 INTERRUPTED = 130  # as shells count a Ctrl-C
 SEEDS = 2**32
 PORTS = 2**16
+RATES = (0.1, 1000.0)  # [Hz] ticks or measurements a second
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -64,6 +65,21 @@ def port(text: str) -> int:
     if not text.isascii() or not text.isdigit() or not 0 < int(text) < PORTS:
         raise argparse.ArgumentTypeError(f"{text!r} is no port: a whole number from 1 to {PORTS - 1} is asked for")
     return int(text)
+
+
+def rate(text: str) -> float:
+    """Type of an argument that says how often a second.
+
+    Raises:
+        ArgumentTypeError: it does not.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not RATES[0] <= value <= RATES[1]:
+        raise argparse.ArgumentTypeError(f"{text!r} is no rate: {RATES[0]:g} to {RATES[1]:g} Hz is asked for")
+    return value
 
 
 def drop_output() -> None:

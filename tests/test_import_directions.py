@@ -37,6 +37,7 @@ OUTSIDE_THE_TREE = {
     "trees/report/figures.py",
     "trees/watch/live.py",
     "trees/watch/playback.py",
+    "trees/campaign/replay.py",
     "trees/campaign/trial.py",
     "trees/campaign/trials.py",
     "trees/campaign/on_cluster.py",

@@ -12,7 +12,7 @@ import io
 import sys
 from collections.abc import Sequence
 
-from ..sim.command_line import CommandParser, answered, port, seed
+from ..sim.command_line import CommandParser, answered, port, rate, seed
 from ..sim.errors import CaretreeError
 
 SELF_PARSED = {
@@ -141,6 +141,17 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         help="let Groot2 watch, and hold a simulated run at breakpoints (default: port 1667, and the next one)",
     )
     run.add_argument("--out", metavar="DIR", help="folder of the record (default: a new one under runs/)")
+    run.add_argument(
+        "--log",
+        metavar="FILE",
+        help="MCAP file of what the robot measured, saw and was sent, for Foxglove",
+    )
+    run.add_argument(
+        "--log-rate",
+        type=rate,
+        metavar="HZ",
+        help="measure for the log between ticks too, so many times a second; simulated noise is then another one",
+    )
 
     check = commands.add_parser("check", help="prove the wiring and the fail-safes before anything moves")
     check.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")

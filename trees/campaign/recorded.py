@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...sim.command_line import SEEDS
+from ...sim.command_line import RATES, SEEDS
 from ...sim.errors import CaretreeError
 from ...sim.record.record import RUN_FILE, read_finished_run
 from ...sim.world_kind import EASY
-
-RATES = (0.1, 1000.0)  # [Hz] ticks a second that a run may have had
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +25,7 @@ class Recorded:
         robot, gown, person, model, stage: as on the command line; None where nothing was given.
         world_kind: name.
         rate_hz: ticks a second.
+        log_rate: measurements a second that its log asked for, between ticks too; None for those of the tree alone.
         inject: faults, as on the command line.
         tuning: skill -> number -> value.
         build: parameter of the task -> value.
@@ -44,6 +43,7 @@ class Recorded:
     look: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
+    log_rate: float | None = None
     inject: tuple[str, ...] = ()
     tuning: Mapping[str, Mapping[str, Any]]
     build: Mapping[str, Any]
@@ -68,6 +68,7 @@ def recorded(directory: Path) -> Recorded:
         world=_value(file, run, "world", str, _is_text),
         world_kind=_value(file, given, "world_kind", str, _is_text, EASY),
         rate_hz=_value(file, given, "rate_hz", float, _is_rate, 15.0),
+        log_rate=_value(file, given, "log_rate", float, _is_rate, None),
         inject=_value(file, given, "inject", tuple, _is_texts, ()),
         tuning=_value(file, given, "tuning", dict, _is_tuning, {}),
         build=_value(file, given, "build", dict, _is_mapping, {}),

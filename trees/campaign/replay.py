@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...sim.faults import FaultyWorld, parse_fault
+from ...sim.log.logged_world import logged
 from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
@@ -56,7 +57,8 @@ def replay(directory: Path) -> Replay:
         arguments=given.world_args,
     )
     try:
-        world = FaultyWorld(inner, faults) if faults else inner
+        measured = inner if given.log_rate is None else logged(inner, None, given.log_rate)
+        world = FaultyWorld(measured, faults) if faults else measured
         run = Run(
             loaded,
             world,

@@ -15,9 +15,10 @@ from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.command_line import drop_output
 from ...sim.errors import CaretreeError, DisplayError, RecordError
 from ...sim.evaluate.run_record import Judgement
-from ...sim.extras import missing_extra
+from ...sim.extras import missing_extra, need
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.fence import said
+from ...sim.log.logged_world import logging
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
@@ -76,11 +77,16 @@ def main(options: argparse.Namespace) -> int:
         "model": options.model,
         "look": options.look,
         "inject": options.inject,
+        "log_rate": options.log_rate,
         "stage": options.stage,
         "tuning": given.settings.values,
         "build": given.parameters,
     }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
+    if options.log:
+        need("mcap", "the log")
+    elif options.log_rate is not None:
+        raise CaretreeError("--log-rate is the rate of the log: give --log FILE too")
     with closing(Watchers(options)) as watchers:
         # claimed before the world is built, which takes a while: two runs begun together get a folder each
         claim = (
@@ -103,7 +109,10 @@ def main(options: argparse.Namespace) -> int:
                 )
                 try:
                     senses = senses or senses_for(options.senses, task, inner, options.seed)
-                    return _run(options, task, inner, senses, faults, given, parameters, claim, signals, watchers)
+                    with logging(inner, options.log, options.log_rate) as measured:
+                        return _run(
+                            options, task, inner, measured, senses, faults, given, parameters, claim, signals, watchers
+                        )
                 finally:
                     inner.close()
         finally:
@@ -128,6 +137,7 @@ def _run(
     options: argparse.Namespace,
     task: Task,
     inner: World,
+    measured: World,
     senses: Senses | None,
     faults: list[FaultSpec],
     given: Given,
@@ -136,7 +146,7 @@ def _run(
     signals: StopSignals,
     watchers: Watchers,
 ) -> int:
-    world = FaultyWorld(inner, faults) if faults else inner
+    world = FaultyWorld(measured, faults) if faults else measured
     rate_hz = TICK_RATE if faults else tick_rate_of(inner)  # how soon a fault is answered is looked at
     parameters = {**parameters, "rate_hz": rate_hz}
     events = _Events()
@@ -179,6 +189,7 @@ def _run(
         recorder.close()
     judgement, misjudged = _judged(task, directory)
     written = [_errors(directory, run.context.errors), _report(directory), directory / VIDEO_FILE, directory / RUN_FILE]
+    written += [Path(options.log)] if options.log else []
     if isinstance(world, FaultyWorld):
         _tell_faults(world)
     watchers.finish(result.reason, directory)

@@ -1,0 +1,1 @@
+"""What the robot measured, saw and was really sent, in a file that Foxglove opens."""
