@@ -22,6 +22,7 @@ EXTRA_OF = {
     "cv2": "sim",
     "filterpy": "sim",
     "h5py": "gap",
+    "lz4": "log",
     "matplotlib": "view",
     "mcap": "log",
     "msgpack": "remote",

@@ -1,4 +1,4 @@
-"""`caretree gap`: find, name, add, show, run, export, fetch, record and bench."""
+"""`caretree gap`: find, name, add, show, run, export, fetch, import, record and bench."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def parser() -> argparse.ArgumentParser:
         description="Find where simulation and measurement disagree, name the "
         "missing effect, add it to the model and show that the gap shrinks.",
     )
-    sub = top.add_subparsers(dest="command", required=True, metavar="run|find|name|add|show|export|fetch|record|bench")
+    sub = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command, text in (
         ("run", "the whole workflow: report.html, verdict.json, model.yaml"),
         ("find", "first step: where model and measurement disagree beyond noise"),
@@ -48,6 +48,12 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("name", help="data set, or `list`")
     p.add_argument("--out", help="folder for the measurement set")
     p.add_argument("--data", help="folder that already holds the data sets (else they are downloaded)")
+    p = sub.add_parser("import", help="turn logs of a robot's joints into a measurement set")
+    p.add_argument("logs", nargs="+", help="MCAP files or ROS 1 bags; a single one is cut in two")
+    p.add_argument("--joints", required=True, help="names or patterns, comma-separated: 'left_*', shoulder to wrist")
+    p.add_argument("--robot", help="URDF, or a name in example-robot-data (default: what the log brings)")
+    p.add_argument("--topic", help="of the joint states, where there are several")
+    p.add_argument("--out", required=True, help="folder for the measurement set")
     p = sub.add_parser("record", help="record a measurement set from the dressing world's gown")
     p.add_argument("--gown", default="light", help="name of a gown, or path of a gown file (default light)")
     p.add_argument("--model", help="model.yaml whose effects act while recording")
@@ -101,6 +107,12 @@ def _dispatch(args: argparse.Namespace) -> int:
         from .catalogue import fetch
 
         return fetch(args.name, args.out, args.data, print)
+    if args.command == "import":
+        from .importers.joint_log import import_logs
+
+        logs = [Path(log) for log in args.logs]
+        print(import_logs(logs, Path(args.out), args.joints.split(","), args.robot, args.topic))
+        return 0
     if args.command == "record":
         from .record import record
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sqlite3
-import struct
 from pathlib import Path
 
 import numpy as np
 
+from .joint_state import from_cdr
 from .setting import write_set
 
 FIT = 0.6  # part of the run that may be fitted to; the rest is held out (optimistic: it is the same run)
@@ -17,43 +17,12 @@ def joint_states(path: Path) -> dict[str, np.ndarray]:
     """T (T,) and q, dq, tau (T, n) of every sensor_msgs/JointState in a rosbag2 sqlite file."""
     with sqlite3.connect(f"file:{path}?mode=ro&immutable=1", uri=True) as base:
         rows = base.execute("select data from messages order by timestamp").fetchall()
-    parsed = [_joint_state(row[0]) for row in rows]
+    parsed = [from_cdr(row[0]) for row in rows]
+    parts = {"q": "position", "dq": "velocity", "tau": "effort"}
     return {
-        "t": np.array([p[0] for p in parsed]),
-        **{k: np.array([p[i + 1] for p in parsed]) for i, k in enumerate(("q", "dq", "tau"))},
+        "t": np.array([state.t for state in parsed]),
+        **{k: np.array([list(getattr(state, part).values()) for state in parsed]) for k, part in parts.items()},
     }
-
-
-def _joint_state(data: bytes) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
-    """One message in CDR, the plain little-endian encoding of ROS 2: values aligned to their size after 4 bytes."""
-    at = 4
-
-    def integer() -> int:
-        nonlocal at
-        at = 4 + -(-(at - 4) // 4) * 4
-        value = struct.unpack_from("<I", data, at)[0]
-        at += 4
-        return value
-
-    def text() -> None:
-        nonlocal at
-        size = integer()  # the size moves `at` first
-        at += size
-
-    def numbers() -> np.ndarray:
-        nonlocal at
-        n = integer()
-        if n:
-            at = 4 + -(-(at - 4) // 8) * 8
-        values = np.frombuffer(data, "<f8", n, at)
-        at += 8 * n
-        return values
-
-    seconds, nanoseconds = integer(), integer()
-    text()
-    for _ in range(integer()):
-        text()
-    return seconds + 1e-9 * nanoseconds, numbers(), numbers(), numbers()
 
 
 def _write(path: Path, robot: str, out: Path) -> list[Path]:
