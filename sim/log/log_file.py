@@ -34,11 +34,11 @@ class LogFile:
         from mcap.writer import Writer
 
         self.path = path
+        if path.exists():
+            raise RecordError(f"{path} is there already: give another file with --log")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open("xb")
-        except FileExistsError:
-            raise RecordError(f"{path} is there already: give another file with --log") from None
         except OSError as error:
             raise RecordError(f"{path} cannot be written: {error.strerror or error}") from error
         self._writer = Writer(self._file)
