@@ -43,7 +43,7 @@ class Senses(ABC):
         """Refuse a class that is not whole in one sentence."""
         if lacking := sorted(cls.__abstractmethods__):
             raise CaretreeError(f"the senses {cls.__name__} lack {', '.join(lacking)}")
-        return super().__new__(cls)
+        return object.__new__(cls)
 
     # -- the gown on its hook ----------------------------------------------------------------------------
 
