@@ -26,6 +26,7 @@ SELF_PARSED = {
 WORLDS = ("bullet", "scripted")
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
 ROBOTS = "baxter, ur5-pair"
+ENGINES = "bullet, spring"
 LOOKS = "taped, plain, printed, random"
 WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
@@ -90,6 +91,9 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--gown", metavar="NAME", help=f"{GOWNS}, or a gown file (default: the seed decides)")
     parser.add_argument("--person", metavar="NAME", help=f"{PERSONS} (default: the seed decides)")
     parser.add_argument("--look", metavar="NAME", help=f"of gown, person and room: {LOOKS} (default: taped)")
+    parser.add_argument(
+        "--engine", metavar="NAME", help=f"what moves the bullet world's cloth: {ENGINES} (default: bullet)"
+    )
     parser.add_argument("--model", metavar="FILE", help="model.yaml with physical effects to add")
     parser.add_argument(
         "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"

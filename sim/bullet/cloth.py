@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
@@ -19,7 +20,58 @@ class UnstableClothError(CaretreeError):
     """A gown too stiff or too light for the time step."""
 
 
-class Cloth:
+def refuse_unstable(mesh: GownMesh, time_step: float) -> None:
+    """Refuse springs that an explicit step of `time_step` [s] would make explode.
+
+    Raises:
+        UnstableClothError: the cloth is too stiff or too light.
+    """
+    spec = mesh.spec
+    stiffness = spec.elastic * time_step**2 / (spec.mass / len(mesh.vertices))
+    if stiffness > STABILITY_MAX:
+        raise UnstableClothError(
+            f"cloth '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
+            f"{STABILITY_MAX} is stable: lower the stiffness or the time step"
+        )
+
+
+class ClothBody(ABC):
+    """A cloth in a room: what hands, hooks and the world ask of it, whichever engine moves it.
+
+    Attributes:
+        mesh: rest shape.
+        body: its number in the room, negative once it was removed.
+    """
+
+    mesh: GownMesh
+    body: int
+
+    @abstractmethod
+    def place(self, vertices: np.ndarray) -> None:
+        """Put every vertex (V, 3) somewhere else [m], at rest."""
+
+    @abstractmethod
+    def vertices(self) -> np.ndarray:
+        """(V, 3) positions in the map frame [m]; none of a cloth that was removed."""
+
+    @abstractmethod
+    def remove(self) -> None:
+        """Take it out of the room."""
+
+    @abstractmethod
+    def pin(self, ids: Iterable[int], body: int = -1, link: int = -1) -> list[int]:
+        """Hold vertices to a link, or to the world, where they are now; returns the constraints."""
+
+    @abstractmethod
+    def unpin(self, constraints: Iterable[int]) -> None:
+        """Let pinned vertices go."""
+
+    @abstractmethod
+    def load(self, held: Collection[int], vertices: np.ndarray) -> np.ndarray:
+        """(3,) force that the cloth, whose vertices are given, exerts on whatever holds the vertices `held` [N]."""
+
+
+class Cloth(ClothBody):
     """One gown, or another cloth, in a soft world.
 
     Args:
@@ -35,14 +87,8 @@ class Cloth:
     def __init__(
         self, world: SoftWorld, mesh: GownMesh, vertices: np.ndarray, options: Mapping[str, Any] | None = None
     ) -> None:
-        spec = mesh.spec
-        stiffness = spec.elastic * world.time_step**2 / (spec.mass / len(mesh.vertices))
-        if stiffness > STABILITY_MAX:
-            raise UnstableClothError(
-                f"cloth '{spec.name}': elastic x dt^2 / vertex mass is {stiffness:.2f}, at most "
-                f"{STABILITY_MAX} is stable: lower the stiffness or the time step"
-            )
-        self.world, self.mesh = world, mesh
+        refuse_unstable(mesh, world.time_step)
+        self.world, self.mesh, spec = world, mesh, mesh.spec
         self.body = world.load_cloth(
             mesh.vertices,
             mesh.sewn,

@@ -10,12 +10,13 @@ _FLOOR = (4.0, 4.0, 0.05)  # half extents [m]
 _BED_FRICTION, _FLOOR_FRICTION = 1.0, 0.5
 
 
-def add_furniture(client: Any, bed_xy: tuple[float, float]) -> None:
+def add_furniture(client: Any, bed_xy: tuple[float, float], plain: bool = True) -> None:
     """Put bed and floor into the room.
 
     Args:
         client: BulletClient of the room.
         bed_xy: middle of the bed in the map frame [m].
+        plain: as rigid bodies without links, which soft bodies meet at half the cost, but whose shapes cannot be read.
     """
     bed = (*BED_HALF, BED_THICKNESS / 2)
     for half, middle, friction in (
@@ -23,5 +24,5 @@ def add_furniture(client: Any, bed_xy: tuple[float, float]) -> None:
         (_FLOOR, (0.0, 0.0, -_FLOOR[2]), _FLOOR_FRICTION),
     ):
         shape = client.createCollisionShape(client.GEOM_BOX, halfExtents=half)
-        body = client.createMultiBody(0, shape, useMaximalCoordinates=1, basePosition=middle)
+        body = client.createMultiBody(0, shape, useMaximalCoordinates=int(plain), basePosition=middle)
         client.changeDynamics(body, -1, lateralFriction=friction)

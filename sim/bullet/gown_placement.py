@@ -8,7 +8,7 @@ import numpy as np
 
 from ..scene.gown import GownMesh
 from ..world import SIDES
-from .cloth import Cloth
+from .cloth import ClothBody
 from .grip import Grip
 from .handle import Handle
 from .person import Person
@@ -31,7 +31,7 @@ _DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is 
 # from the shoulder joint, x outwards [m]
 
 
-def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
+def lay_by_hand(cloth: ClothBody, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
     """Hang the gown by its collar corners over the foot of the bed and lay it on the person's legs.
 
     The outside faces up, the neckline lies across the body just beyond the fingertips of arms at rest.
@@ -76,7 +76,7 @@ def lay_by_hand(cloth: Cloth, handles: list[Handle], step: Callable[[], None], t
 
 
 def put_on_by_hand(
-    cloth: Cloth,
+    cloth: ClothBody,
     person: Person,
     handles: list[Handle],
     step: Callable[[], None],
@@ -161,7 +161,7 @@ def _over_hands(mesh: GownMesh, arms: np.ndarray, over_legs: float) -> np.ndarra
 
 
 def hold_in_hands(
-    cloth: Cloth, grips: list[Grip], hands: np.ndarray, step: Callable[[], None], time_step: float
+    cloth: ClothBody, grips: list[Grip], hands: np.ndarray, step: Callable[[], None], time_step: float
 ) -> None:
     """Hang the gown by its collar corners between the robot's closed fingers, outside to the robot.
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..scene.person_spec import ARM_SEGMENTS, arm_part
 from ..world import SIDES, Side
-from .cloth import Cloth
+from .cloth import ClothBody
 from .handle import Handle
 from .person import Person
 from .units import ROOM
@@ -98,7 +98,7 @@ class Grip:
         thickness: what keeps the fingers apart [m].
     """
 
-    def __init__(self, client: Any, side: Side, handle: Handle, cloth: Cloth, person: Person) -> None:
+    def __init__(self, client: Any, side: Side, handle: Handle, cloth: ClothBody, person: Person) -> None:
         self.client, self.side, self.handle, self.cloth, self.person = client, side, handle, cloth, person
         self.kind = "nothing"
         self.layers = 0
@@ -180,7 +180,7 @@ class Grip:
         self._body, self._arm_local = body, np.array(local[0])
         return True
 
-    def take_any_cloth(self, cloths: Iterable[Cloth], pose_hand_in_map: np.ndarray) -> None:
+    def take_any_cloth(self, cloths: Iterable[ClothBody], pose_hand_in_map: np.ndarray) -> None:
         """The fingers have closed: hold what they have of the first cloth that is between them."""
         for cloth in cloths if self._armed else ():
             self._armed, self.cloth = True, cloth

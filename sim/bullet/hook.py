@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .cloth import Cloth
+from .cloth import ClothBody
 from .handle import Handle
 
 FREE_LOAD = 0.5  # a loop of cloth that pulls down less than this slips off an open hook [N]
@@ -16,7 +16,7 @@ FREE_TIME = 0.10  # ... after this long [s]
 class Hook:
     """An open hook.  What hangs on it is pinned; when it no longer pulls down, it comes off."""
 
-    def __init__(self, client: Any, cloth: Cloth, position: np.ndarray, vertex: int) -> None:
+    def __init__(self, client: Any, cloth: ClothBody, position: np.ndarray, vertex: int) -> None:
         pose = np.eye(4)
         pose[:3, 3] = position
         self.cloth = cloth

@@ -19,11 +19,11 @@ from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
 from ..scene.objects import Box, Colour, MeshObject, ObjectError, RoomObject, Sheet, UrdfObject, placed, sheet_mesh
 from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from ..world import SIDES
-from .cloth import Cloth
+from .cloth import ClothBody
+from .engines import ClothEngine, Room
 from .hook import Hook
 from .person import Person
 from .person_force import ForceBalance
-from .soft_world import SoftWorld
 from .units import ROOM
 
 SOFT_DAMPING = 0.6  # of a soft skin, in its critical damping by the object's mass
@@ -37,6 +37,7 @@ class RoomObjects:
     """All objects of a run, by name.
 
     Args:
+        engine: of the sheets.
         soft: the room.
         person: who is in it.
         bed_top: height of the mattress [m].
@@ -47,10 +48,10 @@ class RoomObjects:
         part_force: (k,) force of rigid objects on each of `PERSON_PARTS`, as a sensor would feel it [N].
     """
 
-    def __init__(self, soft: SoftWorld, person: Person, bed_top: float) -> None:
-        self._soft, self._person, self._bed_top = soft, person, bed_top
+    def __init__(self, engine: ClothEngine, soft: Room, person: Person, bed_top: float) -> None:
+        self._engine, self._soft, self._person, self._bed_top = engine, soft, person, bed_top
         self._client: Any = soft.client
-        self.cloths: dict[str, Cloth] = {}
+        self.cloths: dict[str, ClothBody] = {}
         self.bodies: dict[str, int] = {}
         self._moving: list[int] = []  # bodies that are not fixed
         self._hooks: dict[str, Hook] = {}
@@ -85,7 +86,7 @@ class RoomObjects:
     def _add_sheet(self, item: Sheet) -> None:
         mesh = sheet_mesh(item)
         start = placed(item, mesh.vertices)
-        cloth = self.cloths[item.name] = Cloth(self._soft, mesh, start)
+        cloth = self.cloths[item.name] = self._engine.cloth(self._soft, mesh, start)
         self._balances[item.name] = ForceBalance(self._person, item.mass, self._bed_top)
         if item.hung_by is not None:
             place = np.array(item.position_in_map)

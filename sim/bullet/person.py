@@ -37,7 +37,14 @@ STIR_TORQUE = 7.0  # of a shoulder that its owner moves [N m]: a tenth of an adu
 class Person:
     """The manikin in a PyBullet client.  Truth: skills, trees and perception never see this object."""
 
-    def __init__(self, client: Any, spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float] = (0.0, 0.0)):
+    def __init__(
+        self,
+        client: Any,
+        spec: PersonSpec,
+        bed_top: float,
+        bed_xy: tuple[float, float] = (0.0, 0.0),
+        plain: bool = True,
+    ) -> None:
         """Load the body and set its arm pose.
 
         Args:
@@ -45,7 +52,10 @@ class Person:
             spec: who.
             bed_top: height of the mattress [m].
             bed_xy: middle of the bed in the map frame [m].
+            plain: the trunk as rigid bodies without links, which soft bodies meet at half the cost, but whose shapes
+                cannot be read.
         """
+        self._plain = plain
         self.client, self.spec = client, spec
         self.bed_top, self.bed_xy = bed_top, bed_xy
         self.shoulders = {side: shoulder_in_map(spec, side, bed_top, bed_xy) for side in SIDES}
@@ -165,12 +175,11 @@ class Person:
         c = self.client
         middle, length, turn = _along(a, b)
         shape = c.createCollisionShape(c.GEOM_CAPSULE, radius=radius, height=length)
-        # maximal coordinates: a plain rigid body, whose cloth contacts cost half of a multibody's
         body: int = c.createMultiBody(
             0,
             shape,
             basePosition=middle.tolist(),
-            useMaximalCoordinates=1,
+            useMaximalCoordinates=int(self._plain),
             baseOrientation=c.getQuaternionFromEuler(turn),
         )
         c.changeDynamics(body, -1, lateralFriction=SHAPE.skin_friction)

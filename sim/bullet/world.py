@@ -19,6 +19,8 @@ import numpy as np
 
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
+from ..effects.cloth.proxy_bodies import ClothPatch
+from ..errors import CaretreeError
 from ..mechanics.capsules import RobotCapsules
 from ..mechanics.kinematics import kinematics_of
 from ..record.recorder import Recorder
@@ -39,8 +41,9 @@ from ..world import SIDES, Command, Frame, GripperOpening, Observation, Side, Wo
 from ..world_kind import EASY, WorldKind
 from .backdrop import Backdrop
 from .cameras import Cameras, Exposure
-from .cloth import Cloth, load_gown
+from .cloth import ClothBody, load_gown
 from .contact import Contact
+from .engines import BULLET, engine_named
 from .furniture import add_furniture
 from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
@@ -48,7 +51,6 @@ from .handle import Handle
 from .hook import Hook
 from .objects import RoomObjects
 from .person import Person
-from .soft_world import SoftWorld
 from .thinking_time import ThinkingTime
 from .truth_source import TruthSource
 from .watchers import RoomView, Watchers
@@ -72,6 +74,7 @@ class BulletWorld(World):
         model: model file of the gap workflow whose effects act on the gown.
         kind: how hard the world is made, see `sim/world_kind.py`.
         look: of gown, person and room, see `sim/render/looks.py`.
+        engine: what moves the cloth, see `engines.py`.
 
     Attributes:
         scene: what was drawn; truth, not for skills.
@@ -81,8 +84,8 @@ class BulletWorld(World):
         initial_states: names of the states in which a run may begin.
 
     Raises:
-        CaretreeError: an unknown gown, person, kind or look, a negative seed, an unusable model or gown file, a gown
-            too stiff for the time step.
+        CaretreeError: an unknown gown, person, kind, look or engine, a negative seed, an unusable model or gown file, a
+            model file for an engine on which none acts, a gown too stiff for the time step.
     """
 
     initial_states = tuple(InitialState)
@@ -96,11 +99,15 @@ class BulletWorld(World):
         model: str | None = None,
         kind: str = EASY,
         look: str = TAPED,
+        engine: str = BULLET,
     ) -> None:
+        self._engine = engine_named(engine)
+        if model is not None and not self._engine.soft_bodies:
+            raise CaretreeError(f"--model needs the engine {BULLET}: on {engine} no effects act")
         appearance = draw_look(look, np.random.default_rng([seed, 1]))
         self._effects = None if model is None else gown_effects(model)
         self.scene = draw_scene(seed, gown, person, WorldKind.named(kind))
-        if self.scene.gown.air_drag > 0:
+        if self.scene.gown.air_drag > 0 and self._engine.soft_bodies:  # springs have air of their own
             self._effects = with_air(self._effects, self.scene.gown.air_drag)
         self.room = room_map()
         self.time = SteppedClock(self._advance_to)
@@ -114,11 +121,11 @@ class BulletWorld(World):
         self._steps = 0
         self._asleep = False
         self._moving_person: list[float] = []
-        self._soft = SoftWorld(TIME_STEP)
+        self._soft = self._engine.room(TIME_STEP)
         self._client: Any = self._soft.client
         self._build()
         self._arms = self._person.arms()
-        self._objects = RoomObjects(self._soft, self._person, BED_TOP)
+        self._objects = RoomObjects(self._engine, self._soft, self._person, BED_TOP)
         self._capsules = RobotCapsules(self.kinematics)
         self._contact = Contact(self._capsules, self._person, ROBOT_STEPS * TIME_STEP, TIME_STEP)
         self._robot_client: Any = direct_client()
@@ -149,11 +156,16 @@ class BulletWorld(World):
         hook = np.array((*scene.rail_xy, RAIL_HEIGHT))
         trunk = np.array([(*a, *b, r) for a, b, r in trunk_capsules(scene.person, BED_TOP, scene.bed_xy).values()])
         start = hung - hung[scene.hang_vertex] + hook
-        self._cloth, self._patch = load_gown(
-            self._soft, scene.mesh, start, self._effects, pinned={scene.hang_vertex}, capsules=trunk
-        )
-        add_furniture(c, scene.bed_xy)
-        self._person = Person(c, scene.person, BED_TOP, scene.bed_xy)
+        self._cloth: ClothBody
+        self._patch: ClothPatch | None = None
+        if self._effects is None:
+            self._cloth = self._engine.cloth(self._soft, scene.mesh, start)
+        else:
+            self._cloth, self._patch = load_gown(
+                self._soft, scene.mesh, start, self._effects, pinned={scene.hang_vertex}, capsules=trunk
+            )
+        add_furniture(c, scene.bed_xy, plain=self._engine.soft_bodies)
+        self._person = Person(c, scene.person, BED_TOP, scene.bed_xy, plain=self._engine.soft_bodies)
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
         self._vertices = self._cloth.vertices()
 
@@ -220,16 +232,16 @@ class BulletWorld(World):
         if state == InitialState.GOWN_IN_HANDS:
             self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
-            hold_in_hands(self._cloth, self._grips, self._hands, self._client.stepSimulation, TIME_STEP)
+            hold_in_hands(self._cloth, self._grips, self._hands, self._soft.step, TIME_STEP)
         else:
             if state == InitialState.GOWN_ON_PERSON:
-                lay_by_hand(self._cloth, self._handles, self._client.stepSimulation, TIME_STEP)
+                lay_by_hand(self._cloth, self._handles, self._soft.step, TIME_STEP)
             else:
                 put_on_by_hand(
                     self._cloth,
                     self._person,
                     self._handles,
-                    self._client.stepSimulation,
+                    self._soft.step,
                     TIME_STEP,
                     np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist(),
                 )
@@ -379,7 +391,7 @@ class BulletWorld(World):
         self._apply_effects()
         self._contact.push_arms()
         with self.stopwatch.of("bullet"):
-            self._client.stepSimulation()
+            self._soft.step()
         for n in held:
             if self._grips[n].kind in ("arm", "object"):
                 self._handles[n].feel(TIME_STEP if self._grips[n].kind == "object" else None)
@@ -423,7 +435,7 @@ class BulletWorld(World):
         return grip.catch_arm(hand, opening, force) or grip.catch_object(self._objects, hand, opening, force)
 
     @property
-    def _cloths(self) -> list[Cloth]:
+    def _cloths(self) -> list[ClothBody]:
         return [cloth for cloth in (self._cloth, *self._objects.cloths.values()) if cloth.body >= 0]
 
     def _rest(self) -> None:
@@ -447,7 +459,7 @@ class BulletWorld(World):
             self._apply_effects()
             if self.scene.person.falls and step % CONTROL_STEPS == 0:
                 self._person.resist()
-            self._client.stepSimulation()
+            self._soft.step()
         self._vertices = self._cloth.vertices()
 
     # -- truth: for the recorder only ----------------------------------------------------------------------

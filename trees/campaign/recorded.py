@@ -41,6 +41,7 @@ class Recorded:
     model: str | None = None
     stage: str | None = None
     look: str | None = None
+    engine: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
     log_rate: float | None = None
@@ -60,7 +61,7 @@ def recorded(directory: Path) -> Recorded:
     run = read_finished_run(directory)
     file = directory / RUN_FILE
     given = _value(file, run, "parameters", dict, _is_mapping, {})
-    names = ("robot", "gown", "person", "model", "stage", "look")
+    names = ("robot", "gown", "person", "model", "stage", "look", "engine")
     optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(
         task=_value(file, run, "task", str, _is_text),

@@ -54,6 +54,7 @@ def replay(directory: Path) -> Replay:
         model=given.model,
         kind=given.world_kind,
         look=given.look,
+        engine=given.engine,
         arguments=given.world_args,
     )
     try:

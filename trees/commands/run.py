@@ -36,6 +36,7 @@ from ..run.worlds import TICK_RATE, make_world, prepare_stage, read_world_argume
 from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
+BULLET = "bullet"  # the world, and the engine of its cloth unless another one is asked for
 GONE = {errno.EIO: "the terminal was closed", errno.EPIPE: "nobody reads the output any more"}
 
 
@@ -76,6 +77,7 @@ def main(options: argparse.Namespace) -> int:
         "person": options.person,
         "model": options.model,
         "look": options.look,
+        "engine": options.engine or (BULLET if options.world == BULLET else None),
         "inject": options.inject,
         "log_rate": options.log_rate,
         "stage": options.stage,
@@ -105,6 +107,7 @@ def main(options: argparse.Namespace) -> int:
                     model=options.model,
                     kind=options.world_kind,
                     look=options.look,
+                    engine=options.engine,
                     arguments=arguments,
                 )
                 try:

@@ -34,6 +34,7 @@ def make_world(
     model: str | None = None,
     kind: str = EASY,
     look: str | None = None,
+    engine: str | None = None,
     arguments: Mapping[str, Any] | None = None,
 ) -> tuple[World, Senses | None]:
     """The world called `name`, as hard as `kind` says and furnished by the task; its senses where these are scripted.
@@ -47,6 +48,7 @@ def make_world(
         model: of the bullet world.
         kind: of the bullet world.
         look: of the bullet world; None leaves it as it is.
+        engine: of the bullet world's cloth; None leaves it as it is.
         arguments: of a world that the package does not bring, name -> value.
 
     Raises:
@@ -57,6 +59,7 @@ def make_world(
         raise CaretreeError(f"--robot {task.robot.name} needs the scripted world: {why}")
     if name != "bullet":
         asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model, "--look": look}
+        asked["--engine"] = engine
         asked["--world-kind"] = WorldKind.named(kind).difficulties
         given = [flag for flag, value in asked.items() if value]
         if given:
@@ -77,6 +80,7 @@ def make_world(
             raise missing from error
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind, "look": look}
+    options["engine"] = engine
     options = {key: value for key, value in options.items() if value is not None}
     world = BulletWorld(seed=seed, **options)
     _furnish(world, task, seed)

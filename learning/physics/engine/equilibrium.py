@@ -18,8 +18,8 @@ import numpy as np
 from ....sim.bullet.soft_world import GRAVITY
 from ....sim.compiled import njit
 from ....sim.scene.gown import GownMesh
-from .banded_cholesky import factor, solve
-from .mass_spring import Springs, laplacian
+from ....sim.spring.banded_cholesky import factor, solve
+from ....sim.spring.mass_spring import Springs, laplacian
 
 NEARER = 0.8  # distance of the two held vertices over their distance at rest
 CURL = 1.5  # of the start: curvature of the roll about the vertical [1/m]

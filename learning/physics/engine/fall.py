@@ -8,8 +8,8 @@ import numpy as np
 
 from ....sim.errors import CaretreeError
 from ....sim.scene.gown import GownMesh, GownSpec, build_gown
+from ....sim.spring.mass_spring import Springs, Weave, advance, damped, weave
 from .equilibrium import held_start, static_equilibrium
-from .mass_spring import Springs, Weave, advance, damped, weave
 
 FRAMES = 15
 RATE = 30.0  # [Hz]

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 import scipy.sparse as sparse
-from caretree.learning.physics.engine.banded_cholesky import factor, solve
+from caretree.sim.spring.banded_cholesky import factor, solve
 from caretree.learning.physics.engine.fall import cut_of, springs_of
-from caretree.learning.physics.engine.mass_spring import damped, laplacian
+from caretree.sim.spring.mass_spring import damped, laplacian
 
 
 @pytest.mark.parametrize("held", [[], [0, 7]])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.learning.physics.engine.equilibrium import NEARER
 from caretree.learning.physics.engine.fall import FRAMES, RATE, cut_of, rest, springs_of, steps_per_frame
-from caretree.learning.physics.engine.mass_spring import advance
+from caretree.sim.spring.mass_spring import advance
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.scene.gown import GOWNS
 

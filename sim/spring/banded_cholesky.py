@@ -14,7 +14,7 @@ import scipy.sparse as sparse
 from scipy.linalg import cholesky_banded
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ....sim.compiled import njit
+from ..compiled import njit
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sparse
 
-from ....sim.bullet.soft_world import GRAVITY
-from ....sim.compiled import njit
-from ....sim.scene.gown import GownMesh, edge_counts
+from ..bullet.soft_world import GRAVITY
+from ..compiled import njit
+from ..scene.gown import GownMesh, edge_counts
 from .banded_cholesky import Band, factor, solve
 
 
@@ -112,7 +112,7 @@ def weave(mesh: GownMesh) -> Weave:
 
 
 @njit(fastmath=True)
-def _pull(x, start, other, stiffness, rest, force):
+def pull(x, start, other, stiffness, rest, force):
     """Force of the springs on every vertex [N], into `force` (V, 3)."""
     force[:] = 0.0
     for i in range(x.shape[0]):
@@ -134,7 +134,7 @@ def _advance(x, v, start, other, stiffness, rest, mass, area, row, lower, drag, 
     n = x.shape[0]
     force, momentum = np.zeros((n, 3)), np.empty((3, lower.shape[0]))
     for _ in range(steps):
-        _pull(x, start, other, stiffness, rest, force)
+        pull(x, start, other, stiffness, rest, force)
         for i in range(n):
             a = row[i]
             if a < 0:

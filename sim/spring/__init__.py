@@ -1,0 +1,1 @@
+"""Cloth as springs, compiled: a second engine beside PyBullet's soft bodies."""

@@ -1,0 +1,262 @@
+"""Cloth meets capsules and boxes: where it does, and the impulses that keep them apart, compiled.
+
+Every vertex and the middle of every edge is a point of the cloth that touches: with cells of 5.5 cm a grid of 2.75 cm,
+through which a hand of 2.7 cm radius does not dip farther than the margin that the cloth keeps.  Impulses are found
+one contact after the other, several times over (projected Gauss-Seidel), with Coulomb's law for each body.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import njit
+
+PUSH = 0.2  # share of a depth that one step takes back
+FASTEST = 0.5  # with which what is too deep comes out [m/s]
+NEAR = 1e-3  # what will be farther apart than this after the step does not touch [m]
+ROUND = 0.03  # radius of a box's edges, which points 2.75 cm apart must not catch at [m]
+NORMAL, FLOOR, SURFACE, POINT, FRICTION, MASS, SUM = 0, 3, 4, 7, 10, 11, 12  # columns of a contact
+COLUMNS = 15
+
+
+@njit()
+def near_pairs(x, one, other, capsules, radii, boxes, reach, out):
+    """Fill `out` (n, 2) with which point of the cloth is within about `reach` of which solid; returns how many.
+
+    Points are the middles of `one` and `other`; capsules come first, then boxes, (B, 15): middle, half edges, axes.
+    """
+    count = 0
+    low, high = np.empty(3), np.empty(3)
+    for k in range(len(capsules) + len(boxes)):
+        for d in range(3):
+            if k < len(capsules):
+                a, b, far = capsules[k, 0, d], capsules[k, 1, d], radii[k] + reach
+                low[d], high[d] = min(a, b) - far, max(a, b) + far
+            else:
+                box = boxes[k - len(capsules)]
+                far = reach
+                for axis in range(3):
+                    far += abs(box[6 + 3 * d + axis]) * box[3 + axis]
+                low[d], high[d] = box[d] - far, box[d] + far
+        for s in range(len(one)):
+            i, j = one[s], other[s]
+            inside = True
+            for d in range(3):
+                place = 0.5 * (x[i, d] + x[j, d])
+                inside = inside and low[d] < place < high[d]
+            if inside:
+                out[count, 0], out[count, 1] = s, k
+                count += 1
+    return count
+
+
+@njit(inline="always")
+def _on_capsule(point, ends, speed, radius, contact):
+    """Normal and velocity of the surface into `contact`; returns the gap."""
+    along, square = 0.0, 1e-12
+    for d in range(3):
+        way = ends[1, d] - ends[0, d]
+        along += (point[d] - ends[0, d]) * way
+        square += way * way
+    t = min(max(along / square, 0.0), 1.0)
+    distance = 0.0
+    for d in range(3):
+        contact[NORMAL + d] = point[d] - ends[0, d] - t * (ends[1, d] - ends[0, d])
+        contact[SURFACE + d] = speed[0, d] + t * (speed[1, d] - speed[0, d])
+        distance += contact[NORMAL + d] ** 2
+    distance = np.sqrt(distance)
+    if distance < 1e-6:  # on the axis: out to where the front of a lying body is
+        contact[NORMAL], contact[NORMAL + 1], contact[NORMAL + 2] = 0.0, 0.0, 1.0
+    else:
+        for d in range(3):
+            contact[NORMAL + d] /= distance
+    return distance - radius
+
+
+@njit(inline="always")
+def _on_box(point, box, speed, contact):
+    """Normal and velocity of the surface into `contact`; returns the gap.  Edges are round."""
+    rounded = min(ROUND, box[3], box[4], box[5])
+    away, beyond, most, side = np.empty(3), 0.0, -np.inf, 0
+    for axis in range(3):
+        local = 0.0
+        for d in range(3):
+            local += box[6 + 3 * d + axis] * (point[d] - box[d])
+        over = abs(local) - box[3 + axis] + rounded
+        if over > most:
+            most, side = over, axis
+        away[axis] = np.copysign(max(over, 0.0), local)
+        beyond += away[axis] ** 2
+        if over <= 0.0:
+            away[axis] = np.copysign(1e-300, local)
+    gap = np.sqrt(beyond)
+    if beyond == 0.0:
+        sign = np.copysign(1.0, away[side])
+        away[:] = 0.0
+        away[side] = sign
+        gap = most
+    else:
+        away /= gap
+    for d in range(3):
+        contact[NORMAL + d] = box[6 + 3 * d] * away[0] + box[6 + 3 * d + 1] * away[1] + box[6 + 3 * d + 2] * away[2]
+    rx, ry, rz = point[0] - box[0], point[1] - box[1], point[2] - box[2]
+    contact[SURFACE] = speed[0] + speed[4] * rz - speed[5] * ry
+    contact[SURFACE + 1] = speed[1] + speed[5] * rx - speed[3] * rz
+    contact[SURFACE + 2] = speed[2] + speed[3] * ry - speed[4] * rx
+    return gap - rounded
+
+
+@njit()
+def find_contacts(
+    x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt, who, contacts
+):
+    """Fill `who` (n, 4) with both vertices, the solid and 0, and `contacts` (n, COLUMNS); returns how many."""
+    count = 0
+    point = np.empty(3)
+    for p in range(len(pairs)):
+        s, k = pairs[p, 0], pairs[p, 1]
+        i, j = one[s], other[s]
+        mass = loose[i] if i == j else 0.25 * (loose[i] + loose[j])
+        if mass == 0.0:
+            continue
+        for d in range(3):
+            point[d] = 0.5 * (x[i, d] + x[j, d])
+        contact = contacts[count]
+        if k < len(capsules):
+            gap = _on_capsule(point, capsules[k], speeds[k], radii[k], contact) - margin
+        else:
+            n = k - len(capsules)
+            gap = _on_box(point, boxes[n], box_speeds[n], contact) - margin
+        leaving = 0.0
+        for d in range(3):
+            leaving += contact[NORMAL + d] * (0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d])
+            contact[POINT + d] = point[d] - margin * contact[NORMAL + d]
+            contact[SUM + d] = 0.0
+        if gap + dt * leaving > NEAR:
+            continue
+        contact[FLOOR] = -gap / dt if gap > 0.0 else min(-PUSH * gap / dt, FASTEST)
+        contact[FRICTION], contact[MASS] = friction[k], 1.0 / mass
+        who[count, 0], who[count, 1], who[count, 2] = i, j, k
+        count += 1
+    return count
+
+
+@njit(inline="always")
+def _push(v, loose, impulses, i, j, change, contact, d):
+    """Give an impulse along axis `d` to the contact's vertices, and keep account of it."""
+    share = 1.0 if i == j else 0.5
+    v[i, d] += share * loose[i] * change
+    impulses[i, d] += share * change
+    if i != j:
+        v[j, d] += share * loose[j] * change
+        impulses[j, d] += share * change
+    contact[SUM + d] += change
+
+
+@njit()
+def part(v, loose, who, contacts, impulses):
+    """One round: change `v` so that no contact closes, with friction; impulses on vertices into `impulses` (V, 3)."""
+    for c in range(len(who)):
+        i, j, contact = who[c, 0], who[c, 1], contacts[c]
+        leaving, pressed = 0.0, 0.0
+        for d in range(3):
+            leaving += contact[NORMAL + d] * (0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d])
+            pressed += contact[NORMAL + d] * contact[SUM + d]
+        push = max(contact[MASS] * (contact[FLOOR] - leaving), -pressed)
+        pressed += push
+        size = 0.0
+        wanted = np.empty(3)  # friction in all, after this round
+        for d in range(3):
+            n = contact[NORMAL + d]
+            sliding = 0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d] - leaving * n
+            wanted[d] = contact[SUM + d] - (pressed - push) * n - contact[MASS] * sliding
+            size += wanted[d] ** 2
+        most = contact[FRICTION] * pressed
+        scale = most / np.sqrt(size) if size > most * most else 1.0
+        for d in range(3):
+            change = pressed * contact[NORMAL + d] + scale * wanted[d] - contact[SUM + d]
+            _push(v, loose, impulses, i, j, change, contact, d)
+
+
+@njit()
+def limit_stretch(x, v, loose, one, other, longest, dt, sums, impulses):
+    """One round: change `v` so that no edge gets longer than `longest` (E,); pulls in all are kept in `sums` (E,)."""
+    for e in range(len(one)):
+        i, j = one[e], other[e]
+        mass = loose[i] + loose[j]
+        if mass == 0.0:
+            continue
+        square = 0.0
+        for d in range(3):
+            square += (x[j, d] - x[i, d]) ** 2
+        if square < (0.9 * longest[e]) ** 2:
+            continue
+        length = np.sqrt(square)
+        growing = 0.0
+        for d in range(3):
+            growing += (x[j, d] - x[i, d]) / length * (v[j, d] - v[i, d])
+        spare = longest[e] - length
+        pull = max((growing - spare / dt * (1.0 if spare > 0.0 else PUSH)) / mass, -sums[e])
+        sums[e] += pull
+        for d in range(3):
+            change = pull * (x[j, d] - x[i, d]) / length
+            v[i, d] += loose[i] * change
+            v[j, d] -= loose[j] * change
+            impulses[i, d] += change
+            impulses[j, d] -= change
+
+
+@njit()
+def share_out(who, contacts, out):
+    """Add to `out` (n, 7) what cloth gives to each solid: impulse, its size, and the place of each weighted by that."""
+    for c in range(len(who)):
+        k, contact = who[c, 2], contacts[c]
+        size = np.sqrt(contact[SUM] ** 2 + contact[SUM + 1] ** 2 + contact[SUM + 2] ** 2)
+        out[k, 3] += size
+        for d in range(3):
+            out[k, d] -= contact[SUM + d]
+            out[k, 4 + d] += size * contact[POINT + d]
+
+
+@njit()
+def meet(
+    x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt,
+    edge_one, edge_other, longest, rounds, given,
+):  # fmt: skip
+    """Change `v` so that the cloth passes through nothing and is stretched no farther than it may be.
+
+    Args:
+        x: (V, 3) positions.
+        v: (V, 3) velocities that springs and weight would give.
+        loose: (V,) one over the mass, 0 of those that are held.
+        one: (P,) a vertex of each point that touches.
+        other: (P,) the other one of its edge, or the same again.
+        pairs: (n, 2) points and solids that are near each other.
+        capsules: (K, 2, 3) ends.
+        speeds: (K, 2, 3) of these.
+        radii: (K,).
+        boxes: (B, 15), see `Solids`.
+        box_speeds: (B, 6).
+        friction: (K + B,) between the cloth and each.
+        margin: that the cloth keeps.
+        dt: step.
+        edge_one: (E,) one end of each edge.
+        edge_other: (E,) the other.
+        longest: (E,) that it may get.
+        rounds: of impulses.
+        given: (K + B, 7), see `share_out`.
+
+    Returns:
+        (V, 3) impulse on each vertex.
+    """
+    who, contacts = np.empty((len(pairs) + 1, 3), np.int64), np.empty((len(pairs) + 1, COLUMNS))
+    count = find_contacts(
+        x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt, who, contacts
+    )
+    who, contacts = who[:count], contacts[:count]
+    sums, impulses = np.zeros(len(longest)), np.zeros((len(x), 3))
+    for _ in range(rounds):
+        limit_stretch(x, v, loose, edge_one, edge_other, longest, dt, sums, impulses)
+        part(v, loose, who, contacts, impulses)
+    share_out(who, contacts, given)
+    return impulses
