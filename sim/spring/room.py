@@ -8,12 +8,12 @@ vertices along and does not feel them: the load is measured and told (`SpringClo
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..bullet.cloth import ClothBody, refuse_unstable
-from ..bullet.soft_world import GRAVITY
+from ..bullet.soft_world import GRAVITY, SOLVER_ITERATIONS
 from ..bullet.units import ROOM
 from ..scene.gown import GownMesh
 from .sheet import Sheet
@@ -39,7 +39,9 @@ class SpringRoom:
         self.client: Any = direct_client()
         self.time_step, self.unit = time_step, ROOM
         self.client.setGravity(0.0, 0.0, -ROOM.force(GRAVITY))
-        self.client.setPhysicsEngineParameter(solverResidualThreshold=ROOM.residual)
+        self.client.setPhysicsEngineParameter(
+            numSolverIterations=SOLVER_ITERATIONS, solverResidualThreshold=ROOM.residual
+        )
         self.client.setTimeStep(ROOM.time(time_step))
         self.cloths: list[SpringCloth] = []
         self._solids: Solids | None = None
@@ -51,7 +53,8 @@ class SpringRoom:
             return
         if self._solids is None:
             self._solids = Solids(self.client, ROOM.per_second)
-        self._solids.read(self.time_step)
+        else:
+            self._solids.read(self.time_step)
         given = np.zeros((len(self._solids.friction), 7))
         for cloth in self.cloths:
             cloth.follow()
@@ -61,6 +64,13 @@ class SpringRoom:
     def close(self) -> None:
         """End the client."""
         self.client.disconnect()
+
+
+class _Pin(NamedTuple):
+    vertex: int
+    local: np.ndarray  # (3,) where it is held, in the holder's frame [m]
+    body: int
+    link: int
 
 
 class SpringCloth(ClothBody):
@@ -80,8 +90,9 @@ class SpringCloth(ClothBody):
         self.room, self.mesh = room, mesh
         self.body = len(room.cloths)
         self.sheet = Sheet(mesh, vertices, room.time_step)
-        self._pins: dict[int, tuple[int, int, int, np.ndarray]] = {}  # pin -> vertex, body, link, place there
-        self._pinned = 0
+        self._pins: dict[int, _Pin] = {}
+        self._pinned = 0  # pins so far
+        self._group()
         room.cloths.append(self)
 
     def place(self, vertices: np.ndarray) -> None:
@@ -99,19 +110,30 @@ class SpringCloth(ClothBody):
 
     def pin(self, ids: Iterable[int], body: int = -1, link: int = -1) -> list[int]:
         """Hold vertices to a link, or to the world, where they are now; returns the pins."""
-        ids, first = [int(k) for k in ids], self._pinned
+        held = [int(k) for k in ids]
+        self.sheet.hold(held)
         origin, turn = self._pose(body, link)
-        for k in ids:
-            self._pins[self._pinned] = (k, body, link, (self.sheet.x[k] - origin) @ turn)
-            self._pinned += 1
-        self.sheet.hold(ids)
-        return list(range(first, self._pinned))
+        local = (self.sheet.x[held] - origin) @ turn
+        pins = list(range(self._pinned, self._pinned + len(held)))
+        self._pinned += len(held)
+        for n, pin in enumerate(pins):
+            self._pins[pin] = _Pin(held[n], local[n], body, link)
+        self._group()
+        return pins
 
     def unpin(self, constraints: Iterable[int]) -> None:
         """Let pinned vertices go, but for those that something else holds too."""
-        gone = [self._pins.pop(pin)[0] for pin in constraints]
-        still = {vertex for vertex, *_ in self._pins.values()}
+        gone = [self._pins.pop(pin).vertex for pin in constraints]
+        still = {pin.vertex for pin in self._pins.values()}
         self.sheet.release(vertex for vertex in gone if vertex not in still)
+        self._group()
+
+    def _group(self) -> None:
+        """Sort the pins by what holds them."""
+        self._groups: dict[tuple[int, int], tuple[np.ndarray, np.ndarray]] = {}
+        for holder in {(pin.body, pin.link): None for pin in self._pins.values()}:
+            mine = [pin for pin in self._pins.values() if (pin.body, pin.link) == holder]
+            self._groups[holder] = (np.array([pin.vertex for pin in mine]), np.array([pin.local for pin in mine]))
 
     def load(self, held: Collection[int], vertices: np.ndarray) -> np.ndarray:
         """(3,) force that the cloth exerts on whatever holds the vertices `held` [N], of the last 10 ms."""
@@ -119,16 +141,9 @@ class SpringCloth(ClothBody):
 
     def follow(self) -> None:
         """Take held vertices along with what holds them."""
-        if not self._pins:
-            return
-        poses: dict[tuple[int, int], tuple[np.ndarray, np.ndarray]] = {}
-        places: dict[int, np.ndarray] = {}
-        for vertex, body, link, local in self._pins.values():
-            if (body, link) not in poses:
-                poses[body, link] = self._pose(body, link)
-            origin, turn = poses[body, link]
-            places[vertex] = origin + turn @ local
-        self.sheet.take(np.array([places[int(vertex)] for vertex in self.sheet.held]))
+        for holder, (vertices, local) in self._groups.items():
+            origin, turn = self._pose(*holder)
+            self.sheet.take(vertices, origin + local @ turn.T)
 
     def _pose(self, body: int, link: int) -> tuple[np.ndarray, np.ndarray]:
         if body < 0:
@@ -138,4 +153,4 @@ class SpringCloth(ClothBody):
             place, turn = client.getBasePositionAndOrientation(body)
         else:
             place, turn = client.getLinkState(body, link, computeForwardKinematics=1)[4:6]
-        return np.array(place), matrix(turn)
+        return np.array(place), matrix(*turn)

@@ -63,7 +63,7 @@ class Sheet:
         )
         self._one = np.repeat(each, np.diff(self.springs.start))
         self.gravity = np.array((0.0, 0.0, -GRAVITY))
-        self._held: dict[int, np.ndarray] = {}  # vertex -> where it is taken
+        self._held: set[int] = set()
         self.place(vertices)
         self._hold()
 
@@ -76,22 +76,20 @@ class Sheet:
 
     def hold(self, ids: Iterable[int]) -> None:
         """Hold vertices where they are."""
-        for k in ids:
-            self._held[int(k)] = self.x[k].copy()
-            self.load[k] = 0.0
+        ids = [int(k) for k in ids]
+        self._held.update(ids)
+        self.v[ids], self.load[ids] = 0.0, 0.0
         self._hold()
 
     def release(self, ids: Iterable[int]) -> None:
         """Let vertices go, as fast as they were moved."""
-        for k in ids:
-            self._held.pop(int(k), None)
+        self._held.difference_update(ids)
         self._hold()
 
     def _hold(self) -> None:
         """Make the system anew for who is held now."""
-        self._ids = np.array(sorted(self._held), dtype=np.int64)
         free = np.ones(len(self.x), bool)
-        free[self._ids] = False
+        free[list(self._held)] = False
         self._band: Band = factor(self._damping, free)
         self._loose = np.where(free, 1.0 / self.springs.mass, 0.0)
         one, other = self._one, self.springs.other
@@ -99,14 +97,9 @@ class Sheet:
         # springs from a free vertex to a held one
         self._rim = np.ascontiguousarray(np.vstack([np.r_[one[out], other[back]], np.r_[other[out], one[back]]]))
 
-    def take(self, places: np.ndarray) -> None:
-        """Where the held vertices are at the end of the next step, (H, 3) in the order of their numbers [m]."""
-        self.v[self._ids] = (places - self.x[self._ids]) / self.dt
-
-    @property
-    def held(self) -> np.ndarray:
-        """(H,) which vertices are held, in order."""
-        return self._ids
+    def take(self, ids: np.ndarray, places: np.ndarray) -> None:
+        """Have held vertices `ids` (n,) at `places` (n, 3) at the end of the next step [m]."""
+        self.v[ids] = (places - self.x[ids]) / self.dt
 
     def step(self, solids: Solids, given: np.ndarray) -> None:
         """Pass one step.

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from ..compiled import njit
+
 JUMP = 0.02  # farther than this in a step nothing moves: it was put somewhere else [m]
 
 
@@ -28,27 +30,19 @@ class Solids:
 
     def __init__(self, client: Any, per_second: float) -> None:
         self._client, self._per_second = client, per_second
-        self._count = -1
+        self._find()
         self.changed = True
-        self.read(1.0)
 
     def read(self, dt: float) -> None:
         """See where everything is, `dt` [s] after the last time."""
         self.changed = self._client.getNumBodies() != self._count
         if self.changed:
             self._find()
-        before = self.capsules
+            return
         places = self._places()
-        self.capsules = before.copy()
-        for k in self._moving_capsules:
-            place, turn = places[self._capsule_of[k]]
-            self.capsules[k] = place + self._local[k] @ turn.T
-        self.speeds = (self.capsules - before) / dt
-        self.speeds[np.abs(self.capsules - before).max(axis=(1, 2), initial=0.0) > JUMP] = 0.0
-        if self.changed:
-            self.speeds[:] = 0.0
-        for n in self._moving_boxes:
-            self._read_box(n, places[self._box_of[n]])
+        follow(places, self._local, self._place_of, dt, self.capsules, self.speeds)
+        for n, row in self._moving_boxes:
+            self._read_box(n, places[row, :3], matrix(*places[row, 3:]))
 
     def push(self, given: np.ndarray, dt: float) -> None:
         """Let what cloth gave to each (K + B, 7) act in the next step of `dt` [s], see `touching.share_out`."""
@@ -72,7 +66,7 @@ class Solids:
             for link in range(-1, c.getNumJoints(body)):
                 mass, friction = c.getDynamicsInfo(body, link)[:2]
                 for _, _, kind, size, _, place, turn in c.getCollisionShapeData(body, link):
-                    where, axes = np.array(place), matrix(turn)
+                    where, axes = np.array(place), matrix(*turn)
                     if kind in (c.GEOM_CAPSULE, c.GEOM_SPHERE):
                         half = size[0] / 2 if kind == c.GEOM_CAPSULE else 0.0
                         ends = where + np.array((-half, half))[:, None] * axes[:, 2]
@@ -83,31 +77,31 @@ class Solids:
                         own[1].append(friction)
                 if mass > 0.0:
                     moving.add((body, link))
-        self._capsule_of, self._box_of = [each[0] for each in capsules], [each[0] for each in boxes]
+        self._of = [each[0] for each in (*capsules, *boxes)]
         self._local = np.array([ends for _, ends, _ in capsules]).reshape(-1, 2, 3)
         self._box_local = [each[1:] for each in boxes]
         self.radii = np.array([radius for *_, radius in capsules])
         self.friction = np.array(own[0] + own[1])
-        self._moving_capsules = [k for k, of in enumerate(self._capsule_of) if of in moving]
-        self._moving_boxes = [n for n, of in enumerate(self._box_of) if of in moving]
-        self._of = [*self._capsule_of, *self._box_of]
         self._pushed = [row for row, of in enumerate(self._of) if of in moving]
         self._links: dict[int, list[int]] = {}
-        for body, link in dict.fromkeys(of for of in self._of if of in moving):
+        for body, link in dict.fromkeys(self._of[row] for row in self._pushed):
             self._links.setdefault(body, []).append(link)
-        self.capsules = np.empty_like(self._local)
-        for k, of in enumerate(self._capsule_of):
+        rows = {of: n for n, of in enumerate((body, link) for body, links in self._links.items() for link in links)}
+        self._place_of = np.array([rows.get(of, -1) for of in self._of[: len(capsules)]], np.int64)
+        self._moving_boxes = [(n, rows[of]) for n, of in enumerate(self._of[len(capsules) :]) if of in rows]
+        self.capsules, self.speeds = np.empty_like(self._local), np.zeros_like(self._local)
+        for k, of in enumerate(self._of[: len(capsules)]):
             place, turn = self._place(*of)
-            self.capsules[k] = place + self._local[k] @ turn.T
+            self.capsules[k] = place + self._local[k] @ matrix(*turn).T
         self.boxes, self.box_speeds = np.empty((len(boxes), 15)), np.zeros((len(boxes), 6))
-        for n, of in enumerate(self._box_of):
-            self._read_box(n, self._place(*of))
+        for n, of in enumerate(self._of[len(capsules) :]):
+            place, turn = self._place(*of)
+            self._read_box(n, np.array(place), matrix(*turn))
 
-    def _read_box(self, n: int, place: tuple[np.ndarray, np.ndarray]) -> None:
-        where, turn = place
+    def _read_box(self, n: int, where: np.ndarray, turn: np.ndarray) -> None:
         local, half, axes = self._box_local[n]
         self.boxes[n] = np.concatenate([where + turn @ local, half, (turn @ axes).ravel()])
-        body, link = self._box_of[n]
+        body, link = self._of[len(self.radii) + n]
         if link < 0:
             speed, turning = self._client.getBaseVelocity(body)
             offset = np.cross(turning, turn @ local)
@@ -115,31 +109,27 @@ class Solids:
 
     # -- where things are ----------------------------------------------------------------------------------
 
-    def _place(self, body: int, link: int) -> tuple[np.ndarray, np.ndarray]:
+    def _place(self, body: int, link: int) -> tuple[Any, Any]:
+        """Centre of mass and quaternion."""
         c = self._client
         if link < 0:
-            place, turn = c.getBasePositionAndOrientation(body)
-        else:
-            place, turn = c.getLinkState(body, link, computeForwardKinematics=1)[:2]
-        return np.array(place), matrix(turn)
+            return c.getBasePositionAndOrientation(body)
+        return c.getLinkState(body, link, computeForwardKinematics=1)[:2]
 
-    def _places(self) -> dict[tuple[int, int], tuple[np.ndarray, np.ndarray]]:
-        """Centre of mass and axes of every body and link that moves."""
-        out = {}
+    def _places(self) -> np.ndarray:
+        """(n, 7) centre of mass and quaternion of every body and link that moves, as `_links` has them."""
+        out: list[tuple[Any, Any]] = []
         for body, links in self._links.items():
-            joined = [link for link in links if link >= 0]
-            if len(joined) < len(links):
-                out[body, -1] = self._place(body, -1)
-            if joined:
-                states = self._client.getLinkStates(body, joined, computeForwardKinematics=1)
-                for link, state in zip(joined, states, strict=True):
-                    out[body, link] = (np.array(state[0]), matrix(state[1]))
-        return out
+            if -1 in links:
+                out += [self._place(body, link) for link in links]
+            else:
+                out += [state[:2] for state in self._client.getLinkStates(body, links, computeForwardKinematics=1)]
+        return np.array([(*place, *turn) for place, turn in out]).reshape(-1, 7)
 
 
-def matrix(turn: tuple[float, float, float, float]) -> np.ndarray:
-    """Rotation (3, 3) of a quaternion x, y, z, w."""
-    x, y, z, w = turn
+@njit()
+def matrix(x: float, y: float, z: float, w: float) -> np.ndarray:
+    """Rotation (3, 3) of a quaternion."""
     return np.array(
         (
             (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
@@ -147,3 +137,33 @@ def matrix(turn: tuple[float, float, float, float]) -> np.ndarray:
             (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
         )
     )
+
+
+@njit()
+def follow(
+    places: np.ndarray, local: np.ndarray, place_of: np.ndarray, dt: float, ends: np.ndarray, speeds: np.ndarray
+) -> None:
+    """Bring `ends` (K, 2, 3) of capsules to where their bodies have moved in `dt` [s], and tell their `speeds`.
+
+    Args:
+        places: (n, 7) position and quaternion of bodies.
+        local: (K, 2, 3) ends in their frames.
+        place_of: (K,) which of them, -1 for what stands still.
+        dt: time since the last call.
+        ends: of the axes in the map.
+        speeds: of these ends.
+    """
+    for k in range(len(ends)):
+        if place_of[k] < 0:
+            continue
+        place = places[place_of[k]]
+        turn = matrix(place[3], place[4], place[5], place[6])
+        far = 0.0
+        for e in range(2):
+            for d in range(3):
+                now = place[d] + turn[d, 0] * local[k, e, 0] + turn[d, 1] * local[k, e, 1] + turn[d, 2] * local[k, e, 2]
+                speeds[k, e, d] = (now - ends[k, e, d]) / dt
+                far = max(far, abs(now - ends[k, e, d]))
+                ends[k, e, d] = now
+        if far > JUMP:
+            speeds[k] = 0.0

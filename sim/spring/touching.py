@@ -14,6 +14,7 @@ from ..compiled import njit
 PUSH = 0.2  # share of a depth that one step takes back
 FASTEST = 0.5  # with which what is too deep comes out [m/s]
 NEAR = 1e-3  # what will be farther apart than this after the step does not touch [m]
+TAUT = 0.9  # share of its longest at which an edge is looked at
 ROUND = 0.03  # radius of a box's edges, which points 2.75 cm apart must not catch at [m]
 NORMAL, FLOOR, SURFACE, POINT, FRICTION, MASS, SUM = 0, 3, 4, 7, 10, 11, 12  # columns of a contact
 COLUMNS = 15
@@ -74,10 +75,13 @@ def _on_capsule(point, ends, speed, radius, contact):
 
 
 @njit(inline="always")
-def _on_box(point, box, speed, contact):
-    """Normal and velocity of the surface into `contact`; returns the gap.  Edges are round."""
+def _on_box(point, box, speed, away, contact):
+    """Normal and velocity of the surface into `contact`; returns the gap, and whether the surface is flat there.
+
+    Edges are round; `away` (3,) is room to work in.
+    """
     rounded = min(ROUND, box[3], box[4], box[5])
-    away, beyond, most, side = np.empty(3), 0.0, -np.inf, 0
+    beyond, most, side, outside = 0.0, -1e9, 0, 0
     for axis in range(3):
         local = 0.0
         for d in range(3):
@@ -85,25 +89,25 @@ def _on_box(point, box, speed, contact):
         over = abs(local) - box[3 + axis] + rounded
         if over > most:
             most, side = over, axis
-        away[axis] = np.copysign(max(over, 0.0), local)
-        beyond += away[axis] ** 2
-        if over <= 0.0:
-            away[axis] = np.copysign(1e-300, local)
-    gap = np.sqrt(beyond)
-    if beyond == 0.0:
-        sign = np.copysign(1.0, away[side])
-        away[:] = 0.0
-        away[side] = sign
+        if over > 0.0:
+            outside += 1
+            beyond += over * over
+        away[axis] = np.copysign(max(over, 1e-12), local)
+    if outside < 2:
+        for axis in range(3):
+            away[axis] = np.copysign(1.0, away[axis]) if axis == side else 0.0
         gap = most
     else:
-        away /= gap
+        gap = np.sqrt(beyond)
+        for axis in range(3):
+            away[axis] /= gap
     for d in range(3):
-        contact[NORMAL + d] = box[6 + 3 * d] * away[0] + box[6 + 3 * d + 1] * away[1] + box[6 + 3 * d + 2] * away[2]
+        contact[NORMAL + d] = box[6 + 3 * d] * away[0] + box[7 + 3 * d] * away[1] + box[8 + 3 * d] * away[2]
     rx, ry, rz = point[0] - box[0], point[1] - box[1], point[2] - box[2]
     contact[SURFACE] = speed[0] + speed[4] * rz - speed[5] * ry
     contact[SURFACE + 1] = speed[1] + speed[5] * rx - speed[3] * rz
     contact[SURFACE + 2] = speed[2] + speed[3] * ry - speed[4] * rx
-    return gap - rounded
+    return gap - rounded, outside < 2
 
 
 @njit()
@@ -112,7 +116,7 @@ def find_contacts(
 ):
     """Fill `who` (n, 4) with both vertices, the solid and 0, and `contacts` (n, COLUMNS); returns how many."""
     count = 0
-    point = np.empty(3)
+    point, away = np.empty(3), np.empty(3)
     for p in range(len(pairs)):
         s, k = pairs[p, 0], pairs[p, 1]
         i, j = one[s], other[s]
@@ -126,7 +130,10 @@ def find_contacts(
             gap = _on_capsule(point, capsules[k], speeds[k], radii[k], contact) - margin
         else:
             n = k - len(capsules)
-            gap = _on_box(point, boxes[n], box_speeds[n], contact) - margin
+            gap, flat = _on_box(point, boxes[n], box_speeds[n], away, contact)
+            gap -= margin
+            if flat and i != j:  # the middle of an edge is no lower than its ends
+                continue
         leaving = 0.0
         for d in range(3):
             leaving += contact[NORMAL + d] * (0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d])
@@ -141,63 +148,69 @@ def find_contacts(
     return count
 
 
-@njit(inline="always")
-def _push(v, loose, impulses, i, j, change, contact, d):
-    """Give an impulse along axis `d` to the contact's vertices, and keep account of it."""
-    share = 1.0 if i == j else 0.5
-    v[i, d] += share * loose[i] * change
-    impulses[i, d] += share * change
-    if i != j:
-        v[j, d] += share * loose[j] * change
-        impulses[j, d] += share * change
-    contact[SUM + d] += change
-
-
 @njit()
 def part(v, loose, who, contacts, impulses):
     """One round: change `v` so that no contact closes, with friction; impulses on vertices into `impulses` (V, 3)."""
+    wanted = np.empty(3)
     for c in range(len(who)):
         i, j, contact = who[c, 0], who[c, 1], contacts[c]
         leaving, pressed = 0.0, 0.0
         for d in range(3):
-            leaving += contact[NORMAL + d] * (0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d])
+            wanted[d] = 0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d]
+            leaving += contact[NORMAL + d] * wanted[d]
             pressed += contact[NORMAL + d] * contact[SUM + d]
-        push = max(contact[MASS] * (contact[FLOOR] - leaving), -pressed)
-        pressed += push
+        if pressed == 0.0 and leaving >= contact[FLOOR]:
+            continue
+        before = pressed
+        pressed = max(pressed + contact[MASS] * (contact[FLOOR] - leaving), 0.0)
         size = 0.0
-        wanted = np.empty(3)  # friction in all, after this round
-        for d in range(3):
+        for d in range(3):  # friction in all, after this round
             n = contact[NORMAL + d]
-            sliding = 0.5 * (v[i, d] + v[j, d]) - contact[SURFACE + d] - leaving * n
-            wanted[d] = contact[SUM + d] - (pressed - push) * n - contact[MASS] * sliding
+            wanted[d] = contact[SUM + d] - before * n - contact[MASS] * (wanted[d] - leaving * n)
             size += wanted[d] ** 2
         most = contact[FRICTION] * pressed
         scale = most / np.sqrt(size) if size > most * most else 1.0
+        share = 1.0 if i == j else 0.5
         for d in range(3):
             change = pressed * contact[NORMAL + d] + scale * wanted[d] - contact[SUM + d]
-            _push(v, loose, impulses, i, j, change, contact, d)
+            contact[SUM + d] += change
+            change *= share
+            v[i, d] += loose[i] * change
+            impulses[i, d] += change
+            if i != j:
+                v[j, d] += loose[j] * change
+                impulses[j, d] += change
 
 
 @njit()
-def limit_stretch(x, v, loose, one, other, longest, dt, sums, impulses):
-    """One round: change `v` so that no edge gets longer than `longest` (E,); pulls in all are kept in `sums` (E,)."""
+def find_taut(x, loose, one, other, longest):
+    """(T,) edges that are nearly as long as they may get."""
+    out, count = np.empty(len(one), np.int64), 0
     for e in range(len(one)):
         i, j = one[e], other[e]
-        mass = loose[i] + loose[j]
-        if mass == 0.0:
-            continue
-        square = 0.0
+        square = (x[j, 0] - x[i, 0]) ** 2 + (x[j, 1] - x[i, 1]) ** 2 + (x[j, 2] - x[i, 2]) ** 2
+        if square > (TAUT * longest[e]) ** 2 and loose[i] + loose[j] > 0.0:
+            out[count] = e
+            count += 1
+    return out[:count]
+
+
+@njit()
+def limit_stretch(x, v, loose, one, other, longest, taut, dt, sums, impulses):
+    """One round: change `v` so that no edge of `taut` (T,) gets longer than `longest`; pulls so far are in `sums`."""
+    for n in range(len(taut)):
+        e = taut[n]
+        i, j = one[e], other[e]
+        square, growing = 0.0, 0.0
         for d in range(3):
-            square += (x[j, d] - x[i, d]) ** 2
-        if square < (0.9 * longest[e]) ** 2:
-            continue
+            way = x[j, d] - x[i, d]
+            square += way * way
+            growing += way * (v[j, d] - v[i, d])
         length = np.sqrt(square)
-        growing = 0.0
-        for d in range(3):
-            growing += (x[j, d] - x[i, d]) / length * (v[j, d] - v[i, d])
         spare = longest[e] - length
-        pull = max((growing - spare / dt * (1.0 if spare > 0.0 else PUSH)) / mass, -sums[e])
-        sums[e] += pull
+        pull = growing / length - spare / dt * (1.0 if spare > 0.0 else PUSH)
+        pull = max(pull / (loose[i] + loose[j]), -sums[n])
+        sums[n] += pull
         for d in range(3):
             change = pull * (x[j, d] - x[i, d]) / length
             v[i, d] += loose[i] * change
@@ -254,9 +267,10 @@ def meet(
         x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt, who, contacts
     )
     who, contacts = who[:count], contacts[:count]
-    sums, impulses = np.zeros(len(longest)), np.zeros((len(x), 3))
+    taut = find_taut(x, loose, edge_one, edge_other, longest)
+    sums, impulses = np.zeros(len(taut)), np.zeros((len(x), 3))
     for _ in range(rounds):
-        limit_stretch(x, v, loose, edge_one, edge_other, longest, dt, sums, impulses)
+        limit_stretch(x, v, loose, edge_one, edge_other, longest, taut, dt, sums, impulses)
         part(v, loose, who, contacts, impulses)
     share_out(who, contacts, given)
     return impulses

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 import scipy.sparse as sparse
-from caretree.sim.spring.banded_cholesky import factor, solve
 from caretree.learning.physics.engine.fall import cut_of, springs_of
+from caretree.sim.spring.banded_cholesky import factor, solve
 from caretree.sim.spring.mass_spring import damped, laplacian
 
 

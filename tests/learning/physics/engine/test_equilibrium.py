@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from caretree.learning.physics.engine.equilibrium import NEARER
 from caretree.learning.physics.engine.fall import FRAMES, RATE, cut_of, rest, springs_of, steps_per_frame
-from caretree.sim.spring.mass_spring import advance
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.scene.gown import GOWNS
+from caretree.sim.spring.mass_spring import advance
 
 
 def test_the_static_equilibrium_is_at_rest(small_gown):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from caretree.learning.physics.engine.bullet import bullet_fall
 from caretree.learning.physics.engine.fall import cut_of, fall, rest, springs_of
-from caretree.sim.spring.mass_spring import advance, weave
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.scene.gown import GOWNS, build_gown, edge_counts
+from caretree.sim.spring.mass_spring import advance, weave
 
 
 @pytest.mark.parametrize(
