@@ -112,7 +112,9 @@ def weave(mesh: GownMesh) -> Weave:
 
 
 @njit(fastmath=True)
-def pull(x, start, other, stiffness, rest, force):
+def pull(
+    x: np.ndarray, start: np.ndarray, other: np.ndarray, stiffness: np.ndarray, rest: np.ndarray, force: np.ndarray
+) -> None:
     """Force of the springs on every vertex [N], into `force` (V, 3)."""
     force[:] = 0.0
     for i in range(x.shape[0]):

@@ -31,6 +31,7 @@ class SpringRoom:
         time_step: of the physics [s].
         unit: converts between SI and the client's unit of time.
         cloths: that are in the room.
+        numbered: how many there have been.
     """
 
     def __init__(self, time_step: float) -> None:
@@ -44,6 +45,7 @@ class SpringRoom:
         )
         self.client.setTimeStep(ROOM.time(time_step))
         self.cloths: list[SpringCloth] = []
+        self.numbered = 0
         self._solids: Solids | None = None
 
     def step(self) -> None:
@@ -88,7 +90,7 @@ class SpringCloth(ClothBody):
     def __init__(self, room: SpringRoom, mesh: GownMesh, vertices: np.ndarray) -> None:
         refuse_unstable(mesh, room.time_step)
         self.room, self.mesh = room, mesh
-        self.body = len(room.cloths)
+        self.body, room.numbered = room.numbered, room.numbered + 1
         self.sheet = Sheet(mesh, vertices, room.time_step)
         self._pins: dict[int, _Pin] = {}
         self._pinned = 0  # pins so far

@@ -41,6 +41,7 @@ class Sheet:
     Attributes:
         x: (V, 3) positions [m].
         v: (V, 3) velocities [m/s].
+        held: vertices that are held.
         load: (V, 3) force of the cloth on whatever holds a vertex [N]; of free vertices nothing is meant.
     """
 
@@ -53,7 +54,7 @@ class Sheet:
         edges = np.array(sorted(edge_counts(mesh.sewn)))
         self._edges = np.ascontiguousarray(edges.T)
         lengths = np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1)
-        self._longest = LONGEST * lengths
+        self._longest, self._pulls = LONGEST * lengths, np.zeros(len(edges))
         seen = np.array(sorted(edge_counts(mesh.faces)))  # stays are within the cloth, no part of its surface
         each = np.arange(len(mesh.vertices))
         self._points = np.ascontiguousarray(np.vstack([np.column_stack([each, each]), seen]).T)
@@ -63,7 +64,7 @@ class Sheet:
         )
         self._one = np.repeat(each, np.diff(self.springs.start))
         self.gravity = np.array((0.0, 0.0, -GRAVITY))
-        self._held: set[int] = set()
+        self.held: set[int] = set()
         self.place(vertices)
         self._hold()
 
@@ -72,24 +73,25 @@ class Sheet:
         self.x = np.array(vertices, float)
         self.v = np.zeros_like(self.x)
         self.load = np.zeros_like(self.x)
+        self._pulls[:] = 0.0
         self._looked = 0
 
     def hold(self, ids: Iterable[int]) -> None:
         """Hold vertices where they are."""
         ids = [int(k) for k in ids]
-        self._held.update(ids)
+        self.held.update(ids)
         self.v[ids], self.load[ids] = 0.0, 0.0
         self._hold()
 
     def release(self, ids: Iterable[int]) -> None:
         """Let vertices go, as fast as they were moved."""
-        self._held.difference_update(ids)
+        self.held.difference_update(ids)
         self._hold()
 
     def _hold(self) -> None:
         """Make the system anew for who is held now."""
         free = np.ones(len(self.x), bool)
-        free[list(self._held)] = False
+        free[list(self.held)] = False
         self._band: Band = factor(self._damping, free)
         self._loose = np.where(free, 1.0 / self.springs.mass, 0.0)
         one, other = self._one, self.springs.other
@@ -106,7 +108,7 @@ class Sheet:
 
         Args:
             solids: what the cloth meets.
-            given: (n, 7) what cloth gives to each of them (`touching.share_out`); this cloth's is added.
+            given: (n, 7) what cloth gives to each of them (`touching._share_out`); this cloth's is added.
         """
         if self._looked % LOOK == 0 or solids.changed:
             self._pairs = self._near(solids)
@@ -119,7 +121,7 @@ class Sheet:
         impulses = meet(
             *(self.x, self.v, self._loose, *self._points, self._pairs, solids.capsules, solids.speeds, solids.radii),
             *(solids.boxes, solids.box_speeds, self.friction * solids.friction, MARGIN, self.dt),
-            *(*self._edges, self._longest, ROUNDS, given),
+            *(*self._edges, self._longest, self._pulls, ROUNDS, given),
         )
         self.load += self.dt / FELT * (force + impulses / self.dt - self.load)
         self.x += self.dt * self.v

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compiled import njit
 
 JUMP = 0.02  # farther than this in a step nothing moves: it was put somewhere else [m]
+
+
+Link = tuple[int, int]  # body and link, -1 for its base
+
+
+class _Shape(NamedTuple):
+    of: Link
+    friction: float
+    place: np.ndarray  # (3,) in the frame of the link's centre of mass [m]
+    axes: np.ndarray  # (3, 3) in that frame
+    size: np.ndarray  # length of the axis and radius, or three edges [m]
 
 
 class Solids:
@@ -45,7 +56,7 @@ class Solids:
             self._read_box(n, places[row, :3], matrix(*places[row, 3:]))
 
     def push(self, given: np.ndarray, dt: float) -> None:
-        """Let what cloth gave to each (K + B, 7) act in the next step of `dt` [s], see `touching.share_out`."""
+        """Let what cloth gave to each (K + B, 7) act in the next step of `dt` [s], see `touching._share_out`."""
         c, scale = self._client, 1.0 / dt / self._per_second**2
         for row in self._pushed:
             if given[row, 3] > 0.0:
@@ -56,52 +67,54 @@ class Solids:
     # -- finding -------------------------------------------------------------------------------------------
 
     def _find(self) -> None:
+        """List all shapes anew; what moves is read at every step from then on."""
         c = self._client
         self._count = c.getNumBodies()
-        capsules: list[tuple[tuple[int, int], np.ndarray, float]] = []
-        boxes: list[tuple[tuple[int, int], np.ndarray, np.ndarray, np.ndarray]] = []
-        own: list[list[float]] = [[], []]
-        moving: set[tuple[int, int]] = set()
+        capsules: list[_Shape] = []
+        boxes: list[_Shape] = []
+        moving: set[Link] = set()
         for body in (c.getBodyUniqueId(n) for n in range(self._count)):
             for link in range(-1, c.getNumJoints(body)):
                 mass, friction = c.getDynamicsInfo(body, link)[:2]
-                for _, _, kind, size, _, place, turn in c.getCollisionShapeData(body, link):
-                    where, axes = np.array(place), matrix(*turn)
-                    if kind in (c.GEOM_CAPSULE, c.GEOM_SPHERE):
-                        half = size[0] / 2 if kind == c.GEOM_CAPSULE else 0.0
-                        ends = where + np.array((-half, half))[:, None] * axes[:, 2]
-                        capsules.append(((body, link), ends, size[1] if kind == c.GEOM_CAPSULE else size[0]))
-                        own[0].append(friction)
-                    elif kind == c.GEOM_BOX:
-                        boxes.append(((body, link), where, np.array(size) / 2, axes))
-                        own[1].append(friction)
                 if mass > 0.0:
                     moving.add((body, link))
-        self._of = [each[0] for each in (*capsules, *boxes)]
-        self._local = np.array([ends for _, ends, _ in capsules]).reshape(-1, 2, 3)
-        self._box_local = [each[1:] for each in boxes]
-        self.radii = np.array([radius for *_, radius in capsules])
-        self.friction = np.array(own[0] + own[1])
+                for _, _, kind, size, _, place, turn in c.getCollisionShapeData(body, link):
+                    shape = _Shape((body, link), friction, np.array(place), matrix(*turn), np.array(size))
+                    if kind == c.GEOM_BOX:
+                        boxes.append(shape)
+                    elif kind in (c.GEOM_CAPSULE, c.GEOM_SPHERE):
+                        ball = kind == c.GEOM_SPHERE
+                        capsules.append(shape._replace(size=np.array((0.0, size[0])) if ball else shape.size))
+        self._of = [shape.of for shape in (*capsules, *boxes)]
+        self.friction = np.array([shape.friction for shape in (*capsules, *boxes)])
         self._pushed = [row for row, of in enumerate(self._of) if of in moving]
         self._links: dict[int, list[int]] = {}
         for body, link in dict.fromkeys(self._of[row] for row in self._pushed):
             self._links.setdefault(body, []).append(link)
+        self._place_all(capsules, boxes)
+
+    def _place_all(self, capsules: list[_Shape], boxes: list[_Shape]) -> None:
         rows = {of: n for n, of in enumerate((body, link) for body, links in self._links.items() for link in links)}
-        self._place_of = np.array([rows.get(of, -1) for of in self._of[: len(capsules)]], np.int64)
-        self._moving_boxes = [(n, rows[of]) for n, of in enumerate(self._of[len(capsules) :]) if of in rows]
-        self.capsules, self.speeds = np.empty_like(self._local), np.zeros_like(self._local)
-        for k, of in enumerate(self._of[: len(capsules)]):
-            place, turn = self._place(*of)
+        count = len(capsules)
+        self._place_of = np.array([rows.get(shape.of, -1) for shape in capsules], np.int64)
+        self._moving_boxes = [(n, rows[shape.of]) for n, shape in enumerate(boxes) if shape.of in rows]
+        self.radii = np.array([shape.size[1] for shape in capsules])
+        self._local = np.empty((count, 2, 3))
+        self.capsules, self.speeds = np.empty((count, 2, 3)), np.zeros((count, 2, 3))
+        for k, shape in enumerate(capsules):
+            half = shape.size[0] / 2 * shape.axes[:, 2]
+            self._local[k] = shape.place - half, shape.place + half
+            place, turn = self._place(*shape.of)
             self.capsules[k] = place + self._local[k] @ matrix(*turn).T
+        self._boxes = boxes
         self.boxes, self.box_speeds = np.empty((len(boxes), 15)), np.zeros((len(boxes), 6))
-        for n, of in enumerate(self._of[len(capsules) :]):
-            place, turn = self._place(*of)
+        for n, shape in enumerate(boxes):
+            place, turn = self._place(*shape.of)
             self._read_box(n, np.array(place), matrix(*turn))
 
     def _read_box(self, n: int, where: np.ndarray, turn: np.ndarray) -> None:
-        local, half, axes = self._box_local[n]
-        self.boxes[n] = np.concatenate([where + turn @ local, half, (turn @ axes).ravel()])
-        body, link = self._of[len(self.radii) + n]
+        (body, link), _, local, axes, size = self._boxes[n]
+        self.boxes[n] = np.concatenate([where + turn @ local, size / 2, (turn @ axes).ravel()])
         if link < 0:
             speed, turning = self._client.getBaseVelocity(body)
             offset = np.cross(turning, turn @ local)

@@ -21,7 +21,16 @@ COLUMNS = 15
 
 
 @njit()
-def near_pairs(x, one, other, capsules, radii, boxes, reach, out):
+def near_pairs(
+    x: np.ndarray,
+    one: np.ndarray,
+    other: np.ndarray,
+    capsules: np.ndarray,
+    radii: np.ndarray,
+    boxes: np.ndarray,
+    reach: float,
+    out: np.ndarray,
+) -> int:
     """Fill `out` (n, 2) with which point of the cloth is within about `reach` of which solid; returns how many.
 
     Points are the middles of `one` and `other`; capsules come first, then boxes, (B, 15): middle, half edges, axes.
@@ -111,7 +120,7 @@ def _on_box(point, box, speed, away, contact):
 
 
 @njit()
-def find_contacts(
+def _find_contacts(
     x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt, who, contacts
 ):
     """Fill `who` (n, 4) with both vertices, the solid and 0, and `contacts` (n, COLUMNS); returns how many."""
@@ -149,7 +158,7 @@ def find_contacts(
 
 
 @njit()
-def part(v, loose, who, contacts, impulses):
+def _part(v, loose, who, contacts, impulses):
     """One round: change `v` so that no contact closes, with friction; impulses on vertices into `impulses` (V, 3)."""
     wanted = np.empty(3)
     for c in range(len(who)):
@@ -182,9 +191,20 @@ def part(v, loose, who, contacts, impulses):
                 impulses[j, d] += change
 
 
+@njit(inline="always")
+def _draw(x, v, loose, i, j, pull, length, impulses):
+    """Draw both ends of an edge together with the impulse `pull`."""
+    for d in range(3):
+        change = pull * (x[j, d] - x[i, d]) / length
+        v[i, d] += loose[i] * change
+        v[j, d] -= loose[j] * change
+        impulses[i, d] += change
+        impulses[j, d] -= change
+
+
 @njit()
-def find_taut(x, loose, one, other, longest):
-    """(T,) edges that are nearly as long as they may get."""
+def _find_taut(x, v, loose, one, other, longest, pulls, impulses):
+    """(T,) edges that are nearly as long as they may get; they begin with the last step's `pulls` (E,)."""
     out, count = np.empty(len(one), np.int64), 0
     for e in range(len(one)):
         i, j = one[e], other[e]
@@ -192,12 +212,15 @@ def find_taut(x, loose, one, other, longest):
         if square > (TAUT * longest[e]) ** 2 and loose[i] + loose[j] > 0.0:
             out[count] = e
             count += 1
+            _draw(x, v, loose, i, j, pulls[e], np.sqrt(square), impulses)
+        else:
+            pulls[e] = 0.0
     return out[:count]
 
 
 @njit()
-def limit_stretch(x, v, loose, one, other, longest, taut, dt, sums, impulses):
-    """One round: change `v` so that no edge of `taut` (T,) gets longer than `longest`; pulls so far are in `sums`."""
+def _limit_stretch(x, v, loose, one, other, longest, taut, dt, pulls, impulses):
+    """One round: change `v` so that no edge of `taut` (T,) gets longer than `longest`; `pulls` are its impulses."""
     for n in range(len(taut)):
         e = taut[n]
         i, j = one[e], other[e]
@@ -209,18 +232,13 @@ def limit_stretch(x, v, loose, one, other, longest, taut, dt, sums, impulses):
         length = np.sqrt(square)
         spare = longest[e] - length
         pull = growing / length - spare / dt * (1.0 if spare > 0.0 else PUSH)
-        pull = max(pull / (loose[i] + loose[j]), -sums[n])
-        sums[n] += pull
-        for d in range(3):
-            change = pull * (x[j, d] - x[i, d]) / length
-            v[i, d] += loose[i] * change
-            v[j, d] -= loose[j] * change
-            impulses[i, d] += change
-            impulses[j, d] -= change
+        pull = max(pull / (loose[i] + loose[j]), -pulls[e])
+        pulls[e] += pull
+        _draw(x, v, loose, i, j, pull, length, impulses)
 
 
 @njit()
-def share_out(who, contacts, out):
+def _share_out(who, contacts, out):
     """Add to `out` (n, 7) what cloth gives to each solid: impulse, its size, and the place of each weighted by that."""
     for c in range(len(who)):
         k, contact = who[c, 2], contacts[c]
@@ -233,9 +251,27 @@ def share_out(who, contacts, out):
 
 @njit()
 def meet(
-    x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt,
-    edge_one, edge_other, longest, rounds, given,
-):  # fmt: skip
+    x: np.ndarray,
+    v: np.ndarray,
+    loose: np.ndarray,
+    one: np.ndarray,
+    other: np.ndarray,
+    pairs: np.ndarray,
+    capsules: np.ndarray,
+    speeds: np.ndarray,
+    radii: np.ndarray,
+    boxes: np.ndarray,
+    box_speeds: np.ndarray,
+    friction: np.ndarray,
+    margin: float,
+    dt: float,
+    edge_one: np.ndarray,
+    edge_other: np.ndarray,
+    longest: np.ndarray,
+    pulls: np.ndarray,
+    rounds: int,
+    given: np.ndarray,
+) -> np.ndarray:
     """Change `v` so that the cloth passes through nothing and is stretched no farther than it may be.
 
     Args:
@@ -256,21 +292,22 @@ def meet(
         edge_one: (E,) one end of each edge.
         edge_other: (E,) the other.
         longest: (E,) that it may get.
+        pulls: (E,) impulses that keep them so, of the last step; of this one afterwards.
         rounds: of impulses.
-        given: (K + B, 7), see `share_out`.
+        given: (K + B, 7), see `_share_out`.
 
     Returns:
         (V, 3) impulse on each vertex.
     """
     who, contacts = np.empty((len(pairs) + 1, 3), np.int64), np.empty((len(pairs) + 1, COLUMNS))
-    count = find_contacts(
+    count = _find_contacts(
         x, v, loose, one, other, pairs, capsules, speeds, radii, boxes, box_speeds, friction, margin, dt, who, contacts
     )
     who, contacts = who[:count], contacts[:count]
-    taut = find_taut(x, loose, edge_one, edge_other, longest)
-    sums, impulses = np.zeros(len(taut)), np.zeros((len(x), 3))
+    impulses = np.zeros((len(x), 3))
+    taut = _find_taut(x, v, loose, edge_one, edge_other, longest, pulls, impulses)
     for _ in range(rounds):
-        limit_stretch(x, v, loose, edge_one, edge_other, longest, taut, dt, sums, impulses)
-        part(v, loose, who, contacts, impulses)
-    share_out(who, contacts, given)
+        _limit_stretch(x, v, loose, edge_one, edge_other, longest, taut, dt, pulls, impulses)
+        _part(v, loose, who, contacts, impulses)
+    _share_out(who, contacts, given)
     return impulses

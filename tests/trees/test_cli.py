@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from caretree.sim import faults, known_robots, world_kind
+from caretree.sim.bullet import engines
 from caretree.sim.record.file_lock import lock_file
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.render import looks
@@ -282,6 +283,7 @@ def test_help_names_what_there_is():
     assert cli.WORLDS == worlds.WORLDS
     assert ", ".join(scene.PERSONS) == cli.PERSONS
     assert ", ".join(looks.LOOKS) == cli.LOOKS
+    assert ", ".join(engines.ENGINES) == cli.ENGINES
     assert ", ".join(faults.FAULTS) == cli.FAULTS
     assert ", ".join(("easy", *(f"easy+{one}" for one in world_kind.DIFFICULTIES), "hard")) == cli.WORLD_KINDS
 

@@ -14,7 +14,9 @@ def test_the_scripted_world_comes_with_what_is_seen_there():
     assert senses.hook(frame).stamp == frame.stamp
 
 
-@pytest.mark.parametrize("option", [{"gown": "large"}, {"person": "small"}, {"model": "model.yaml"}, {"look": "plain"}])
+@pytest.mark.parametrize(
+    "option", [{"gown": "large"}, {"person": "small"}, {"model": "model.yaml"}, {"look": "plain"}, {"engine": "spring"}]
+)
 def test_the_scripted_world_has_no_cloth_and_no_person(option):
     with pytest.raises(CaretreeError, match=f"--{next(iter(option))} needs the bullet world"):
         make_world("scripted", load_task("wave"), seed=0, **option)
