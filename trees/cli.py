@@ -26,7 +26,7 @@ SELF_PARSED = {
 WORLDS = ("bullet", "scripted")
 GOWNS, PERSONS = "medium, large, light", "average, small, stiff"
 ROBOTS = "baxter, ur5-pair"
-ENGINES = "bullet, spring"
+ENGINES = "bullet, spring, spring-layers"
 LOOKS = "taped, plain, printed, random"
 WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "

@@ -1,9 +1,13 @@
-"""What moves the cloth of the room: PyBullet's soft bodies, or springs of our own.  Everything rigid is PyBullet's."""
+"""What moves the cloth of the room: PyBullet's soft bodies, or springs of our own.  Everything rigid is PyBullet's.
+
+`spring-layers` is `spring` with a cloth that does not pass through itself, which PyBullet's does by default.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +18,7 @@ from ..spring.room import SpringCloth, SpringRoom
 from .cloth import Cloth, ClothBody
 from .soft_world import SoftWorld
 
-BULLET, SPRING = "bullet", "spring"
+BULLET, SPRING, LAYERS = "bullet", "spring", "spring-layers"
 Room = SoftWorld | SpringRoom
 
 
@@ -40,6 +44,7 @@ ENGINES = {
     for engine in (
         ClothEngine(name=BULLET, room=SoftWorld, cloth=Cloth, soft_bodies=True),
         ClothEngine(name=SPRING, room=SpringRoom, cloth=SpringCloth, soft_bodies=False),
+        ClothEngine(name=LAYERS, room=SpringRoom, cloth=partial(SpringCloth, meets_itself=True), soft_bodies=False),
     )
 }
 

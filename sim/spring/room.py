@@ -82,16 +82,17 @@ class SpringCloth(ClothBody):
         room: where it moves.
         mesh: rest shape; its spec holds mass and stiffness.
         vertices: (V, 3) where it starts, at rest, map frame [m].
+        meets_itself: whether its folds keep apart.
 
     Raises:
         UnstableClothError: the springs would be unstable at the room's time step.
     """
 
-    def __init__(self, room: SpringRoom, mesh: GownMesh, vertices: np.ndarray) -> None:
+    def __init__(self, room: SpringRoom, mesh: GownMesh, vertices: np.ndarray, meets_itself: bool = False) -> None:
         refuse_unstable(mesh, room.time_step)
         self.room, self.mesh = room, mesh
         self.body, room.numbered = room.numbered, room.numbered + 1
-        self.sheet = Sheet(mesh, vertices, room.time_step)
+        self.sheet = Sheet(mesh, vertices, room.time_step, meets_itself)
         self._pins: dict[int, _Pin] = {}
         self._pinned = 0  # pins so far
         self._group()

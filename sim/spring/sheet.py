@@ -19,6 +19,7 @@ from ..bullet.soft_world import GRAVITY, MARGIN
 from ..compiled import njit
 from ..scene.gown import GownMesh, edge_counts
 from .banded_cholesky import Band, factor, solve
+from .layers import Layers
 from .mass_spring import laplacian, pull, weave
 from .solids import Solids
 from .touching import meet, near_pairs
@@ -37,6 +38,7 @@ class Sheet:
         mesh: rest shape; its spec holds mass, stiffness, damping and friction.
         vertices: (V, 3) where it starts, at rest [m].
         dt: step [s].
+        meets_itself: whether its folds keep apart.
 
     Attributes:
         x: (V, 3) positions [m].
@@ -45,7 +47,7 @@ class Sheet:
         load: (V, 3) force of the cloth on whatever holds a vertex [N]; of free vertices nothing is meant.
     """
 
-    def __init__(self, mesh: GownMesh, vertices: np.ndarray, dt: float) -> None:
+    def __init__(self, mesh: GownMesh, vertices: np.ndarray, dt: float, meets_itself: bool = False) -> None:
         spec = mesh.spec
         self.mesh, self.dt, self.friction = mesh, dt, spec.friction
         self.springs = weave(mesh).springs(
@@ -64,6 +66,7 @@ class Sheet:
         )
         self._one = np.repeat(each, np.diff(self.springs.start))
         self.gravity = np.array((0.0, 0.0, -GRAVITY))
+        self._layers = Layers(mesh.vertices, mesh.faces) if meets_itself else None
         self.held: set[int] = set()
         self.place(vertices)
         self._hold()
@@ -112,12 +115,16 @@ class Sheet:
         """
         if self._looked % LOOK == 0 or solids.changed:
             self._pairs = self._near(solids)
+            if self._layers is not None:
+                self._layers.look(self.x, REACH / 2)
         self._looked += 1
         s, force = self.springs, np.empty_like(self.x)
         _free_step(
             *(self.x, self.v, s.start, s.other, s.stiffness, s.rest, s.mass, s.area, self._band.row, self._band.lower),
             *(self._rim, s.damping, s.air_drag, self.gravity, self.dt, force),
         )
+        if self._layers is not None:
+            self._layers.part(self.x, self.v, self._loose, self.dt, ROUNDS)
         impulses = meet(
             *(self.x, self.v, self._loose, *self._points, self._pairs, solids.capsules, solids.speeds, solids.radii),
             *(solids.boxes, solids.box_speeds, self.friction * solids.friction, MARGIN, self.dt),

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from caretree.sim.bullet.engines import ENGINES, engine_named
+from caretree.sim.bullet.engines import BULLET, SPRING, engine_named
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scene.scene import BED_TOP
 
 
 def test_an_unknown_engine_is_refused_with_those_there_are():
-    with pytest.raises(CaretreeError, match=r"unknown engine 'mujoco'; there are bullet, spring$"):
+    with pytest.raises(CaretreeError, match=r"unknown engine 'mujoco'; there are bullet, spring, spring-layers$"):
         engine_named("mujoco")
 
 
@@ -20,7 +20,7 @@ def test_springs_take_no_model_file():
 
 def test_both_engines_hang_the_gown_alike():
     gowns = []
-    for engine in ENGINES:
+    for engine in (BULLET, SPRING):
         world = BulletWorld(seed=100, engine=engine)
         frame = world.truth_frame()
         gowns.append(frame.vertices)
