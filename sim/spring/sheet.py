@@ -130,8 +130,7 @@ class Sheet:
             *(solids.boxes, solids.box_speeds, self.friction * solids.friction, MARGIN, self.dt),
             *(*self._edges, self._longest, self._pulls, ROUNDS, given),
         )
-        self.load += self.dt / FELT * (force + impulses / self.dt - self.load)
-        self.x += self.dt * self.v
+        _move(self.x, self.v, force, impulses, self.load, self.dt)
 
     def _near(self, solids: Solids) -> np.ndarray:
         one, other = self._points
@@ -171,3 +170,12 @@ def _free_step(x, v, start, other, stiffness, rest, mass, area, row, lower, rim,
     for e in range(rim.shape[1]):
         for d in range(3):
             force[rim[1, e], d] += damping * (v[rim[0, e], d] - v[rim[1, e], d])
+
+
+@njit(fastmath=True)
+def _move(x, v, force, impulses, load, dt):
+    """The end of a step: places, and what pulls on whatever holds a vertex."""
+    for i in range(len(x)):
+        for d in range(3):
+            load[i, d] += dt / FELT * (force[i, d] + impulses[i, d] / dt - load[i, d])
+            x[i, d] += dt * v[i, d]
