@@ -46,7 +46,7 @@ class Watchers:
         def watch(time: float) -> None:
             truth = self._frame()
             recorder.frame(truth)
-            if time >= self._next_picture - 1e-9:
+            if recorder.films and time >= self._next_picture - 1e-9:
                 self._next_picture += PICTURE_PERIOD
                 head = self._looks.get("head")
                 moment = Moment(

@@ -59,8 +59,10 @@ class Recorder:
         directory: created if needed, or the claim on it; given back at the end.
         task, seed, world: what runs, on which world.
         parameters: everything else needed to run it again (gown, person, faults, model).
+        films: whether there is a video: drawing it costs about as much processor time as the fastest physics.
 
     Attributes:
+        films: the same.
         caption: stage and skill, written on the pictures of the video.
 
     Raises:
@@ -75,7 +77,9 @@ class Recorder:
         seed: int,
         world: str,
         parameters: Mapping[str, Any] | None = None,
+        films: bool = True,
     ) -> None:
+        self.films = films
         self._claim = directory if isinstance(directory, FolderClaim) else FolderClaim(Path(directory))
         self.directory = self._claim.directory
         self._clear_unfinished()
@@ -198,7 +202,7 @@ class Recorder:
         Raises:
             RecordError: an earlier picture could not be added.
         """
-        if self._problem is not None:
+        if self._problem is not None or not self.films:
             return
         with self._noted():
             self._background = self._background or Background()

@@ -169,7 +169,14 @@ def _run(
     run.context.watch_senses(witness.watch)
     prepare_stage(inner, task, options.stage)
     directory = claim.directory
-    recorder = Recorder(claim, task=options.task, seed=options.seed, world=options.world, parameters=parameters)
+    recorder = Recorder(
+        claim,
+        task=options.task,
+        seed=options.seed,
+        world=options.world,
+        parameters=parameters,
+        films=options.video == "on",
+    )
     events.recorder, events.looks, events.watchers = recorder, LookLog(directory, witness), watchers
     try:
         write_outline(directory, outline_of(run.root))

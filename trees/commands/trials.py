@@ -15,7 +15,9 @@ from ..run.stop_signals import StopSignals
 from ..run.task import load_task
 
 TRIALS_MAX = 100_000  # a run takes a second at least
-PASSED_ON = ("world", "world-kind", "gown", "person", "look", "engine", "model", "tuning")  # to every `caretree run`
+PASSED_ON = (  # to every `caretree run`
+    *("world", "world-kind", "gown", "person", "look", "engine", "model", "tuning", "video"),
+)
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

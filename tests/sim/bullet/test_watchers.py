@@ -24,7 +24,7 @@ def watchers():
 
 def recorder(**options):
     quiet = {"begin": lambda static: None, "frame": lambda truth: None, "film": lambda t, draw: None}
-    return SimpleNamespace(caption=("dress", "pull"), **{**quiet, **options})
+    return SimpleNamespace(**{"caption": ("dress", "pull"), "films": True, **quiet, **options})
 
 
 def test_frames_and_pictures_come_in_their_periods(watchers):
@@ -38,6 +38,14 @@ def test_frames_and_pictures_come_in_their_periods(watchers):
     assert len(frames) == len(np.arange(0.0, 1.0, FRAME_PERIOD))
     assert np.diff([t for t, _ in pictures]) == pytest.approx(PICTURE_PERIOD)
     assert pictures[0][1]().shape[:2] == FILM_SIZE[::-1]
+
+
+def test_nothing_is_drawn_for_a_record_without_a_video(watchers):
+    pictures, frames = [], []
+    film = lambda t, draw: pictures.append(t)  # noqa: E731
+    watchers.record(recorder(frame=frames.append, film=film, films=False), "static", lambda error: None)
+    watchers.look(0.0)
+    assert (len(frames), pictures) == (1, [])
 
 
 def test_a_view_that_fails_is_told_once_and_the_recorder_goes_on(watchers):

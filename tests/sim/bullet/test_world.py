@@ -135,6 +135,7 @@ def test_time_goes_on_when_nobody_can_watch_it(world, monkeypatch, fails):
 
     class Recorder:
         caption = ("dress", "pull")
+        films = True
 
         def begin(self, static):
             pass

@@ -337,3 +337,10 @@ def test_a_drawing_that_fails_is_one_sentence(tmp_path):
     with pytest.raises(RecordError, match="cannot be drawn: list index out of range"):
         recorder.finish(RunResult(outcome="success", reason="", sim_time_s=2.0))
     assert read_run(tmp_path / "run")["outcome"] == "success"
+
+
+def test_a_record_without_a_video_draws_nothing(tmp_path):
+    recorder = Recorder(tmp_path / "run", task="dressing", seed=0, world="bullet", films=False)
+    recorder.film(0.0, lambda: np.zeros(1) / [][0])
+    recorder.finish(RESULT)
+    assert not (tmp_path / "run" / "video.mp4").exists()
