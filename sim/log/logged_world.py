@@ -31,7 +31,7 @@ def logged(inner: World, file: LogFile | None, rate: float | None = None) -> Wor
 
 
 @contextlib.contextmanager
-def logging(inner: World, path: str | None, rate: float | None = None) -> Iterator[World]:
+def logged_into(inner: World, path: str | None, rate: float | None = None) -> Iterator[World]:
     """`logged` into a file of that path, which is finished in the end; `inner` itself where no path is given.
 
     Raises:

@@ -18,7 +18,7 @@ from ...sim.evaluate.run_record import Judgement
 from ...sim.extras import missing_extra, need
 from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.fence import said
-from ...sim.log.logged_world import logging
+from ...sim.log.logged_world import logged_into
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
@@ -112,7 +112,7 @@ def main(options: argparse.Namespace) -> int:
                 )
                 try:
                     senses = senses or senses_for(options.senses, task, inner, options.seed)
-                    with logging(inner, options.log, options.log_rate) as measured:
+                    with logged_into(inner, options.log, options.log_rate) as measured:
                         return _run(
                             options, task, inner, measured, senses, faults, given, parameters, claim, signals, watchers
                         )

@@ -6,7 +6,7 @@ import pytest
 from caretree.sim.abilities import HasKinematics, SupportsFaults
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.sim.log.log_file import LogFile
-from caretree.sim.log.logged_world import URDF, logged, logging
+from caretree.sim.log.logged_world import URDF, logged, logged_into
 from caretree.sim.scripted.clock import SteppedClock
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.testing import check_world
@@ -33,7 +33,7 @@ def times(path, topic):
 
 
 def test_a_measurement_is_written_once(path):
-    with logging(ScriptedWorld(seed=1), str(path)) as world:
+    with logged_into(ScriptedWorld(seed=1), str(path)) as world:
         for _ in range(3):
             world.observe()
         wait(world.clock, 0.5)
@@ -43,7 +43,7 @@ def test_a_measurement_is_written_once(path):
 
 
 def test_the_robot_comes_with_the_log(path):
-    with logging(ScriptedWorld(seed=1), str(path)):
+    with logged_into(ScriptedWorld(seed=1), str(path)):
         pass
     with path.open("rb") as file:
         (urdf,) = make_reader(file).iter_attachments()
@@ -58,13 +58,13 @@ def test_a_robot_without_its_description_is_logged_too(path):
         raise OSError("no such file")
 
     world.robot = replace(world.robot, urdf=lost)
-    with logging(world, str(path)) as measured:
+    with logged_into(world, str(path)) as measured:
         measured.observe()
     assert len(told(path, "/measured")) == 1
 
 
 def test_pictures_are_throttled_for_each_camera(path):
-    with logging(ScriptedWorld(seed=1), str(path)) as world:
+    with logged_into(ScriptedWorld(seed=1), str(path)) as world:
         for n in range(31):
             wait(world.clock, 0.1 * n)
             world.look("head")
@@ -81,7 +81,7 @@ class Clipping(ScriptedWorld):
 
 
 def test_what_was_really_sent_is_written(path):
-    with logging(Clipping(seed=1), str(path)) as world:
+    with logged_into(Clipping(seed=1), str(path)) as world:
         answered = world.send(BaseVelocity(velocity=np.array((3.0, 0.0, 0.0))))
         world.stop()
     assert answered.velocity.tolist() == [0.1, 0.0, 0.0]
@@ -91,7 +91,7 @@ def test_what_was_really_sent_is_written(path):
 
 
 def test_a_command_that_is_lost_on_its_way_was_not_sent(path):
-    with logging(ScriptedWorld(seed=1), str(path)) as measured:
+    with logged_into(ScriptedWorld(seed=1), str(path)) as measured:
         world = FaultyWorld(measured, [parse_fault("lost_command@let go:start")])
         world.on_phase("let go", "start")
         world.send(GripperOpening(side="left", opening=0.05))
@@ -103,7 +103,7 @@ def test_what_is_not_measured_is_not_written_and_told_as_before(path):
         def observe(self):
             raise SensorLost("no joint states")
 
-    with logging(Dead(seed=1), str(path), rate=20.0) as world:
+    with logged_into(Dead(seed=1), str(path), rate=20.0) as world:
         with pytest.raises(SensorLost):
             world.observe()
         wait(world.clock, 0.2)
@@ -111,7 +111,7 @@ def test_what_is_not_measured_is_not_written_and_told_as_before(path):
 
 
 def test_between_ticks_it_measures_as_often_as_asked(path):
-    with logging(ScriptedWorld(seed=1), str(path), rate=50.0) as world:
+    with logged_into(ScriptedWorld(seed=1), str(path), rate=50.0) as world:
         assert isinstance(world.clock, SteppedClock)
         wait(world.clock, 1.0)
     assert times(path, "/joint_states") == pytest.approx(np.arange(0.02, 1.001, 0.02))
@@ -133,7 +133,7 @@ class Late:
 def test_a_wall_clock_stays_one_and_may_come_back_early(path):
     inner = ScriptedWorld(seed=1)
     inner.clock = Late()
-    with logging(inner, str(path), rate=20.0) as world:
+    with logged_into(inner, str(path), rate=20.0) as world:
         assert not isinstance(world.clock, SteppedClock)
         world.clock.wait_until(1.0)
         assert world.clock.now() == pytest.approx(0.01)
@@ -142,7 +142,7 @@ def test_a_wall_clock_stays_one_and_may_come_back_early(path):
 
 
 def test_abilities_are_passed_on(path):
-    with logging(ScriptedWorld(seed=1), str(path)) as world:
+    with logged_into(ScriptedWorld(seed=1), str(path)) as world:
         assert isinstance(world, HasKinematics)
         assert isinstance(world, SupportsFaults)
         assert world.kinematics is not None

@@ -8,7 +8,7 @@ from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.importers.joint_log import import_logs, read_log
 from caretree.learning.gap.measurement import load_set
 from caretree.sim.log.log_file import LogFile
-from caretree.sim.log.logged_world import logging
+from caretree.sim.log.logged_world import logged_into
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.waiting import wait
 
@@ -27,7 +27,7 @@ def swings(tmp_path):
     def make(level, duration=12.0, logs=3):
         paths = [tmp_path / f"swing_{k}.mcap" for k in range(logs)]
         for k, path in enumerate(paths):
-            with logging(StickyArm(seed=k, level=level), str(path), rate=100.0) as world:
+            with logged_into(StickyArm(seed=k, level=level), str(path), rate=100.0) as world:
                 world.send(swing(k, duration))
                 wait(world.clock, duration)
         return paths
@@ -139,7 +139,7 @@ def test_what_is_wrong_is_one_sentence(of_ros2, tmp_path, capsys):
 
 def test_two_topics_are_told_apart(tmp_path):
     path = tmp_path / "two.mcap"
-    with logging(ScriptedWorld(seed=1), str(path)) as world:
+    with logged_into(ScriptedWorld(seed=1), str(path)) as world:
         world.observe()
         content = {"timestamp": {"sec": 1, "nsec": 0}, "joints": [{"name": "a", "position": 0.0, "effort": 0.0}]}
         world._file.write(1.0, [("/other", "foxglove.JointStates", content)])
