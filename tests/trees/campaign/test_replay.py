@@ -97,6 +97,7 @@ def test_a_run_repeats_from_its_record(record):
     assert not result.versions
 
 
+@pytest.mark.extra
 @pytest.mark.parametrize(("inject", "rate"), [([], 3.0), (["--inject", "occlusion@towel/look:start"], 15.0)])
 def test_a_rehearsal_is_ticked_more_often_where_a_fault_is_looked_at_and_repeats(tmp_path, monkeypatch, inject, rate):
     monkeypatch.chdir(tmp_path)
