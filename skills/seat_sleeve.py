@@ -31,16 +31,15 @@ class SeatSleeveTuning(Quantities):
     grasp: FromAbove = field(default_factory=FromAbove)
     lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
     drawn_to: tuple[float, float, float] = quantity(
-        (0.05, 0.06, 0.28),
+        (0.05, 0.02, 0.27),
         "m",
         "inwards, headward and up from the shoulder, where the armhole's front edge is drawn to: until it is taut, and "
         "its far side, below the arm, comes along",
-        "measured with ideal hands from 0.30 (103): the far side came to 0.80 and the armhole to rest at 0.76; drawn "
-        "0.15 m up and no higher, to 0.67 and 0.63; 0.10 m headward, to 0.87 and 0.81, the collar 0.05 m farther "
-        "headward",
+        "measured with ideal hands: let go of 0.15 m up instead, an armhole went back to 0.63 (103), 0.70 like this, "
+        "0.76 drawn 0.06 m headward; but that took the neckline over the face for 27 s (0)",
     )
     laid_at: tuple[float, float, float] = quantity(
-        (0.04, 0.05, 0.13),
+        (0.05, 0.02, 0.13),
         "m",
         "inwards, headward and up from the shoulder, where that edge is laid down and let go of",
         "measured: let go of where it is taut, it springs back by 0.1 more",
