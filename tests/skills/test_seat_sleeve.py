@@ -45,12 +45,14 @@ def drawn(run):
     return run.way("right")[run.openings("right") < 0.005]
 
 
-def test_it_is_taken_on_top_of_the_arm_lifted_and_drawn_to_the_shoulder_and_inwards():
+def test_it_is_taken_on_top_of_the_arm_drawn_up_beside_the_shoulder_and_laid_down_there():
     run = bench()
     assert run.ended() is None
     way = drawn(run)
     assert way[0] == pytest.approx(PLACE, abs=0.03)
-    assert (way[-1] - ARM[0])[:2] == pytest.approx((-0.05, -0.05), abs=0.03)  # [m]
+    assert way[np.argmax(way[:, 2])] - ARM[0] == pytest.approx((-0.05, -0.02, 0.27), abs=0.03)  # [m]
+    assert (way[-1] - ARM[0])[:2] == pytest.approx((-0.05, -0.02), abs=0.03)
+    assert way[:, 2].max() - way[-1, 2] > 0.05, "laid down"
     assert way[-1, 2] > CHEST, "clear of the chest"
     assert way[:, 2].min() > PLACE[2] - 0.03, "above the arm"
     assert run.openings("right")[-1] == pytest.approx(0.05, abs=0.01), "no finger comes down to the chest"
