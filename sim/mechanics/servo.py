@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..world import SIDES, BaseVelocity, Command, GripperOpening, HandTwist, JointTrajectory, Side, WorldError
+from .joint_limits import JointLimits
 from .kinematics import Kinematics
 from .twist import TwistTracker
 
@@ -50,13 +51,10 @@ class Servo:
         self._moved = robot.limits
         self._dof = robot.dof
         count = 2 * robot.dof + 1
-        limits = [kinematics.limits[side] for side in SIDES]
-        low, high = kinematics.head_range
-        self._lower = np.concatenate([*(limit.lower for limit in limits), (low,)])
-        self._upper = np.concatenate([*(limit.upper for limit in limits), (high,)])
-        self._speed = np.concatenate([*(limit.velocity for limit in limits), (robot.limits.head_velocity,)])
+        limits = JointLimits.of(kinematics)
+        self._lower, self._upper, self._speed = limits.lower, limits.upper, limits.velocity
         self._acceleration = np.concatenate(
-            [*(limit.acceleration for limit in limits), (robot.limits.head_acceleration,)]
+            [*(kinematics.limits[side].acceleration for side in SIDES), (robot.limits.head_acceleration,)]
         )
         self.positions = np.clip(np.append(np.ravel(arm_positions), head_pan), self._lower, self._upper)
         self.velocities = np.zeros(count)

@@ -55,6 +55,11 @@ class TwistTracker:
         self._active = True
         return HandTwist(side=command.side, twist_in_map=wanted.copy(), duration=command.duration)
 
+    @property
+    def active(self) -> bool:
+        """Whether there is a twist to follow, or what is left of its motion to end."""
+        return self._active
+
     def cancel(self) -> None:
         """Let go: the joints brake by themselves."""
         self._active, self._pose = False, None

@@ -1,5 +1,8 @@
 """A world of numbers: arms go where they are sent, fingers close, and an hour passes in milliseconds.
 
+Where its kinematics know the limits of joints, hands follow twists by the law that the simulated room and a robot
+behind a master have, and no joint turns further or faster than it can.
+
 It has no cloth and no images of its own.  Tests and task authors script what matters: frames by a function,
 loads and what is between the fingers by attributes, and what is seen by scripted senses.
 """
@@ -13,7 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanics.joint_limits import JointLimits
+from ..mechanics.kinematics import Kinematics
 from ..mechanics.robot_model import RobotModel
+from ..mechanics.servo import PERIOD
+from ..mechanics.twist import TwistTracker
 from ..robot.baxter import BAXTER
 from ..scene.objects import ObjectError, RoomObject
 from ..world import (
@@ -32,13 +39,13 @@ from ..world import (
     World,
 )
 from .clock import SteppedClock
+from .exact_twist import ExactTwist
 from .linear_arm import LinearArms
 
 STEP = 0.02  # [s] longest step of the integration
 FINGER_SPEED = 0.1  # [m/s]
 WRENCH_NOISE = 0.01  # [N], [N m] standard deviation: a silent force sensor would be a dead one
 DEPTH_NOISE = 0.001  # [m]
-SINGULAR = 1e-3  # share of the greatest singular value below which a hand does not move in a direction
 # Every camera looks straight down from above the middle of the bed, whose mattress is all that shows.
 FROM_ABOVE = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
@@ -93,8 +100,8 @@ class ScriptedWorld(World):
         frames: `(camera, time) -> Frame`; flat grey pictures by default.
         room: map; `scripted_room()` by default.
         robot: that skills plan with; Baxter by default.
-        kinematics: what moves the hands, with `pose_hand_in_map` and `jacobian_hand_in_map`: the robot's own where
-            planned motions shall end where they should, linear arms by default.
+        kinematics: what moves the hands: the robot's own where planned motions shall end where they should, and joints
+            at their limits; by default linear arms, which have none.
         arm_positions: (2, n) where the arms are at first [rad]; zeros by default.
         stopping_time: how long arms and base run on after a stop, slowing down evenly [s].
 
@@ -123,7 +130,7 @@ class ScriptedWorld(World):
         self.clock = self.time
         self.room = room or scripted_room()
         self.robot = robot
-        self.kinematics = kinematics or LinearArms()
+        self.kinematics: Any = kinematics or LinearArms()
         shape = (2, robot.dof)
         self.load: dict[Side, np.ndarray] = {side: np.zeros(6) for side in SIDES}
         self.between_fingers: dict[Side, float] = {"left": 0.0, "right": 0.0}
@@ -133,13 +140,20 @@ class ScriptedWorld(World):
         self.has_gown = True
         self._rng = np.random.default_rng(seed)
         self._frames = frames or self._flat_frame
-        self._q = np.zeros(shape) if arm_positions is None else np.array(arm_positions, float).reshape(shape)
+        limited = isinstance(self.kinematics, Kinematics)
+        self._limits = JointLimits.of(self.kinematics) if limited else JointLimits.none(robot)
+        self._unlimited = self._limits.unlimited
+        self._lower, self._upper, self._speed = self._limits.of_arms()
+        start = np.zeros(shape) if arm_positions is None else np.array(arm_positions, float).reshape(shape)
+        self._q = np.clip(start, self._lower, self._upper)
         self._dq = np.zeros(shape)
         self._head = 0.0
         self._base = np.array(self.room.waypoints.get("start", (0.0, 0.0, 0.0)), float)
         self._base_velocity, self._base_until = np.zeros(3), 0.0
-        self._twists: dict[Side, HandTwist] = {}
-        self._twist_until: dict[Side, float] = {}
+        self._twists: dict[Side, Any] = {
+            side: (TwistTracker if limited else ExactTwist)(self.kinematics, side) for side in SIDES
+        }
+        self._twist_step = PERIOD if limited else np.inf  # [s] for which a tracker's joint rates hold
         self._motions: list[_Motion] = []
         self._rates: dict[int, tuple[np.ndarray, float]] = {}  # of an arm's joints, and until when
         self._longest_step = STEP
@@ -172,7 +186,6 @@ class ScriptedWorld(World):
             for side, opening in zip(SIDES, self._opening.tolist(), strict=True)
         ]
         wrench = np.array((self.load["left"], self.load["right"])) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
-        moving = self._base_velocity if now < self._base_until else self._coast_base * self._slowing(now)
         squeezing = [force if holds else 0.0 for force, holds in zip(self._force_limit.tolist(), held, strict=True)]
         return Observation(
             time=now,
@@ -181,7 +194,7 @@ class ScriptedWorld(World):
             arm_efforts=np.zeros_like(self._q),
             head_pan=self._head,
             pose_base_in_map=self._base.copy(),
-            twist_base=moving.copy(),
+            twist_base=self._twist_base(now).copy(),
             gripper_opening=self._opening.copy(),
             gripper_force=np.array(squeezing),
             wrench_hand_in_map=wrench,
@@ -217,13 +230,15 @@ class ScriptedWorld(World):
     # -- motions -----------------------------------------------------------------------------------------
 
     def send(self, command: Command) -> Command:
-        """Start a motion; only the fingers have a limit here.
+        """Start a motion; returns it within the limits of fingers and joints.
 
         Raises:
             WorldError: the robot does not have one of the joints.
         """
         now = self.clock.now()
         if isinstance(command, JointTrajectory):
+            command.check_joints(self.robot)
+            command = command if self._unlimited else self._limits.trajectory(command)[0]
             motion = self._motion(command, now)
             self._drop(set(motion.slots))
             self._motions.append(motion)
@@ -231,13 +246,13 @@ class ScriptedWorld(World):
                 self._end_coasting(arm)
             for n, side in enumerate(SIDES):
                 if any(arm == n for arm, _ in motion.slots):
-                    self._twists.pop(side, None)
+                    self._twists[side].cancel()
                     self._rates.pop(n, None)
         elif isinstance(command, HandTwist):
             self._drop({(SIDES.index(command.side), joint) for joint in range(self.robot.dof)})
             self._end_coasting(SIDES.index(command.side))
             self._rates.pop(SIDES.index(command.side), None)
-            self._twists[command.side], self._twist_until[command.side] = command, now + command.duration
+            command = self._twists[command.side].start(command, now)
         elif isinstance(command, BaseVelocity):
             self._end_coasting(-1)
             self._base_velocity, self._base_until = np.array(command.velocity, float), now + command.duration
@@ -253,19 +268,21 @@ class ScriptedWorld(World):
         """Move an arm joint by joint (7,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
         arm = SIDES.index(side)
         self._drop({(arm, joint) for joint in range(7)})
-        self._twists.pop(side, None)
+        self._twists[side].cancel()
         self._end_coasting(arm)
-        self._rates[arm] = np.array(velocities, float), self.clock.now() + duration
+        rates = np.clip(np.array(velocities, float), -self._speed[arm], self._speed[arm])
+        self._rates[arm] = rates, self.clock.now() + duration
 
     def stop(self) -> None:
         """End every motion, which takes the stopping time; the fingers go on holding."""
         now = self.clock.now()
         driving = now < self._base_until
-        if self._motions or self._twists or self._rates or driving:
+        if self._motions or self._twisting() or self._rates or driving:
             self._coast_start, self._coast_q = now, self._dq.copy()
             self._coast_base = self._base_velocity.copy() if driving else np.zeros(3)
         self._motions.clear()
-        self._twists.clear()
+        for twist in self._twists.values():
+            twist.cancel()
         self._rates.clear()
         self._base_until = now
 
@@ -283,7 +300,6 @@ class ScriptedWorld(World):
             self._coast_q[arm] = 0.0
 
     def _motion(self, command: JointTrajectory, now: float) -> _Motion:
-        command.check_joints(self.robot)
         slots = [self.robot.place_of(joint) or (-1, 0) for joint in command.joints]
         return _Motion(now, np.asarray(command.times, float), np.asarray(command.positions, float), slots)
 
@@ -296,15 +312,23 @@ class ScriptedWorld(World):
             if self._rests():
                 self._dq = np.zeros_like(self._q)
                 break
-            self._step(min(self._longest_step, time - self.time.time))
+            longest = min(self._longest_step, self._twist_step) if self._twisting() else self._longest_step
+            self._step(min(longest, time - self.time.time))
         self.time.time = max(self.time.time, time)  # without the rounding of the sum
 
     def _rests(self) -> bool:
         """Whether nothing moves until the next command, however much time passes."""
         now = self.time.time
-        if self._motions or self._twists or self._rates or now < self._base_until or self._slowing(now) > 0.0:
+        if self._motions or self._twisting() or self._rates or now < self._base_until or self._slowing(now) > 0.0:
             return False
         return self._opening.tolist() == self._fingers_goal()
+
+    def _twisting(self) -> bool:
+        return self._twists["left"].active or self._twists["right"].active
+
+    def _twist_base(self, time: float) -> np.ndarray:
+        """Velocity (3,) of the base in its own frame [m/s, m/s, rad/s]."""
+        return self._base_velocity if time < self._base_until else self._coast_base * self._slowing(time)
 
     def _fingers_goal(self) -> list[float]:
         """Opening (2,) at which each hand's fingers end [m]."""
@@ -321,14 +345,12 @@ class ScriptedWorld(World):
                 self._head = float(values[motion.head])
             if now - motion.start > motion.times[-1] + dt:
                 self._motions.remove(motion)
-        for side, twist in list(self._twists.items()):
-            arm = SIDES.index(side)
-            moved = min(self._twist_until[side], now) - self.time.time
-            if moved <= 1e-9:
-                del self._twists[side]
+        for arm, twist in enumerate(self._twists.values()):
+            if not twist.active:
                 continue
-            jacobian = self.kinematics.jacobian_hand_in_map(side, self._q[arm], self._base)
-            self._q[arm] += _pseudo_inverse(jacobian) @ np.asarray(twist.twist_in_map, float) * moved
+            turns = twist.rates(now, self._q[arm], self._dq[arm], self._base, self._twist_base(self.time.time))
+            if turns is not None:
+                self._q[arm] += turns * dt
         for arm, (rates, until) in list(self._rates.items()):
             moved = min(until, now) - self.time.time
             if moved <= 1e-9:
@@ -338,6 +360,8 @@ class ScriptedWorld(World):
         left = self._slowing(now)
         if left > 0.0:
             self._q += self._coast_q * left * dt
+        if not self._unlimited:
+            np.clip(self._q, self._lower, self._upper, out=self._q)
         driven = max(min(self._base_until, now) - self.time.time, 0.0)
         if left > 0.0 or driven > 0.0:
             self._drive(driven * self._base_velocity + dt * left * self._coast_base)
@@ -364,10 +388,3 @@ class ScriptedWorld(World):
     def fault_move_person(self) -> None:
         """The person shifts by 10 cm."""
         self.person_offset = self.person_offset + np.array((0.1, 0.0, 0.0))
-
-
-def _pseudo_inverse(jacobian: np.ndarray) -> np.ndarray:
-    """That of `np.linalg.pinv`, which checks its input for longer than it computes."""
-    u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
-    inverse = np.where(s > SINGULAR * s.max(), 1.0 / np.maximum(s, 1e-300), 0.0)
-    return vt.T @ (inverse[:, None] * u.T)

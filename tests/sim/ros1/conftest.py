@@ -41,8 +41,8 @@ class Robot:
     def _begin(self, *command):
         return subprocess.Popen(command, env=self.env, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
-    def python(self, code):
-        return self._done("-c", code)
+    def python(self, code, *arguments):
+        return self._done("-c", code, *arguments)
 
     def caretree(self, *command):
         return self._done("-c", CARETREE, *command)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
-from caretree.sim.ros1.limits import Clipping, smooth_slopes
+from caretree.sim.ros1.limits import Clipping
 from caretree.sim.ros1.site import read_site
 from caretree.sim.world import BaseVelocity, GripperOpening, JointTrajectory
 
@@ -40,8 +40,3 @@ def test_fingers_and_base_are_clipped(clipping):
     assert (wide.opening, wide.force_limit) == (0.085, 5.0)
     drive = clipping.base(BaseVelocity(velocity=np.array((3.0, 4.0, -9.0))))
     assert np.allclose(drive.velocity, (0.3, 0.4, -0.6))
-
-
-def test_slopes_never_overshoot():
-    times, positions = np.arange(4.0), np.array(((0.0,), (1.0,), (1.0,), (2.0,)))
-    assert np.array_equal(smooth_slopes(times, positions)[:, 0], np.zeros(4))

@@ -2,6 +2,10 @@
 
 import json
 
+import numpy as np
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
+
 BREAKS = """
 import sys
 from caretree.sim.ros1.ros import node, ros
@@ -27,6 +31,28 @@ while world.observe().emergency_stop:
     enable.publish(True)  # before the button is released it does nothing
     world.clock.wait_until(world.clock.now() + 0.05)
 print("enabled again")
+world.close()
+"""
+
+RAISED = """
+import json
+import sys
+import numpy as np
+from caretree.sim.robot import model
+from caretree.sim.ros1.world import Ros1World
+from caretree.sim.world import HandTwist, JointTrajectory
+from caretree.skills.scripted.rehearsal import rehearsal
+
+world = Ros1World() if sys.argv[1] == "ros1" else rehearsal(0)[0]
+here = world.observe().arm_positions[0]
+path = np.stack((here, world.robot.ready[0]))
+world.send(JointTrajectory(joints=model.arm_joints("left"), times=np.array((0.0, 8.0)), positions=path))
+world.clock.wait_until(world.clock.now() + 9.0)
+upward = np.array((0.0, 0.0, 0.15, 0.0, 0.0, 0.0))
+for _ in range(100):
+    world.send(HandTwist(side="left", twist_in_map=upward, duration=0.1))
+    world.clock.wait_until(world.clock.now() + 0.1)
+print(json.dumps(world.observe().arm_positions[0].tolist()))
 world.close()
 """
 
@@ -59,3 +85,13 @@ def test_a_robot_that_is_not_whole_is_named(waving_robot, tmp_path):
     done = waving_robot.caretree("run", "wave", "--world", "ros1", *given, "--out", str(tmp_path / "out"))
     assert done.returncode == 2
     assert done.stderr == "caretree: the robot is not whole: nothing on /robot/condition; `caretree robot doctor`\n"
+
+
+def test_a_hand_that_is_driven_against_a_limit_ends_where_it_does_in_its_own_process(baxter):
+    ended = {}
+    for world in ("scripted", "ros1"):
+        done = baxter.python(RAISED, world)
+        assert done.returncode == 0, done.stderr
+        ended[world] = np.array(json.loads(done.stdout))
+        assert abs(kinematics_of(BAXTER).limits["left"].margin(ended[world])) < 1e-3
+    np.testing.assert_allclose(ended["ros1"], ended["scripted"], atol=0.02)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from caretree.sim.scripted.exact_twist import pseudo_inverse
 from caretree.sim.scripted.linear_arm import LinearArms
-from caretree.sim.scripted.world import ScriptedWorld, _pseudo_inverse
+from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import BaseVelocity, GripperOpening, HandTwist, JointTrajectory, SensorLost
 
 
@@ -138,4 +139,4 @@ def test_the_pseudo_inverse_is_that_of_numpy_to_the_last_bit_singular_or_not():
     rng = np.random.default_rng(5)
     for rank in (6, 5, 3):
         jacobian = rng.normal(size=(6, rank)) @ rng.normal(size=(rank, 7))
-        assert (_pseudo_inverse(jacobian) == np.linalg.pinv(jacobian, rcond=1e-3)).all()
+        assert (pseudo_inverse(jacobian) == np.linalg.pinv(jacobian, rcond=1e-3)).all()
