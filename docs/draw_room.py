@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from caretree.sim.scene.scene import room_map
 from caretree.sim.world import SIDES
-from caretree.skills.geometry.stances import STANCES, stance
+from caretree.skills.geometry.stances import STANCES, stance, stance_at_head
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
@@ -29,9 +29,10 @@ def places() -> dict[str, tuple[float, float, float, str]]:
     """Name -> x, y [m], yaw [rad] and colour of every place with a name."""
     found = {name: (*pose, WAYPOINT) for name, pose in room_map().waypoints.items()}
     for arm in SIDES:
-        for stand in ("lift", "shoulder", "collar"):
+        for stand in ("lift", "shoulder"):
             x, y, yaw = stance(arm, stand)
             found[f"{stand}, {arm}"] = (float(x), float(y), float(yaw), STANCE)
+    found["head"] = (*(float(value) for value in stance_at_head()), STANCE)
     found["lane"] = (STANCES.lane, 0.55, STANCES.heading, STANCE)
     return found
 
@@ -42,8 +43,7 @@ def _arrow(axes: Axes, name: str, x: float, y: float, yaw: float, colour: str) -
     axes.annotate("", (x + dx, y + dy), (x, y), arrowprops={"arrowstyle": "->", "color": colour, "linewidth": 1.4})
     away = (-np.sign(dx) * 0.08, 0.0) if abs(dx) > abs(dy) else (0.08, 0.0)
     side = "right" if away[0] < 0 else "left"
-    lower = 0.13 if name.startswith("collar") else 0.0  # it stands close to the shoulder's
-    axes.text(x + away[0], y + away[1] - lower, name, color=colour, fontsize=7, ha=side, va="center")
+    axes.text(x + away[0], y + away[1], name, color=colour, fontsize=7, ha=side, va="center")
 
 
 def draw(path: Path) -> None:

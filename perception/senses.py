@@ -346,7 +346,6 @@ class Senses(ABC):
         *,
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
-        flat: Side | None = None,
     ) -> GraspPoint:
         """The middle of a worn gown's neckline.
 
@@ -354,7 +353,6 @@ class Senses(ABC):
             frame: a view from above the person.
             near_in_map: (3,) middle between the shoulders [m].
             away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
-            flat: side of the person on which the neckline lies flat, if it is known: what hides is on the other.
 
         Returns:
             Target `collar_middle`; its confidence is the share of the neckline that shows.

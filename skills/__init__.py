@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .raise_corner import RaiseCorner as RaiseCorner
     from .release_arm import ReleaseArm as ReleaseArm
     from .retreat import Retreat as Retreat
-    from .seat_sleeve import SeatSleeve as SeatSleeve
+    from .seat_sleeves import SeatSleeves as SeatSleeves
     from .segment_and_grasp import SegmentAndGrasp as SegmentAndGrasp
     from .spread import Spread as Spread
     from .stretch_neckline import StretchNeckline as StretchNeckline
@@ -81,7 +81,7 @@ _HOME = {
     "SegmentAndGrasp": ".segment_and_grasp",
     "Skill": ".core.skill",
     "SkillFailure": ".core.reasons",
-    "SeatSleeve": ".seat_sleeve",
+    "SeatSleeves": ".seat_sleeves",
     "Spread": ".spread",
     "StretchNeckline": ".stretch_neckline",
     "TakeCorner": ".take_corner",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import Frame, Side
+from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import GraspPoint
 from ..image.cloud import across, clusters, geodesic, main_direction, surface_normal, unit
@@ -55,13 +55,6 @@ class CollarTuning(Quantities):
         "m",
         "between neighbours on the tape of a worn gown",
         "measured: 12 views of worn gowns, seeds 101-105: the middle is found to 0.07 m (root mean square)",
-    )
-    column_width: float = quantity(
-        0.04,
-        "m",
-        "across the body, of what is one place of a worn gown's neckline",
-        "measured: 30 views of seeds 101, 102 and 105, the left half flat: the middle is found to 0.03 m; 0.02 m wide, "
-        "places jumped between two layers of tape",
     )
     grasp_length: float = quantity(0.06, "m", "of the tape's middle, which is grasped", "choice: a tape's width")
     straight_length: float = quantity(
@@ -180,20 +173,17 @@ def collar_middle(
     frame: Frame,
     near_in_map: np.ndarray,
     away: tuple[float, float] = (0.0, 0.0),
-    flat: Side | None = None,
     tuning: CollarTuning = DEFAULT,
 ) -> GraspPoint:
     """The middle of a worn gown's neckline, half its length along the tape from either end.
 
     What is hidden of the tape is shared between its ends.  A taut half hides nothing, and a slack one has folds: the
     less straight the tape runs from an end, and the nearer to the midline that end lies, the more is hidden there.
-    Where it is known which half lies flat, all that is hidden is in the other one.
 
     Args:
         frame: a view from above the person.
         near_in_map: (3,) middle between the shoulders [m].
         away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
-        flat: side of the person on which the tape lies flat, if it is known.
         tuning: numbers of the search.
 
     Returns:
@@ -206,9 +196,6 @@ def collar_middle(
     points = points[np.linalg.norm((points - near_in_map)[:, :2], axis=1) < tuning.body_distance]
     if len(points) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding on the person")
-    if flat is not None:
-        half_way, shown = _half_way(points, flat, tuning)
-        return _grasp(frame, points, half_way, shown, away, tuning)
     points = points[clusters(points, tuning.worn_step) == 0]
     tip = int(np.argmax(geodesic(points, 0, tuning.worn_step)))
     along = geodesic(points, tip, tuning.worn_step)
@@ -250,20 +237,6 @@ def _grasp(
         approach_in_map=-normal,
         closing_in_map=across(along, -normal),
     )
-
-
-def _half_way(points: np.ndarray, flat: Side, tuning: CollarTuning) -> tuple[np.ndarray, float]:
-    """Half the neckline's length (3,) along the tape's points (n, 3) from its `flat` end, and how much shows [m].
-
-    The tape is followed across the body, along x in the map, straight over what is hidden of it.
-    """
-    column = np.round(points[:, 0] / tuning.column_width).astype(int)
-    path = np.array([np.median(points[column == n], axis=0) for n in np.unique(column)])
-    if flat == "right":  # which lies at larger x
-        path = path[::-1]
-    along = np.insert(np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1)), 0, 0.0)
-    place = min(GOWN.neckline_length / 2, float(along[-1]))
-    return np.array([np.interp(place, along, coordinate) for coordinate in path.T]), float(along[-1])
 
 
 def hidden_at(points: np.ndarray, end: int, way: np.ndarray, middle: np.ndarray, tuning: CollarTuning) -> float:

@@ -1,4 +1,4 @@
-"""Where the armhole of a worn sleeve crosses the top of an arm that lies: its front edge, where it is drawn up."""
+"""The highest part of a worn sleeve's armhole above an arm that lies: its front edge, where it is drawn up."""
 
 from __future__ import annotations
 
@@ -17,16 +17,23 @@ from .cuff_round_arm import tape_near
 
 @dataclass(frozen=True, kw_only=True)
 class ArmholeFrontTuning(Quantities):
-    """Numbers of where an armhole crosses the top of its arm."""
+    """Numbers of where an armhole is highest above its arm."""
 
     line: tuple[float, float] = quantity(
         (-0.5, 1.5), "1", "ends of the line beside which tape counts: 0 shoulder, 1 elbow", "choice: all of an armhole"
     )
     half_width: float = quantity(
-        0.035,
+        0.18,
         "m",
         "aside of the arm's axis as seen from above, within which tape counts",
-        "measured: in five recorded runs the middle of the front edge lay 0 to 2.6 cm from it",
+        "measured: in three recorded states the highest vertex of an armhole's edge lay 0.02 to 0.13 m from it, what "
+        "shows of it from the head of the bed up to 0.16 m",
+    )
+    highest: float = quantity(
+        0.2,
+        "1",
+        "share of the tape above the arm, its highest, that is taken for the front",
+        "measured: its middle lay 0.02 to 0.06 m from that vertex",
     )
     patch: float = quantity(0.05, "m", "around the place, over which its normal is taken", "choice: one cell of cloth")
     min_points: int = quantity(10, "1", "of the tape there", "choice: fewer are noise")
@@ -37,7 +44,7 @@ DEFAULT = ArmholeFrontTuning()
 
 
 def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: ArmholeFrontTuning = DEFAULT) -> GraspPoint:
-    """The front edge of a worn sleeve's armhole, where it crosses the top of the arm.
+    """The front edge of a worn sleeve's armhole, where it is highest above the arm.
 
     Args:
         frame: of any camera.
@@ -57,15 +64,17 @@ def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Armh
     off = tape - shoulder
     aside = unit(np.cross(along, (0.0, 0.0, 1.0)))
     above = off - np.outer(off @ along, along)
-    top = tape[(np.abs(off @ aside) < tuning.half_width) & (above[:, 2] > 0.0)]
-    if len(top) < tuning.min_points:
+    near = (np.abs(off @ aside) < tuning.half_width) & (above[:, 2] > 0.0)
+    if np.count_nonzero(near) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"front of the worn {side} sleeve's armhole")
+    height = above[near, 2]
+    top = tape[near][height >= np.quantile(height, 1.0 - tuning.highest)]
     place = np.median(top, axis=0)
     patch = tape[np.linalg.norm(tape - place, axis=1) < tuning.patch]
     normal = surface_normal(patch, frame.pose_camera_in_map[:3, 3])
     return GraspPoint(
         stamp=frame.stamp,
-        confidence=min(1.0, len(top) / tuning.full_points),
+        confidence=min(1.0, len(height) / tuning.full_points),
         target=SLEEVE_OF[side],
         position_in_map=place,
         approach_in_map=-normal,

@@ -141,8 +141,6 @@ class Diorama:
         for k, (x, y) in enumerate(((-0.3, -0.9), (0.3, -0.9), (-0.3, 0.9), (0.3, 0.9))):
             foot = middle + (x, y, 0.0)
             self._add(f"bed_leg{k}", cylinder_mesh(foot, foot + (0, 0, top - 0.12), 0.03), "bed_frame")
-        board = middle + (0.0, -BED_HALF[1], 0.0)
-        self._add("headboard", box_mesh(board + (-0.48, -0.06, 0.35), board + (0.48, -0.03, top + 0.32)), "board")
         bed = middle + (0.0, 0.0, top)
         self._add("pillow", box_mesh(bed + (-0.25, -0.98, 0.0), bed + (0.25, -0.66, 0.03)), "frame")
 

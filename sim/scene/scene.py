@@ -121,8 +121,8 @@ def _arm_pose(rng: np.random.Generator, low: float, high: float) -> tuple[float,
 def room_map() -> RoomMap:
     """The map made beforehand: nominal places, free space inflated by half of the base's width.
 
-    Along the sides of the bed the base may come as near as its mast allows: its 0.31 m deck passes under
-    the mattress, as an over-bed table does.
+    Along the sides of the bed and at the middle of its head the base may come as near as its mast allows: its 0.31 m
+    deck passes under the mattress, as an over-bed table does.
     """
     origin = np.array((-3.0, -3.0))
     xs = origin[0] + RESOLUTION * np.arange(int(7.0 / RESOLUTION))
@@ -130,7 +130,9 @@ def room_map() -> RoomMap:
     x, y = np.meshgrid(xs, ys)
     half = 0.50  # the base is 0.96 m x 0.79 m [m]
     free = (x > origin[0] + half) & (x < xs[-1] - half) & (y > origin[1] + half) & (y < ys[-1] - half)
-    free &= ~((np.abs(x) < BED_HALF[0] + 0.22) & (np.abs(y) < BED_HALF[1] + half))
+    near = 0.22  # of the base's middle to the mattress [m]
+    at_head = (np.abs(x) < near) & (y < -BED_HALF[1] - near)
+    free &= ~((np.abs(x) < BED_HALF[0] + near) & (np.abs(y) < BED_HALF[1] + half) & ~at_head)
     free &= ~((np.abs(x - RAIL_NOMINAL[0]) < 0.9) & (np.abs(y - RAIL_NOMINAL[1]) < 0.5))
     return RoomMap(
         free=free,
@@ -143,6 +145,7 @@ def room_map() -> RoomMap:
             "lay": (0.8, 1.6, -np.pi / 2),
             "bed_right": (1.25, -0.25, np.pi),
             "bed_left": (-1.25, -0.25, 0.0),
+            "bed_head": (0.0, -1.8, np.pi / 2),
         },
         bed=np.array(((-BED_HALF[0], -BED_HALF[1], BED_TOP - BED_THICKNESS), (BED_HALF[0], BED_HALF[1], BED_TOP))),
     )

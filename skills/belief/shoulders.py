@@ -1,43 +1,14 @@
-"""Where the collar lies between the shoulders.
-
-A sleeve that is drawn up by its front takes the gown's front along.  Once both were, the neckline lies flat on the side
-of the second one, and what there is too much of it hides in a fold at the other shoulder; drawing up the first one
-again moves the front back by less than half.
-"""
+"""Where the collar lies between the shoulders."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...perception.estimates import GraspPoint
-from ...sim.world import SIDES, Side
+from ...sim.world import SIDES
 from ..core.skill import Skill
 from ..geometry.stances import HEADWARD
 from .person_tracking import watch_arm, watch_of
-
-
-@dataclass
-class DrawnUp:
-    """Which sleeves were drawn up by their front, in the order of their first time."""
-
-    sides: list[Side] = field(default_factory=list)
-
-    def add(self, side: Side) -> None:
-        """One more."""
-        if side not in self.sides:
-            self.sides.append(side)
-
-    @property
-    def flat(self) -> Side | None:
-        """Where the neckline lies flat, None where it is not known."""
-        return self.sides[1] if len(self.sides) == len(SIDES) else None
-
-
-def drawn_up(skill: Skill) -> DrawnUp:
-    """The run's memory of it."""
-    return skill.context.memory.of(DrawnUp, DrawnUp)
 
 
 def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] = (0.0, 0.0)) -> GraspPoint:
@@ -53,8 +24,7 @@ def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] =
         SensorLost: the camera is dead.
         SkillFailure: its picture is stale.
     """
-    frame, flat = skill.world.look("head"), drawn_up(skill).flat
-    return skill.context.senses.collar_middle(frame, near_in_map=middle, away=away, flat=flat)
+    return skill.context.senses.collar_middle(skill.world.look("head"), near_in_map=middle, away=away)
 
 
 def between_shoulders(skill: Skill) -> np.ndarray:

@@ -20,6 +20,7 @@ from ...sim.mechanics.capsules import RobotCapsules
 from ...sim.mechanics.collision import CollisionChecker
 from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
+from ...sim.segments import segment_distances
 from ...sim.world import SIDES, JointTrajectory, Side
 from ..core.reasons import Reason
 from ..core.skill import Skill
@@ -50,6 +51,16 @@ def hand_now(skill: Skill, side: Side) -> np.ndarray:
     """Pose (4, 4) of a hand in the map, from the joint angles."""
     seen, kinematics = skill.world.observe(), kinematics_of(skill.world.robot)
     return kinematics.pose_hand_in_map(side, seen.arm_positions[SIDES.index(side)], seen.pose_base_in_map)
+
+
+def gap_between_arms(skill: Skill) -> float:
+    """How far the robot's arms are from each other, at their nearest; below 0 they would be in each other [m]."""
+    links = skill.context.memory.of(RobotCapsules, lambda: RobotCapsules(kinematics_of(skill.world.robot)))
+    seen = skill.world.observe()
+    ends = links.ends(seen.pose_base_in_map, seen.arm_positions, seen.head_pan, seen.gripper_opening)
+    left, right = (np.array([name.startswith(side) for name in links.names]) for side in SIDES)
+    distances, _ = segment_distances(ends[left], ends[right])
+    return float((distances - links.radii[left][:, None] - links.radii[right]).min())
 
 
 def cloth_load(skill: Skill, side: Side) -> np.ndarray:

@@ -12,7 +12,6 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 from ..core.skill import Skill
 from ..geometry.from_above import from_above
-from ..geometry.stances import outwards
 from .pinch import pinch_or_back_off, reach_in
 
 
@@ -35,21 +34,21 @@ class FromAbove(Quantities):
     )
 
 
-def take_from_above(skill: Skill, hand: Side, point: GraspPoint, side: Side, law: FromAbove) -> Iterator[None]:
+def take_from_above(skill: Skill, hand: Side, point: GraspPoint, outward: np.ndarray, law: FromAbove) -> Iterator[None]:
     """Take cloth at a point; where nothing is between the fingers, they open and the hand draws back.
 
     Args:
         skill: that takes it.
         hand: that comes down.
         point: where the cloth was seen.
-        side: of the bed on which the robot stands.
+        outward: (3,) unit vector from the body's middle to where the robot stands.
         law: how it comes down.
 
     Raises:
         MotionError: out of reach.
         SkillFailure: GRASP_MISSED, COMMAND_LOST or MOTION_BLOCKED.
     """
-    approach = from_above(point.approach_in_map, outwards(side), law.max_tilt)
+    approach = from_above(point.approach_in_map, outward, law.max_tilt)
     yield from reach_in(
         skill,
         hand,

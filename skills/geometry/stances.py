@@ -14,7 +14,7 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 
-Stand = Literal["lift", "shoulder", "collar"]
+Stand = Literal["lift", "shoulder"]
 LIFTING: dict[Side, Side] = {"right": "left", "left": "right"}  # arm -> the robot's hand on the head side
 PULLING: dict[Side, Side] = {"right": "right", "left": "left"}  # arm -> the robot's hand on the feet side
 HEADWARD = np.array((0.0, -1.0, 0.0))  # in the map, where the bed's head is at the lower y
@@ -32,11 +32,11 @@ class StanceTuning(Quantities):
     shoulder: tuple[float, float] = quantity(
         (0.97, -0.62), "m", "x and y of the base that pulls the right sleeve from the elbow to the neck", _FOUND
     )
-    collar: tuple[float, float] = quantity(
-        (0.80, -0.62),
+    head: tuple[float, float] = quantity(
+        (0.0, -1.32),
         "m",
-        "x and y of the base that lays the collar straight",
-        "measured: the right hand points down anywhere from 0.15 m right to 0.20 m left of the midline",
+        "x and y of the base at the head of the bed, from where both hands reach both shoulders",
+        "choice: inverse kinematics, hands that point down from 0.2 to 0.4 m aside, 0.45 to 0.75 m from the bed's edge",
     )
     lane: float = quantity(
         0.77,
@@ -57,8 +57,13 @@ STANCES = StanceTuning()
 
 def stance(arm: Side, stand: Stand, *, tuning: StanceTuning = STANCES) -> np.ndarray:
     """Base pose (3,) in the map beside one of the person's arms, facing the bed [m, m, rad]."""
-    x, y = {"lift": tuning.lift, "shoulder": tuning.shoulder, "collar": tuning.collar}[stand]
+    x, y = {"lift": tuning.lift, "shoulder": tuning.shoulder}[stand]
     return np.array((x, y, np.pi)) if arm == "right" else np.array((-x, y, 0.0))
+
+
+def stance_at_head(*, tuning: StanceTuning = STANCES) -> np.ndarray:
+    """Base pose (3,) in the map at the head of the bed, facing its foot [m, m, rad]."""
+    return np.array((*tuning.head, np.pi / 2))
 
 
 def outwards(arm: Side) -> np.ndarray:

@@ -210,7 +210,6 @@ class ScriptedSenses(Senses):
         *,
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
-        flat: Side | None = None,
     ) -> GraspPoint:
         """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
         place = np.array((self._collar_aside + away[0], -0.5 + away[1], 0.83))

@@ -25,7 +25,7 @@ from caretree.skills.pull_along_arm import PullAlongArm
 from caretree.skills.raise_corner import RaiseCorner
 from caretree.skills.release_arm import ReleaseArm
 from caretree.skills.retreat import Retreat
-from caretree.skills.seat_sleeve import SeatSleeve
+from caretree.skills.seat_sleeves import SeatSleeves
 from caretree.skills.segment_and_grasp import SegmentAndGrasp
 from caretree.skills.spread import Spread
 from caretree.skills.stretch_neckline import StretchNeckline
@@ -77,8 +77,8 @@ EXAMPLES = {
     ReleaseArm: lambda context: ReleaseArm("release arm", context, hand="left", lower=True),
     Retreat: lambda context: Retreat("retreat", context, base_distance=0.3),
     SegmentAndGrasp: lambda context: SegmentAndGrasp("segment and grasp", context, hand="right"),
-    SeatSleeve: lambda context: SeatSleeve("seat sleeve", context, side="right", hand="right"),
-    Spread: lambda context: Spread("spread", context, side="left", hand="left"),
+    SeatSleeves: lambda context: SeatSleeves("seat sleeves", context),
+    Spread: lambda context: Spread("spread", context),
     StretchNeckline: lambda context: StretchNeckline("stretch neckline", context, max_width=0.7),
     TakeCorner: lambda context: TakeCorner(
         "take corner", context, hand="right", sleeve="left", hook=hook(context), min_load=-1.0

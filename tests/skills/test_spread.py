@@ -7,22 +7,22 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
 from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.skills.spread import Spread
 
 from .bench import LeafBench, beside_bed, pulls
 
-STAND = (0.80, -0.62, np.pi)  # beside the right shoulder, facing the bed [m, m, rad]
 HEIGHT = 0.83  # of the collar on the chest [m]
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-ARM = lying_posture("right").points_in_map
+ARM = lying_posture("left").points_in_map
 FRONT = GraspPoint(
     stamp=0.0,
     confidence=0.9,
-    target="sleeve_right",
+    target="sleeve_left",
     position_in_map=ARM[0] + 0.2 * (ARM[1] - ARM[0]) + (0.0, 0.0, 0.06),
     approach_in_map=np.array((0.0, 0.0, -1.0)),
     closing_in_map=np.array((1.0, 0.0, 0.0)),
@@ -41,12 +41,12 @@ def collar_at(aside, y):
     )
 
 
-def bench(*, aside=0.14, cloth=HELD, collar=None, holding=None, front=FRONT, each_tick=lambda bench: None):
-    """The right hand, from the right side of the bed; the collar's middle lies `aside` [m]."""
+def bench(*, aside=0.14, cloth=HELD, collar=None, front=FRONT, each_tick=lambda bench: None):
+    """From the head of the bed; the collar's middle lies `aside`, on the right hand's side where it is above 0 [m]."""
     return LeafBench(
-        lambda context: Spread("spread", context, side="right", hand="right", holding=holding),
+        lambda context: Spread("spread", context),
         beside_bed(
-            stand=STAND,
+            stand=stance_at_head(),
             collar_middle=collar or collar_at(aside, -0.50),
             gripped_cloth=cloth,
             armhole_front=front,
@@ -127,7 +127,7 @@ def test_a_collar_that_does_not_show_is_told_and_no_hand_moves():
 def test_a_collar_far_aside_is_taken_by_the_cloth_on_its_way_to_the_midline_and_farther_down_where_no_hand_gets():
     asked = []
 
-    def collar(frame, *, near_in_map, away=(0.0, 0.0), flat=None):
+    def collar(frame, *, near_in_map, away=(0.0, 0.0)):
         asked.append(away)
         out_of_reach = 0.9 if 0.0 < away[1] < 0.06 else 0.0  # [m]
         return dataclasses.replace(seen, position_in_map=seen.position_in_map + (*away, out_of_reach))
@@ -145,7 +145,7 @@ def test_a_collar_far_aside_is_taken_by_the_cloth_on_its_way_to_the_midline_and_
 def test_a_collar_near_the_midline_is_taken_below_its_middle():
     asked = []
 
-    def collar(frame, *, near_in_map, away=(0.0, 0.0), flat=None):
+    def collar(frame, *, near_in_map, away=(0.0, 0.0)):
         asked.append(away)
         return dataclasses.replace(seen, position_in_map=seen.position_in_map + (*away, 0.0))
 
@@ -169,7 +169,7 @@ def test_the_hand_on_its_way_down_stops_where_it_touches_the_body():
 
 
 def test_the_other_hand_holds_the_near_armhole_while_the_collar_is_carried_and_lets_go_last():
-    run = bench(aside=0.07, holding="left")
+    run = bench(aside=0.07)
     assert run.ended() is None
     held, carrying = run.openings("left") < 0.005, run.openings("right") < 0.005
     assert run.way("left")[held] == pytest.approx(np.broadcast_to(FRONT.position_in_map, (held.sum(), 3)), abs=0.03)
@@ -183,7 +183,7 @@ AWAY = dataclasses.replace(FRONT, position_in_map=FRONT.position_in_map + 2.0)
 
 @pytest.mark.parametrize("front", [HIDDEN, AWAY])
 def test_a_collar_far_aside_is_brought_though_the_armhole_cannot_be_held(front):
-    run = bench(aside=0.14, holding="left", front=front)
+    run = bench(aside=0.14, front=front)
     assert run.ended() is None
     assert len(carried(run))
     assert run.openings("left").min() > 0.04

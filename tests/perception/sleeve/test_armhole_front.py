@@ -20,8 +20,13 @@ def test_it_lies_where_the_tape_crosses_the_top_of_the_arm():
     assert seen.target == "sleeve_right"
 
 
-def test_tape_beside_the_arm_does_not_count():
-    beside = picture((30, 40), (55, 65), rows=(80, 100))  # 10 to 20 cm aside
+def test_the_highest_part_of_it_counts_also_beside_the_axis():
+    seen = armhole_front(picture((30, 40), (55, 65), rows=(68, 88)), "right", lower(ARM))
+    assert abs(seen.position_in_map[1]) == pytest.approx(0.09, abs=0.02)  # [m]
+
+
+def test_tape_far_beside_the_arm_does_not_count():
+    beside = picture((30, 40), (55, 65), rows=(98, 118))  # 19 to 29 cm aside
     with pytest.raises(PerceptionFailure):
         armhole_front(beside, "right", lower(ARM))
 

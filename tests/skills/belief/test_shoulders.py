@@ -2,23 +2,13 @@
 
 import numpy as np
 import pytest
-from caretree.perception.estimates import GraspPoint
-from caretree.skills.belief.shoulders import between_shoulders, drawn_up, look_at_collar, off_middle
+from caretree.skills.belief.shoulders import between_shoulders, off_middle
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
 
 from ..bench import LeafBench, beside_bed
 
 MIDDLE = np.mean([lying_posture(side).points_in_map[0] for side in ("left", "right")], axis=0)  # [m]
-
-COLLAR = GraspPoint(
-    stamp=0.0,
-    confidence=0.9,
-    target="collar_middle",
-    position_in_map=MIDDLE,
-    approach_in_map=np.array((0.0, 0.0, -1.0)),
-    closing_in_map=np.array((0.0, 1.0, 0.0)),
-)
 
 
 def test_arms_that_are_not_known_are_looked_for_and_then_remembered():
@@ -39,18 +29,3 @@ def test_arms_that_are_not_known_are_looked_for_and_then_remembered():
 
 def test_aside_is_to_the_right_of_the_bed_and_headward_away_from_the_feet():
     assert off_middle(MIDDLE + (0.1, -0.2, 0.3), MIDDLE) == pytest.approx((0.1, 0.2))
-
-
-def test_the_neckline_lies_flat_on_the_side_that_was_drawn_up_second():
-    asked = []
-
-    def collar(frame, *, near_in_map, away, flat):
-        asked.append(flat)
-        return COLLAR
-
-    skill = LeafBench(lambda context: CheckCollar("lies well", context), beside_bed(collar_middle=collar)).skill
-    for side in (None, "right", "left", "right"):
-        if side:
-            drawn_up(skill).add(side)
-        look_at_collar(skill, np.zeros(3))
-    assert asked == [None, None, "left", "left"]

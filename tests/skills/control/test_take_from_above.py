@@ -8,6 +8,7 @@ from caretree.skills.belief.person_tracking import watch_arm
 from caretree.skills.control.take_from_above import FromAbove, take_from_above
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
+from caretree.skills.geometry.stances import outwards
 from caretree.skills.scripted.scripted_person import lying_posture
 
 from ..bench import LeafBench, beside_bed
@@ -32,7 +33,7 @@ class Take(Skill):
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
         watch_arm(self, "right")
-        yield from take_from_above(self, "right", point, "right", FromAbove())
+        yield from take_from_above(self, "right", point, outwards("right"), FromAbove())
 
 
 def taken(cloth):

@@ -42,7 +42,7 @@ OBSERVED = {
 }
 PICTURED = {"camera", "stamp", "rgb", "depth", "intrinsics", "pose_camera_in_map"}
 MAPPED = {"free", "origin", "resolution", "waypoints", "bed"}
-PLACES = {"start", "rail", "rail_back", "lay", "bed_right", "bed_left"}
+PLACES = {"start", "rail", "rail_back", "lay", "bed_right", "bed_left", "bed_head"}
 
 
 @pytest.fixture

@@ -114,23 +114,17 @@ class DressingTuning(Quantities):
     back_off_distance: float = quantity(0.25, "m", "of the base from a dressed arm", "choice: the arm comes into view")
     # settling the sleeves and the collar
     armhole_in_reach: float = quantity(
-        0.50,
+        0.45,
         "1",
         "of the upper arm, below which a sleeve is drawn up by its strap first",
         "measured: by its front edge alone an armhole at 0.44 came to 0.53, others at 0.51 to 0.62 to 0.71 to 0.85",
     )
     armhole_sits: float = quantity(
-        0.76,
+        0.72,
         "1",
-        "of the upper arm, below which the armhole is drawn up by its front edge",
-        "choice: what is asked for, 0.7, and what the collar and the other sleeve take away again, 0.03 to 0.08; "
-        "drawn up from 0.83, one came to rest at 0.69 (105)",
-    )
-    armhole_low: float = quantity(
-        0.68,
-        "1",
-        "of the upper arm, below which the armhole is drawn up a second time",
-        "choice: clearly low, as what is seen is off by 0.044, and drawing one sleeve up takes the other one down",
+        "of the upper arm, below which both armholes are drawn up by their front edges",
+        "measured: drawn up once they came to rest at 0.72 and 0.75 (101), once more at 0.74 and 0.71: asked for more, "
+        "it only takes the collar along",
     )
     armhole_will_do: float = quantity(
         0.72,
@@ -144,18 +138,11 @@ class DressingTuning(Quantities):
         "of the neckline, below which it cannot be said whether its middle lies in the middle",
         "measured: in 108 views of seeds 101 to 108 that showed less it was missed by 0.06 to 0.18 m",
     )
-    collar_room: tuple[float, float, float] = quantity(
-        (0.20, 0.08, 0.30),
+    collar_neat: tuple[float, float, float] = quantity(
+        (0.06, 0.095, 0.07),
         "m",
-        "of the collar's middle aside, headward and footward, within which a sleeve may be drawn up by its front edge",
-        "measured: headward, seen at 0.04 (101) it stayed off the face; from 0.13 it was taken over the face (105, "
-        "twice); aside, the sleeve brings it back",
-    )
-    settle_attempts: int = quantity(
-        2,
-        "1",
-        "at a low sleeve, the look before it is drawn included",
-        "measured: turn by turn both gain, on four recorded states 0.57 to 0.76 and more; at once again, little",
+        "of the collar's middle aside, headward and footward, beyond which it is laid straight",
+        "choice: 1, 0.5 and 1 cm of what is allowed",
     )
     again_load: float = quantity(
         3.7,
@@ -169,7 +156,6 @@ class DressingTuning(Quantities):
     covered_share: float = quantity(
         0.75, "1", "of the trunk under cloth that counts as covered", "choice: as far as a camera can tell"
     )
-    shoulder_back_off: float = quantity(0.3, "m", "of the base from a shoulder", "choice: the arms then turn freely")
     safe_back_off: float = quantity(
         0.2, "m", "of the base whenever a stage fails", "choice: a small way, as nothing is planned"
     )

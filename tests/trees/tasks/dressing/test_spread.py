@@ -1,4 +1,4 @@
-"""The stage `spread`, rehearsed with sleeves that are low and a collar that is on the throat."""
+"""The stage `spread`, rehearsed with sleeves that are low and a collar that is off its place."""
 
 from dataclasses import replace
 
@@ -9,47 +9,76 @@ from caretree.trees.run.runner import run
 from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
+DRAWS = {
+    **{f"gown/{when}/{name}": name for when in ("first", "now", "then") for name in ("seat", "spread")},
+    **{f"{side} strap/pull up": f"{side} strap" for side in ("left", "right")},
+}
+STRAP, FRONT = 0.3, 0.15  # how much farther up the arm a sleeve is after it was drawn by either
 
-class LowSleeves(ScriptedSenses):
-    """Armholes at `reach` of the upper arm until they are drawn up, and a collar `headward` of where it usually is."""
 
-    def __init__(self, world, reach, headward):
+class WornGown(ScriptedSenses):
+    """Armholes at `reach` of the upper arm until they are drawn up, and a collar that is `off` (x, y) until it is laid.
+
+    Attributes:
+        done: what was done to it, in turn.
+    """
+
+    def __init__(self, world, reach, off, *, stays=False):
         super().__init__(world)
-        self.low, self.headward, self.taken = dict.fromkeys(("left", "right"), reach), headward, []
+        self.low, self.off, self.stays, self.done = dict.fromkeys(("left", "right"), reach), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
         return replace(super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map), reach=self.low[side])
 
     def drawn(self, progress):
-        """Told of what goes on: a sleeve that was seated is higher up."""
-        if progress.name.endswith("/seat") and progress.status == "success":
-            side = progress.name.split()[0]
-            self.taken.append(side)
-            self.low[side] += 0.15
+        """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
+        if progress.status != "success" or progress.name not in DRAWS:
+            return
+        self.done.append(DRAWS[progress.name])
+        for side in self.low:
+            self.low[side] += {"seat": FRONT, f"{side} strap": STRAP}.get(self.done[-1], 0.0)
+        if self.done[-1] == "spread" and not self.stays:
+            self.off = (0.0, 0.0)
 
-    def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0), flat=None):
-        seen = super().collar_middle(frame, near_in_map=near_in_map, away=away, flat=flat)
-        return replace(seen, position_in_map=seen.position_in_map - np.array((0.0, self.headward, 0.0)))
+    def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0)):
+        seen = super().collar_middle(frame, near_in_map=near_in_map, away=away)
+        return replace(seen, position_in_map=near_in_map + (*np.add(self.off, away), 0.13))
 
 
-def rehearsed(reach, headward=0.0):
-    """How the stage ends, and which armholes were taken by their front edge, in turn."""
+def rehearsed(reach, off=(0.0, 0.0), *, stays=False):
+    """How the stage ends, and what was done to the gown in turn."""
     task = load_task("dressing")
     world, _ = task.scripted(1)
     prepare_stage(world, task, "spread")
-    senses = LowSleeves(world, reach, headward)
+    senses = WornGown(world, reach, off, stays=stays)
     result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=senses.drawn)
-    return result.outcome, senses.taken
+    return result.outcome, senses.done
 
 
 @pytest.mark.parametrize(
-    ("reach", "taken"), [(0.85, []), (0.70, ["right", "left"]), (0.52, ["right", "left", "right", "left"])]
+    ("reach", "done"),
+    [
+        (0.85, []),
+        (0.70, ["seat"]),
+        (0.52, ["seat", "seat"]),
+        (0.30, ["left strap", "right strap", "seat"]),
+    ],
 )
-def test_low_sleeves_are_drawn_up_turn_by_turn_until_they_sit_and_twice_at_most(reach, taken):
-    assert rehearsed(reach) == ("success", taken)
+def test_sleeves_are_drawn_up_together_until_they_sit_by_their_straps_first_where_they_are_far_down(reach, done):
+    assert rehearsed(reach) == ("success", done)
 
 
-def test_no_sleeve_is_drawn_up_where_the_collar_is_on_the_throat():
-    outcome, taken = rehearsed(0.75, headward=0.20)
-    assert taken == []
+@pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
+def test_a_collar_that_is_off_its_place_is_laid_straight(off):
+    assert rehearsed(0.85, off) == ("success", ["spread"])
+
+
+def test_the_collar_is_laid_straight_before_low_sleeves_are_drawn_up():
+    assert rehearsed(0.70, (0.14, 0.0)) == ("success", ["spread", "seat"])
+
+
+def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
+    outcome, done = rehearsed(0.85, (0.0, -0.25), stays=True)
     assert outcome == "safe_stop"
+    assert set(done) == {"spread"}
+    assert len(done) <= 4
