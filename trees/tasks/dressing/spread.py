@@ -36,7 +36,7 @@ def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
     A sleeve that is drawn up takes the front along, and with it the other one down: from the head of the bed both are
-    drawn up at once, and the collar is brought to the middle between two draws.
+    drawn up at once, and the collar is brought to the middle before and after.
     """
     bed = Scope(context, "gown")
     return timed_stage(
@@ -48,7 +48,6 @@ def spread(context: Context) -> Stage:
         *neaten(context, bed),
         *(node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)),
         CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE),
-        back_off("leave", bed, DRESSING.back_off_distance),
         *(node for side in SIDES for node in still_inside(context, side)),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
@@ -110,9 +109,10 @@ def raised(context: Context, bed: Scope, side: Side) -> Behaviour:
 
 
 def neaten(context: Context, bed: Scope) -> list[Behaviour]:
-    """From the head of the bed, lay the collar straight, draw both sleeves up at once, and see to both again.
+    """From the head of the bed, lay the collar straight, draw both sleeves up at once, and see to the collar again.
 
-    Where either gets no farther, it may do all the same, which is looked at in the end.
+    Where either gets no farther, it may do all the same, which is looked at in the end.  Drawn up once more, sleeves
+    went back down and took the collar to the throat (docs/results.md).
     """
 
     def sleeves(when: str) -> Behaviour:
@@ -137,7 +137,7 @@ def neaten(context: Context, bed: Scope) -> list[Behaviour]:
         straight = RecoverBy(f"until it lies straight, {when}", lies, {Reason.COLLAR_ASIDE: straighten})
         return fallback(f"as straight as it gets, {when}", straight, back_off("leave it", here))
 
-    return [collar("first"), sleeves("now"), collar("now"), sleeves("then"), collar("then")]
+    return [collar("first"), sleeves("now"), collar("then")]
 
 
 def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviour]:
