@@ -3,7 +3,7 @@
 The runner wraps every world in it, so that a task author cannot leave it out.  It
 
 - keeps every link slow near the person, by scaling twists and base velocities and by stretching trajectories;
-- keeps every link off the person (`keep_clear.py`);
+- keeps every link off the person and off the robot's other links (`keep_clear.py`);
 - scales pulling down as the cloth load grows, stops at the limit, and then lets only relieving motion pass;
 - caps the grip on an arm and the speed of a hand that holds one;
 - stops the run when the senses are stale, frozen or gone, or the emergency stop is pressed.

@@ -1,4 +1,4 @@
-"""Keeps every link off the person: hands slide along it, and what was planned too near is refused."""
+"""Keeps every link off the person and off the robot itself: hands slide along, what was planned too near is refused."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from ...skills.core.reasons import Reason, SkillFailure
 from ...skills.geometry.clearance import LinkClearance
 from ...skills.geometry.person_zone import PersonZone
 from .link_motion import LinkMotion
+from .own_links import OwnLinks
 
 APPROACH = 0.5  # share of what is left of a gap that one command may use up: a link slows down as it comes near
 SLIDES = 4  # corrections of a twist before it is slowed down as a whole
@@ -21,7 +22,7 @@ CHECKED = 60  # poses of a trajectory that are tested, about
 
 
 class KeepClear:
-    """The gaps between the robot's links and the person, before and after each command.
+    """The gaps between the robot's links and the person, and among those links, before and after each command.
 
     A link that is too near already, because the person has moved or is seen better, may go anywhere but nearer.
 
@@ -32,18 +33,19 @@ class KeepClear:
 
     def __init__(self, motion: LinkMotion, zone: PersonZone) -> None:
         self._motion, self._zone = motion, zone
+        self._own = None if motion.known is None else OwnLinks(motion, motion.known)
         self._clearance = LinkClearance(motion.names, motion.radii)
 
     def twist(self, command: HandTwist, twist: np.ndarray, seen: Observation, held: Mapping[Side, str]) -> np.ndarray:
-        """The part (6,) of a twist (6,) that keeps the arm's links off the person."""
-        if not self._motion.knows_links or not np.any(twist):
+        """The part (6,) of a twist (6,) that keeps the arm's links off the person and off the rest of the robot."""
+        if self._own is None or not np.any(twist):
             return twist
-        room, away = self._room(self._motion.ends(seen), held)
+        room, away = self._all_room(self._motion.ends(seen), held)
         rows, least = self._motion.rows(command.side)[:, None], _least(room)
 
         def shortfall(tried: np.ndarray) -> np.ndarray:
             after = self._motion.after_twist(seen, command.side, tried, command.duration)
-            return np.where(rows, least - self._room(after, held)[0], -np.inf)
+            return np.where(rows, least - self._all_room(after, held)[0], -np.inf)
 
         slid = twist.copy()
         for _ in range(SLIDES):
@@ -59,7 +61,7 @@ class KeepClear:
 
     def base(self, command: BaseVelocity, seen: Observation, held: Mapping[Side, str]) -> float:
         """Share of the base's velocity that keeps all links off the person."""
-        if not self._motion.knows_links or not np.any(command.velocity):
+        if self._own is None or not np.any(command.velocity):
             return 1.0
         least = _least(self._room(self._motion.ends(seen), held)[0])
         for share in (1.0, *SLOWER):
@@ -72,9 +74,9 @@ class KeepClear:
         """Refuse a trajectory that brings a link too near.
 
         Raises:
-            SkillFailure: MOTION_BLOCKED, which names the link and the part of the person.
+            SkillFailure: MOTION_BLOCKED, which names the link and the part of the person, or both links.
         """
-        if not self._motion.knows_links:
+        if self._own is None:
             return
         sides: list[Side] = [side for side in SIDES if any(joint.startswith(side) for joint in command.joints)]
         if not sides:
@@ -90,6 +92,13 @@ class KeepClear:
                 raise SkillFailure(
                     Reason.MOTION_BLOCKED, f"the {name} would come too near to the person's {self._zone.names[part]}"
                 )
+        self._own.judge(command, seen)
+
+    def _all_room(self, ends: np.ndarray, held: Mapping[Side, str]) -> tuple[np.ndarray, np.ndarray]:
+        assert self._own is not None
+        pairs = zip(self._room(ends, held), self._own.room(ends), strict=True)
+        room, away = (np.concatenate(pair, axis=1) for pair in pairs)
+        return room, away
 
     def _room(self, ends: np.ndarray, held: Mapping[Side, str]) -> tuple[np.ndarray, np.ndarray]:
         return self._clearance.room(ends, self._zone, held)

@@ -27,12 +27,15 @@ class LinkMotion:
     Attributes:
         names: (r,) of the capsules.
         radii: (r,) [m].
+        known: the robot's own kinematics; None where the links are not known, and only the points between the
+            fingertips are.
     """
 
     def __init__(self, robot: RobotModel, kinematics: HandKinematics) -> None:
         self._robot = robot
         self._kinematics: Any = kinematics
-        self._links = RobotCapsules(kinematics) if isinstance(kinematics, Kinematics) else None
+        self.known = kinematics if isinstance(kinematics, Kinematics) else None
+        self._links = None if self.known is None else RobotCapsules(self.known)
         if self._links is not None:
             self.names, self.radii = self._links.names, self._links.radii
         else:
@@ -41,11 +44,6 @@ class LinkMotion:
         self._seen_ends = np.zeros((0, 2, 3))
         self._went: tuple[JointTrajectory, Observation, tuple[np.ndarray, np.ndarray]] | None = None
         self._rows = {side: np.array([name.startswith(side) for name in self.names]) for side in SIDES}
-
-    @property
-    def knows_links(self) -> bool:
-        """Whether these are the links, and not only the points between the fingertips."""
-        return self._links is not None
 
     def rows(self, side: Side) -> np.ndarray:
         """(r,) bool: the capsules of one arm."""
@@ -90,11 +88,16 @@ class LinkMotion:
         """Times (k,) [s] and ends (k, r, 2, 3) [m] along a trajectory, the base at rest; read-only."""
         if self._went is not None and self._went[0] is trajectory and self._went[1] is seen:
             return self._went[2]  # asked for once for the speed, once for the person
+        times, arms = self.postures(trajectory, seen)
+        way = times, np.array([self.ends(seen, each) for each in arms])
+        self._went = trajectory, seen, way
+        return way
+
+    def postures(self, trajectory: JointTrajectory, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
+        """Times (k,) [s] and angles (k, 2, n) [rad] of both arms along a trajectory; joints it leaves out rest."""
         times, positions = sampled(trajectory)
         arms = np.tile(np.asarray(seen.arm_positions, float), (len(times), 1, 1))
         for column, joint in enumerate(trajectory.joints):
             if (place := self._robot.place_of(joint)) is not None:
                 arms[:, place[0], place[1]] = positions[:, column]
-        way = times, np.array([self.ends(seen, each) for each in arms])
-        self._went = trajectory, seen, way
-        return way
+        return times, arms
