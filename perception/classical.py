@@ -41,6 +41,7 @@ from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
 from .senses import Senses
 from .sleeve.armhole_front import ArmholeFrontTuning, armhole_front
+from .sleeve.cloth_on_arm import ClothOnArmTuning, cloth_on_arm
 from .sleeve.cuff_round_arm import CuffTuning, cuff_round
 from .sleeve.held_armhole import HeldArmholeTuning, held_armhole
 from .sleeve.held_sleeve_heading import SleeveHeadingTuning, sleeve_heading
@@ -73,6 +74,7 @@ class ClassicalTuning(Quantities):
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
     chest_front: ChestFrontTuning = field(default_factory=ChestFrontTuning)
     armhole_front: ArmholeFrontTuning = field(default_factory=ArmholeFrontTuning)
+    cloth_on_arm: ClothOnArmTuning = field(default_factory=ClothOnArmTuning)
     hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
 
 
@@ -177,8 +179,11 @@ class ClassicalSenses(Senses):
         return worn_sleeve(frame, side, arm_in_map, self._tuning.worn_sleeve)
 
     def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """By the armhole's binding over the arm's axis."""
-        return armhole_front(frame, side, arm_in_map, self._tuning.armhole_front)
+        """By the armhole's binding over the arm's axis; where a fold hides it, the fold."""
+        try:
+            return armhole_front(frame, side, arm_in_map, self._tuning.armhole_front)
+        except PerceptionFailure:
+            return cloth_on_arm(frame, side, arm_in_map, self._tuning.cloth_on_arm)
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the skin that shows along the axis of the hand."""

@@ -277,7 +277,7 @@ class Senses(ABC):
 
     @abstractmethod
     def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it.
+        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it, or the cloth that hides it there.
 
         Args:
             frame: a view from above the arm.
@@ -288,7 +288,7 @@ class Senses(ABC):
             Target `sleeve_left` or `sleeve_right`.
 
         Raises:
-            PerceptionFailure: the armhole does not show there.
+            PerceptionFailure: neither shows.
         """
 
     @abstractmethod

@@ -36,7 +36,7 @@ def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
     A sleeve that is drawn up takes the front along, and with it the other one down: from the head of the bed both are
-    drawn up at once, and the collar is brought to the middle before and after.
+    drawn up at once where both are low, and then the collar is brought to the middle.
     """
     bed = Scope(context, "gown")
     return timed_stage(
@@ -109,35 +109,28 @@ def raised(context: Context, bed: Scope, side: Side) -> Behaviour:
 
 
 def neaten(context: Context, bed: Scope) -> list[Behaviour]:
-    """From the head of the bed, lay the collar straight, draw both sleeves up at once, and see to the collar again.
+    """From the head of the bed, draw up sleeves that are low, then lay the collar straight.
 
-    Where either gets no farther, it may do all the same, which is looked at in the end.  Drawn up once more, sleeves
-    went back down and took the collar to the throat (docs/results.md).
+    Where either gets no farther, it may do all the same, which is looked at in the end.  A sleeve that is drawn up takes
+    the collar along, and where the collar lay on its side, to the middle; laid there before, it sprang back (102, 103).
     """
 
-    def sleeves(when: str) -> Behaviour:
-        here = Scope(bed, when)
+    def seat() -> Behaviour:
+        draw = SeatSleeves("seat", bed, enough=DRESSING.armhole_sits)
+        return sequence("draw them up", draw, back_off("clear the view of them", bed))
 
-        def seat() -> Behaviour:
-            return sequence(
-                f"draw both up, {when}", SeatSleeves("seat", here), back_off("clear the view of them", here)
-            )
+    def straighten() -> Behaviour:
+        return sequence("lay it straight", Spread("spread", bed), back_off("clear the view of it", bed))
 
-        looks = [node for side in SIDES for node in sits(context, f"{side} {when}", side, DRESSING.armhole_sits)]
-        sit = RecoverBy(f"until they sit, {when}", sequence(f"both sit, {when}", *looks), dict.fromkeys(LOW, seat))
-        return fallback(f"as far as they go, {when}", sit, back_off("leave them", here))
-
-    def collar(when: str) -> Behaviour:
-        here = Scope(bed, when)
-
-        def straighten() -> Behaviour:
-            return sequence(f"lay it straight, {when}", Spread("spread", here), back_off("clear the view of it", here))
-
-        lies = CheckCollar("collar", here, tuning=NEAT)
-        straight = RecoverBy(f"until it lies straight, {when}", lies, {Reason.COLLAR_ASIDE: straighten})
-        return fallback(f"as straight as it gets, {when}", straight, back_off("leave it", here))
-
-    return [collar("first"), sleeves("now"), collar("then")]
+    looks = [node for side in SIDES for node in sits(context, f"{side} now", side, DRESSING.armhole_sits)]
+    sit = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
+    lies = RecoverBy(
+        "until it lies straight", CheckCollar("collar", bed, tuning=NEAT), {Reason.COLLAR_ASIDE: straighten}
+    )
+    return [
+        fallback("as far as they go", sit, back_off("leave them", bed)),
+        fallback("as straight as it gets", lies, back_off("leave it", bed)),
+    ]
 
 
 def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviour]:
