@@ -277,7 +277,7 @@ class Senses(ABC):
 
     @abstractmethod
     def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it, or the cloth that hides it there.
+        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it, or the cloth that hides it.
 
         Args:
             frame: a view from above the arm.

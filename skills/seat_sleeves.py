@@ -80,9 +80,10 @@ class SeatSleeves(Skill):
     """Takes each low armhole by its front edge, draws it up and to the shoulder until it is taut, and lays it down.
 
     Drawn one after the other, two of them take the collar to their side and the other sleeve down its arm; drawn
-    together they share the front between them.  A sleeve that is high enough is left alone.  Drawn by the strap, an armhole is drawn long, and goes back as the strap is let go
-    of; its front edge takes the whole armhole along.  The robot stands at the head of the bed, each hand on its side,
-    and the arms have to lie.  The hands end open and drawn back, after a missed grasp too.
+    together they share the front between them.  A sleeve that is high enough is left alone.  Drawn by the strap, an
+    armhole is drawn long, and goes back as the strap is let go of; its front edge takes the whole armhole along.  The
+    robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn
+    back, after a missed grasp too.
     """
 
     enough = Input(
