@@ -112,7 +112,7 @@ def neaten(context: Context, bed: Scope) -> list[Behaviour]:
     """From the head of the bed, draw up sleeves that are low, then lay the collar straight.
 
     Where either gets no farther, it may do all the same, which is looked at in the end.  A sleeve that is drawn up
-    takes the collar along, and where the collar lay on its side, to the middle; laid there before, it sprang back (102).
+    takes the collar along, and where the collar lay on its side, to the middle; laid there before, it sprang back.
     """
 
     def seat() -> Behaviour:
