@@ -41,13 +41,13 @@ def collar_at(aside, y):
     )
 
 
-def bench(*, aside=0.14, cloth=HELD, collar=None, front=FRONT, each_tick=lambda bench: None):
+def bench(*, aside=0.14, along=-0.50, cloth=HELD, collar=None, front=FRONT, each_tick=lambda bench: None):
     """From the head of the bed; the collar's middle lies `aside`, on the right hand's side where it is above 0 [m]."""
     return LeafBench(
         lambda context: Spread("spread", context),
         beside_bed(
             stand=stance_at_head(),
-            collar_middle=collar or collar_at(aside, -0.50),
+            collar_middle=collar or collar_at(aside, along),
             gripped_cloth=cloth,
             armhole_front=front,
             arm=lambda frame, side, **_: lying_posture(side),
@@ -71,6 +71,15 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_at_the_midline():
     assert way[-1, 0] - way[0, 0] == pytest.approx(-0.14, abs=0.03), "to 3 cm beside the midline, and beyond"
     assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] - way[-1, 2] == pytest.approx(0.12, abs=0.03), "drawn back"
+
+
+def test_a_collar_on_the_throat_is_drawn_footward_and_no_armhole_is_held():
+    run = bench(aside=0.0, along=-0.65)  # 0.10 m headward of the shoulders
+    assert run.ended() is None
+    way = carried(run)
+    assert way[-1, 1] - way[0, 1] == pytest.approx(0.13, abs=0.03), "to 3 cm footward of the shoulders"
+    assert np.ptp(way[:, 0]) < 0.02  # [m]
+    assert run.openings("left").min() > 0.05, "the other hand holds nothing"
 
 
 def test_it_is_carried_above_the_body():
