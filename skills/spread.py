@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +13,6 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import watch_arm
 from .belief.shoulders import between_shoulders, look_at_collar, off_middle
 from .control.carry import Carry, carry
 from .control.fingers import open_gripper
@@ -22,7 +21,7 @@ from .control.head import look_towards
 from .control.take_from_above import FromAbove, take_from_above
 from .control.withdraw import withdraw
 from .core.ports import Input, Output
-from .core.reasons import Reason, SkillFailure
+from .core.reasons import Reason
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import UP
@@ -35,13 +34,11 @@ class SpreadTuning(Quantities):
     """Numbers of `Spread`."""
 
     footward: float = quantity(
-        0.03, "m", "of the collar's middle from the line of the shoulders", "choice: below the throat, above the chest"
-    )
-    short_of_midline: float = quantity(
-        0.03,
+        0.05,
         "m",
-        "by which the collar is brought less far than to the midline",
-        "measured: each centimetre of its way took the near sleeve down by 0.01 to 0.02 (105); 0.07 m is allowed",
+        "of the collar's middle from the line of the shoulders",
+        "measured with ideal hands: drawn back to 0.05 m it came to rest on that line (102), brought to 0.03 m 0.01 m "
+        "headward of it (101)",
     )
     lies_well: float = quantity(
         0.03,
@@ -99,9 +96,9 @@ class Spread(Skill):
 
     A sleeve that is drawn on takes the collar along, to its side or up to the throat; the slack then hides in a fold at
     one shoulder.  Lifted by the cloth below its middle, carried past its place and drawn back to it, the collar
-    shares it between both.  The hand on its side carries it, while the other one holds the armhole that it would take
-    along; carried along the body it takes none.  A collar that lies well is left alone.  The robot stands at the head
-    of the bed; its hands end open and drawn back, after a missed grasp too.
+    shares it between both.  The hand on its side carries it, or the other one where that does not get there.  A collar
+    that lies well is left alone.  The robot stands at the head of the bed; the hand ends open and drawn back, after a
+    missed grasp too.
     """
 
     tuning = Input(SpreadTuning, default=SpreadTuning(), doc="numbers of this skill")
@@ -135,17 +132,12 @@ class Spread(Skill):
         if abs(aside) < tuning.lies_well and lowest < ahead < highest:
             yield
             return
-        hand, holding = SIDES if aside < 0.0 else SIDES[::-1]
         tries = Tries(MotionError, PerceptionFailure)
         places = self._places(middle, aside, tries)
-        across = abs(aside) >= tuning.lies_well
-        if places and across:
-            yield from self._hold(holding)
-        yield from self._take(hand, places, tries)
+        hand = yield from self._take(SIDES if aside < 0.0 else SIDES[::-1], places, tries)
         low = hand_now(self, hand)[:3, 3]
         way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
-        if across:
-            way[0] = (1.0 + tuning.springs_back) * (np.copysign(tuning.short_of_midline, aside) - aside)
+        way[0] *= 1.0 + tuning.springs_back
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from carry(self, hand, low + tuning.lift * UP, tuning.carry)
@@ -156,9 +148,6 @@ class Spread(Skill):
         yield from carry(self, hand, laid + way, tuning.carry)
         yield from open_gripper(self, hand)
         yield from withdraw(self, [hand], tuning.withdrawal)
-        if across:
-            yield from open_gripper(self, holding, tuning.grasp.opening)
-            yield from withdraw(self, [holding], tuning.withdrawal)
 
     def _places(self, middle: np.ndarray, aside: float, tries: Tries) -> list[GraspPoint]:
         """Where the cloth may be taken, best first: on its way to the midline if that is far.
@@ -172,23 +161,11 @@ class Spread(Skill):
                     places.append(look_at_collar(self, middle, (-float(np.copysign(inward, aside)), footward)))
         return places
 
-    def _hold(self, side: Side) -> Iterator[None]:
-        """Take the front of an armhole with the hand on its side; where that fails, go on without."""
-        self.note(f"holds the {side} armhole")
-        try:
-            arm = watch_arm(self, side).points_in_map
-            front = self.context.senses.armhole_front(self.world.look("head"), side=side, arm_in_map=arm)
-            yield from take_from_above(self, side, front, HEADWARD, self.tuning.grasp)
-        except (MotionError, PerceptionFailure) as miss:
-            self.note(f"goes on without: {miss}")
-        except SkillFailure as miss:
-            if miss.reason != Reason.GRASP_MISSED:
-                raise
-
-    def _take(self, hand: Side, places: list[GraspPoint], tries: Tries) -> Iterator[None]:
-        """Grasp the cloth at the first of the places that the hand gets to."""
-        for place in places:
-            with tries:
-                yield from take_from_above(self, hand, place, HEADWARD, self.tuning.grasp)
-                return
+    def _take(self, hands: Sequence[Side], places: list[GraspPoint], tries: Tries) -> Generator[None, None, Side]:
+        """Grasp the cloth at the first of the places that a hand gets to, and say which hand did."""
+        for hand in hands:
+            for place in places:
+                with tries:
+                    yield from take_from_above(self, hand, place, HEADWARD, self.tuning.grasp)
+                    return hand
         raise tries.last
