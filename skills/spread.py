@@ -34,7 +34,7 @@ class SpreadTuning(Quantities):
     """Numbers of `Spread`."""
 
     footward: float = quantity(
-        0.05,
+        0.04,
         "m",
         "of the collar's middle from the line of the shoulders",
         "measured with ideal hands: drawn back to 0.05 m it came to rest on that line (102), brought to 0.03 m 0.01 m "
@@ -47,7 +47,7 @@ class SpreadTuning(Quantities):
         "choice: 4 cm of the 7 cm allowed, as it is seen to 4 cm",
     )
     lies_along: tuple[float, float] = quantity(
-        (-0.06, 0.03),
+        (-0.06, 0.05),
         "m",
         "headward of the line of the shoulders, within which the collar is left as it is",
         "measured: straight across the throat, the neckline is wider than the shoulders and holds both armholes down; "
@@ -69,10 +69,11 @@ class SpreadTuning(Quantities):
         "midline 0.19 m",
     )
     beyond: float = quantity(
-        0.09,
+        0.05,
         "m",
         "by which the collar is carried beyond its place, and then drawn back along the body",
-        "measured: let go of at its place, it sprang back by 6 to 16 cm; drawn back to it, by less than 3 cm",
+        "measured: let go of at its place, it sprang back by 6 to 16 cm, drawn back to it, by less than 3 cm; carried "
+        "0.09 m beyond, it took the far sleeve down by 0.05 (101, 102)",
     )
     springs_back: float = quantity(
         0.3,

@@ -139,11 +139,11 @@ class DressingTuning(Quantities):
         "measured: in 108 views of seeds 101 to 108 that showed less it was missed by 0.06 to 0.18 m",
     )
     collar_neat: tuple[float, float, float] = quantity(
-        (0.03, 0.03, 0.07),
+        (0.06, 0.05, 0.07),
         "m",
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
-        "measured: laid from 0.08 aside and 0.09 headward to 0.03 footward, it came to rest at 0.00 and 0.01, and took "
-        "neither sleeve down (101); what is seen of it is 0.04 off",
+        "choice: of 0.07, 0.10 and 0.08 m that are allowed; its place is seen to 0.04 m, and laying it costs a sleeve "
+        "up to 0.05 of the upper arm (101, 102)",
     )
     again_load: float = quantity(
         3.7,
