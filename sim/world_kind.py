@@ -9,6 +9,7 @@
     easy+wrench_bias              wrists feel what is not there, and part of the gripper's own weight
     easy+depth_noise              depth in steps, pixels that fly at edges, pixels without depth
     easy+thinking_time            the world goes on while the robot works through images and plans
+    easy+skin_friction            cloth slides on skin as hard as cotton does
     hard                          with every difficulty there is
 
 How large each of them is, only the simulation knows: `scene/difficulties.py`.
@@ -30,6 +31,7 @@ DIFFICULTIES: tuple[str, ...] = (
     "wrench_bias",
     "depth_noise",
     "thinking_time",
+    "skin_friction",
 )
 
 

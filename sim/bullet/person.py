@@ -19,7 +19,6 @@ from ..scene.person_spec import (
     ARM_AXES,
     JOINT_LIMITS,
     OUTWARD,
-    SHAPE,
     PersonSpec,
     shoulder_in_map,
     torso_front,
@@ -71,11 +70,11 @@ class Person:
             for j, angle in zip(self.joints[side], spec.pose[side], strict=True):
                 client.resetJointState(self.body, j, angle)
         for link in range(-1, client.getNumJoints(self.body)):
-            client.changeDynamics(
-                self.body, link, lateralFriction=SHAPE.skin_friction, linearDamping=0.0, angularDamping=0.0
-            )
+            client.changeDynamics(self.body, link, linearDamping=0.0, angularDamping=0.0)
             client.changeDynamics(self.body, link, activationState=client.ACTIVATION_STATE_DISABLE_SLEEPING)
             client.changeDynamics(self.body, link, jointDamping=0.0)
+            # by itself: beside the dampings, a link keeps the default of 0.5
+            client.changeDynamics(self.body, link, lateralFriction=spec.skin_friction)
         # upper arm and trunk overlap at the shoulder, where contact could not part them: pushed, the arm would explode
         for upper, part in product((self.links[side][0] for side in SIDES), self.trunk_bodies.values()):
             client.setCollisionFilterPair(self.body, part, upper, -1, 0)
@@ -182,7 +181,7 @@ class Person:
             useMaximalCoordinates=int(self._plain),
             baseOrientation=c.getQuaternionFromEuler(turn),
         )
-        c.changeDynamics(body, -1, lateralFriction=SHAPE.skin_friction)
+        c.changeDynamics(body, -1, lateralFriction=self.spec.skin_friction)
         return body
 
     def _load(self) -> int:

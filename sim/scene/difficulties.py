@@ -226,6 +226,18 @@ class ThinkingTime(Quantities):
 
 
 @dataclass(frozen=True, kw_only=True)
+class SkinFriction(Quantities):
+    """Skin on which cloth does not slide as easily as in the easy world, where the coefficient is 0.2."""
+
+    coefficient: tuple[float, float] = quantity(
+        (0.3, 0.6),
+        "1",
+        "of Coulomb friction between gown and skin, at least and at most",
+        "design requirement: 0.3 to 0.6",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Sizes(Quantities):
     """How large each difficulty is; a difficulty has the name of its field."""
 
@@ -237,6 +249,7 @@ class Sizes(Quantities):
     wrench_bias: WrenchBias = field(default_factory=WrenchBias)
     depth_noise: DepthNoise = field(default_factory=DepthNoise)
     thinking_time: ThinkingTime = field(default_factory=ThinkingTime)
+    skin_friction: SkinFriction = field(default_factory=SkinFriction)
 
 
 SIZES = Sizes()

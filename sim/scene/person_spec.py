@@ -70,7 +70,9 @@ class BodyShape(Quantities):
         "shares of upper arm, forearm and hand in an arm's mass",
         "paper: Winter, Biomechanics of Human Movement, table 4.1",
     )
-    skin_friction: float = quantity(0.5, "1", "of trunk and arms against cloth", "choice: not measured")
+    skin_friction: float = quantity(
+        0.5, "1", "of trunk and arms; Bullet multiplies it with the cloth's", "choice: not measured; 0.2 with a gown"
+    )
 
 
 SHAPE = BodyShape()
@@ -107,6 +109,7 @@ class PersonSpec:
         dry_friction: (shoulder, elbow) torque that a joint resists with before it moves [N m].
         viscous: torque per joint speed [N m s/rad].
         stiff: side -> a shoulder that is not like the others.
+        skin_friction: of trunk and arms; times the cloth's, it is the coefficient between both.
         stirring: torque with which the person can swing the arms, if more than three times the friction [N m].
         falls: whether nothing but contact carries the arms: they are let come to rest before a run, and their upper
             parts may lie against the trunk, which is as wide as the shoulders.
@@ -123,6 +126,7 @@ class PersonSpec:
     dry_friction: tuple[float, float] = (2.4, 1.2)
     viscous: float = 4.0
     stiff: dict[str, StiffShoulder] = field(default_factory=dict)
+    skin_friction: float = SHAPE.skin_friction
     stirring: float = 0.0
     falls: bool = False
 
@@ -134,7 +138,7 @@ class PersonSpec:
         """
         if not 0.85 <= self.scale <= 1.15:
             raise CaretreeError(f"person '{self.name}': scale {self.scale} is outside 0.85 to 1.15")
-        if min(*self.radii, *self.lengths, self.mass, *self.dry_friction, self.viscous) <= 0:
+        if min(*self.radii, *self.lengths, self.mass, *self.dry_friction, self.viscous, self.skin_friction) <= 0:
             raise CaretreeError(f"person '{self.name}': sizes, mass and friction must be positive")
 
     @property

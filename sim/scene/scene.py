@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import CaretreeError
 from ..world import RoomMap
 from ..world_kind import EASY_KIND, WorldKind
-from .difficulties import stream
+from .difficulties import SIZES, stream
 from .falling_arms import with_falling_arms
 from .gown import GOWNS, HELD_OUT_GOWNS, GownMesh, GownSpec, build_gown
 from .gown_file import read_gown
@@ -99,6 +99,9 @@ def draw_scene(seed: int, gown: str | None = None, person: str | None = None, ki
     )
     if kind.has("falling_arms"):
         who = with_falling_arms(who, stream(seed, "falling_arms"), float(BED_HALF[0]))
+    if kind.has("skin_friction"):
+        coefficient = stream(seed, "skin_friction").uniform(*SIZES.skin_friction.coefficient)
+        who = replace(who, skin_friction=float(coefficient) / spec.friction)
     middle = len(mesh.collar) // 2
     return Scene(
         seed=seed,

@@ -8,7 +8,7 @@ from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import CAMERAS, BaseVelocity, HandTwist, JointTrajectory, SensorLost
 from caretree.sim.world_kind import DIFFICULTIES
 
-SENSES = [one for one in DIFFICULTIES if one not in ("falling_arms", "thinking_time")]
+SENSES = [one for one in DIFFICULTIES if one not in ("falling_arms", "thinking_time", "skin_friction")]
 
 
 def passed(kind, seconds=0.4):

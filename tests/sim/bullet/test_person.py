@@ -107,3 +107,13 @@ def test_a_person_whose_arms_fall_can_stir_all_the_same():
     bed.step(0.6)
     bed.person.swing(0.0)
     assert np.linalg.norm(bed.person.arms() - before, axis=2).max() > 0.05
+
+
+def test_all_of_the_body_has_the_friction_of_its_skin():
+    bed = Bed(kind="easy+skin_friction")
+    client, person = bed.soft.client, bed.person
+    links = [(person.body, link) for link in range(-1, client.getNumJoints(person.body))]
+    links += [(body, -1) for body in person.trunk_bodies.values()]
+    frictions = [client.getDynamicsInfo(*each)[1] for each in links]
+    assert frictions == pytest.approx([person.spec.skin_friction] * len(links))
+    assert person.spec.skin_friction > 0.6

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scene.gown import GOWNS
 from caretree.sim.scene.scene import draw_scene, room_map
+from caretree.sim.world_kind import WorldKind
 
 
 def test_the_same_seed_draws_the_same_scene():
@@ -23,6 +26,14 @@ def test_seeds_vary_everything():
         assert len({getattr(scene, draw) for scene in scenes}) > 3
     assert len({scene.person.pose["left"] for scene in scenes}) == 12
     assert len({scene.person.dry_friction for scene in scenes}) == 12
+
+
+def test_cloth_slides_harder_on_skin_where_that_is_asked_for_and_nothing_else_changes():
+    for seed in range(100, 120):
+        easy, hard = draw_scene(seed), draw_scene(seed, kind=WorldKind.named("easy+skin_friction"))
+        assert easy.person.skin_friction * easy.gown.friction == pytest.approx(0.2, abs=0.03)
+        assert 0.3 <= hard.person.skin_friction * hard.gown.friction <= 0.6
+        assert replace(hard.person, skin_friction=easy.person.skin_friction) == easy.person
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,10 @@ def test_the_easy_world_passes_everything_through_untouched():
         assert errors.told(command, 1.0) is command
 
 
-@pytest.mark.parametrize("difficulty", [one for one in DIFFICULTIES if one not in ("falling_arms", "thinking_time")])
+OTHERS = ("falling_arms", "thinking_time", "skin_friction")  # difficulties that are none of the senses
+
+
+@pytest.mark.parametrize("difficulty", [one for one in DIFFICULTIES if one not in OTHERS])
 def test_each_error_is_there_alone_and_the_same_alone_as_with_all_others(difficulty):
     easy, alone, hard = senses(100, "easy"), senses(100, f"easy+{difficulty}"), senses(100, "hard")
     for name, value in alone.items():
