@@ -161,11 +161,12 @@ def lower_arm(
             raise SkillFailure(Reason.TIMEOUT, f"the hand is {height:.2f} m above the mattress")
         along = downwards(pose[:3, 3])
         ease = float(np.clip((tuning.stop_at - load[2]) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))
-        linear = tuning.speed * ease * along + compliant_velocity(load - (load @ along) * along)
+        down = tuning.speed * ease * along
+        linear = down + compliant_velocity(load - (load @ along) * along)
         turn = tuning.turn_gain * np.cross(pose[:3, 2], -UP)
         turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
         skill.world.send(HandTwist(side=hand, twist_in_map=np.append(linear, turn)), retreat=True)
-        _bring_cloth(skill, hand, tuning)
+        _bring_cloth(skill, hand, down, tuning)
         yield
 
 
@@ -208,11 +209,16 @@ def _carried(
     raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stands {height:.2f} m above the mattress")
 
 
-def _bring_cloth(skill: Skill, hand: Side, tuning: LoweringTuning) -> None:
-    """The other hand follows what pulls at it: a sleeve over an arm goes down with it."""
+def _bring_cloth(skill: Skill, hand: Side, down: np.ndarray, tuning: LoweringTuning) -> None:
+    """A hand that holds cloth on the arm goes `down` (3,) with it [m/s], and follows what pulls at it.
+
+    Left where it is, the hand that lowers the arm would have to pass through it.
+    """
     other: Side = SIDES[1 - SIDES.index(hand)]
     load = cloth_load(skill, other)
+    velocity = down if skill.context.guard.grip(other) == "cloth" else np.zeros(3)
     over = float(np.linalg.norm(load)) - tuning.cloth_load
     if over > 0.0:
-        velocity = min(tuning.cloth_compliance * over, tuning.cloth_speed) * unit(load)
+        velocity = velocity + min(tuning.cloth_compliance * over, tuning.cloth_speed) * unit(load)
+    if velocity.any():
         skill.world.send(HandTwist(side=other, twist_in_map=np.append(velocity, np.zeros(3))), retreat=True)

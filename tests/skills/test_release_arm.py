@@ -36,10 +36,11 @@ def bench(
     """The left hand round the elbow of a raised arm, which pulls with `load` of the hand's height over the mattress.
 
     The arm is known to the run, or neither known nor seen.  It slips out of the fingers at a tick, if one is given; the
-    right hand holds cloth that pulls with `cloth`, if that is given; `options` are those of the leaf, or `deaf_to`.
+    right hand holds cloth that pulls with `cloth`, if that is given; `options` are those of the leaf, or `deaf_to`, or
+    whether it is `known_to_hold` that cloth.
     """
     posture = posture or raised()
-    deaf_to = options.pop("deaf_to", ())
+    deaf_to, known_to_hold = options.pop("deaf_to", ()), options.pop("known_to_hold", False)
 
     def feels(bench):
         if len(bench.seen) == slips_at:
@@ -53,6 +54,8 @@ def bench(
     def leaf(context):
         if known:
             context.memory.of(Watch, Watch).arms["right"] = posture
+        if known_to_hold:
+            context.guard.declare_grip("right", "cloth")
         return ReleaseArm("release", context, hand="left", **options)
 
     sight, blind = {"arm": goes_along(posture)}, dict.fromkeys(("arm", "head"), UNSEEN)
@@ -156,6 +159,15 @@ def test_a_sleeve_over_the_arm_comes_along_as_soon_as_it_pulls(pull, sinks):
     assert run.ended() is None
     sunk = run.way("right")[0, 2] - run.way("right")[parted(run), 2]
     assert bool(sunk > 0.05) is sinks
+    assert run.openings("right").max() < 0.01, "it is still held"
+
+
+def test_a_hand_that_is_known_to_hold_a_sleeve_goes_down_with_the_arm():
+    run = bench(lower=True, cloth=(0.0, 0.0, -1.5), known_to_hold=True)
+    assert run.ended() is None
+    down, along = (run.way(side)[parted(run)] - run.way(side)[0] for side in ("left", "right"))
+    assert down[2] < -0.1  # [m]
+    assert along == pytest.approx(down, abs=0.03)  # [m]
     assert run.openings("right").max() < 0.01, "it is still held"
 
 

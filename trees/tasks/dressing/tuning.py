@@ -103,7 +103,10 @@ class DressingTuning(Quantities):
         6, "1", "at one arm, the first one included", "choice: the stage's time ends them; a missed grasp costs 20 s"
     )
     past_wrist: float = quantity(
-        1.5, "1", "arm coordinate of the grip where the lifting hand may let go", "choice: half way up the forearm"
+        1.8,
+        "1",
+        "arm coordinate of the grip where the lifting hand may let go",
+        "measured: at 1.5 the pulling palm stood where the wrist of the hand that lowers the arm had to go (101, 102)",
     )
     grip_goal: float = quantity(
         -0.45, "1", "arm coordinate at which the grip ends the pull at the latest", "choice: beyond the shoulder"
