@@ -54,9 +54,9 @@ class KeepClear:
                 return slid
             worst = np.unravel_index(int(short.argmax()), short.shape)
             slid[:3] += away[worst] * short[worst] / max(command.duration, 1e-6)
-        for share in SLOWER:
-            if shortfall(share * slid).max() <= TOLERANCE:
-                return share * slid
+        for slower in (share * way for way in (slid, twist) for share in SLOWER):  # turning cannot slide
+            if shortfall(slower).max() <= TOLERANCE:
+                return slower
         return np.zeros(6)
 
     def base(self, command: BaseVelocity, seen: Observation, held: Mapping[Side, str]) -> float:
