@@ -57,7 +57,7 @@ def test_each_hand_draws_back_the_way_it_points():
 
 @pytest.mark.parametrize(("min_rise", "moved"), [(0.3, (0.0, 0.0, 0.12)), (-1.0, (0.12, 0.0, 0.0))])
 def test_a_hand_that_lies_flat_goes_straight_up_unless_it_may_go_back_the_way_it_points(min_rise, moved):
-    level = {"right": hand_pose(np.array((0.35, -0.20, 1.0)), -outwards("right"), HEADWARD)}
+    level = {"right": hand_pose(np.array((0.25, -0.30, 1.0)), -outwards("right"), HEADWARD)}
     tuning = RetreatTuning(withdraw=WithdrawTuning(min_rise=min_rise))
     run = LeafBench(
         lambda context: Retreat("retreat", context, hands="right", hand_distance=0.12, ready="never", tuning=tuning),
