@@ -30,7 +30,7 @@ ENGINES = "bullet, spring, spring-layers"
 LOOKS = "taped, plain, printed, random"
 WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
-    "easy+wrench_bias, easy+depth_noise, easy+thinking_time, hard"
+    "easy+wrench_bias, easy+depth_noise, easy+thinking_time, easy+skin_friction, hard"
 )
 FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
 EXPORTS = ("xml",)
