@@ -9,10 +9,11 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
-from ..estimates import SLEEVE_OF, GraspPoint
-from ..image.cloud import across, surface_normal, unit
+from ..estimates import GraspPoint
+from ..image.cloud import unit
 from ..image.surfaces import Surface
 from .cuff_round_arm import tape_near
+from .on_top import grasp_on_top
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,15 +69,14 @@ def armhole_front(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Armh
     if np.count_nonzero(near) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"front of the worn {side} sleeve's armhole")
     height = above[near, 2]
-    top = tape[near][height >= np.quantile(height, 1.0 - tuning.highest)]
-    place = np.median(top, axis=0)
-    patch = tape[np.linalg.norm(tape - place, axis=1) < tuning.patch]
-    normal = surface_normal(patch, frame.pose_camera_in_map[:3, 3])
-    return GraspPoint(
-        stamp=frame.stamp,
+    return grasp_on_top(
+        frame,
+        side,
+        tape[near],
+        height,
+        tape,
+        aside,
+        highest=tuning.highest,
+        patch=tuning.patch,
         confidence=min(1.0, len(height) / tuning.full_points),
-        target=SLEEVE_OF[side],
-        position_in_map=place,
-        approach_in_map=-normal,
-        closing_in_map=across(aside, -normal),
     )

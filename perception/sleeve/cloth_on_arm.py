@@ -9,11 +9,12 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
-from ..estimates import SLEEVE_OF, GraspPoint
-from ..image.cloud import across, surface_normal, unit
+from ..estimates import GraspPoint
+from ..image.cloud import unit
 from ..image.garment import gown_labels
 from ..image.projection import points_in_map
 from ..image.surfaces import GOWN_SURFACES
+from .on_top import grasp_on_top
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,15 +62,14 @@ def cloth_on_arm(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: Cloth
     near = cloth[(low < share) & (share < high) & (np.abs(off @ aside) < tuning.half_width) & above]
     if len(near) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"gown on the {side} arm")
-    top = near[near[:, 2] >= np.quantile(near[:, 2], 1.0 - tuning.highest)]
-    place = np.median(top, axis=0)
-    patch = cloth[np.linalg.norm(cloth - place, axis=1) < tuning.patch]
-    normal = surface_normal(patch, frame.pose_camera_in_map[:3, 3])
-    return GraspPoint(
-        stamp=frame.stamp,
+    return grasp_on_top(
+        frame,
+        side,
+        near,
+        near[:, 2],
+        cloth,
+        aside,
+        highest=tuning.highest,
+        patch=tuning.patch,
         confidence=tuning.confidence,
-        target=SLEEVE_OF[side],
-        position_in_map=place,
-        approach_in_map=-normal,
-        closing_in_map=across(aside, -normal),
     )
