@@ -84,7 +84,7 @@ class KeepClear:
         _, ends = self._motion.along(command, seen)
         rows = np.any([self._motion.rows(side) for side in sides], axis=0)[:, None]
         least = np.minimum(self._room(ends[0], held)[0], 0.0) - PLANNED_TOLERANCE
-        for after in ends[:: max(1, len(ends) // CHECKED)]:
+        for after in (*ends[:: max(1, len(ends) // CHECKED)], ends[-1]):
             short = np.where(rows, least - self._room(after, held)[0], -np.inf)
             if short.max(initial=-np.inf) > 0.0:
                 link, part = np.unravel_index(int(short.argmax()), short.shape)

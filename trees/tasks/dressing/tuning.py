@@ -125,7 +125,7 @@ class DressingTuning(Quantities):
     armhole_sits: float = quantity(
         0.72,
         "1",
-        "of the upper arm, below which both armholes are drawn up by their front edges",
+        "of the upper arm, below which an armhole is drawn up by its front edge",
         "measured: drawn up once they came to rest at 0.72 and 0.75 (101), once more at 0.74 and 0.71: asked for more, "
         "it only takes the collar along",
     )
