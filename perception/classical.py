@@ -12,6 +12,7 @@ from ..sim.world import SIDES, Frame, RoomMap, Side
 from .errors import PerceptionFailure, Problem
 from .estimates import (
     ArmPosture,
+    ChestCover,
     ChestFront,
     Cover,
     Estimate,
@@ -40,12 +41,11 @@ from .person.hand_cover import HandCoverTuning, hand_cover
 from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
 from .senses import Senses
-from .sleeve.armhole_front import ArmholeFrontTuning, armhole_front
-from .sleeve.cloth_on_arm import ClothOnArmTuning, cloth_on_arm
 from .sleeve.cuff_round_arm import CuffTuning, cuff_round
 from .sleeve.held_armhole import HeldArmholeTuning, held_armhole
 from .sleeve.held_sleeve_heading import SleeveHeadingTuning, sleeve_heading
 from .sleeve.lying_sleeve import LyingSleeveTuning, sleeve_opening
+from .sleeve.shoulder_seam import ShoulderSeamTuning, shoulder_seam
 from .sleeve.strap import StrapTuning, sleeve_strap
 from .sleeve.worn_sleeve import WornSleeveTuning, worn_sleeve
 
@@ -73,8 +73,7 @@ class ClassicalTuning(Quantities):
     arm_shift: ArmShiftTuning = field(default_factory=ArmShiftTuning)
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
     chest_front: ChestFrontTuning = field(default_factory=ChestFrontTuning)
-    armhole_front: ArmholeFrontTuning = field(default_factory=ArmholeFrontTuning)
-    cloth_on_arm: ClothOnArmTuning = field(default_factory=ClothOnArmTuning)
+    shoulder_seam: ShoulderSeamTuning = field(default_factory=ShoulderSeamTuning)
     hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
 
 
@@ -178,12 +177,9 @@ class ClassicalSenses(Senses):
         """By the bindings of armhole and cuff near the upper arm."""
         return worn_sleeve(frame, side, arm_in_map, self._tuning.worn_sleeve)
 
-    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """By the armhole's binding over the arm's axis; where a fold hides it, the fold."""
-        try:
-            return armhole_front(frame, side, arm_in_map, self._tuning.armhole_front)
-        except PerceptionFailure:
-            return cloth_on_arm(frame, side, arm_in_map, self._tuning.cloth_on_arm)
+    def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
+        """By the gown that is nearest to the person's head beside the shoulder."""
+        return shoulder_seam(frame, side, shoulders_in_map, self._tuning.shoulder_seam)
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the skin that shows along the axis of the hand."""
@@ -193,7 +189,7 @@ class ClassicalSenses(Senses):
         """By the cuff's binding about the axis."""
         return cuff_round(frame, points_in_map, self._tuning.cuff_round)
 
-    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
+    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestCover:
         """By the gown's colours at a grid of points on the front of the trunk."""
         return chest_cover(frame, self._bed, shoulders_in_map, self._tuning.chest_cover)
 

@@ -188,3 +188,14 @@ class Cover(Estimate):
     """How much of the trunk's front, or of a hand, lies under the gown.  share: 0 to 1."""
 
     share: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChestCover(Cover):
+    """How much of the trunk's front lies under the gown.
+
+    Attributes:
+        outside: share of what is covered on which the gown's outside is out, 0 to 1.
+    """
+
+    outside: float

@@ -12,6 +12,7 @@ from ..sim.errors import CaretreeError
 from ..sim.world import Frame, Side
 from .estimates import (
     ArmPosture,
+    ChestCover,
     ChestFront,
     Cover,
     Estimate,
@@ -276,19 +277,19 @@ class Senses(ABC):
     # -- the gown on the person --------------------------------------------------------------------------
 
     @abstractmethod
-    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """The front edge of a worn sleeve's armhole, on top of the arm that lies in it, or the cloth that hides it.
+    def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
+        """The outer end of the seam over a shoulder of a worn gown, where its sleeve is drawn up.
 
         Args:
-            frame: a view from above the arm.
+            frame: a view from the head of the bed.
             side: of the person.
-            arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+            shoulders_in_map: (2, 3) left and right [m].
 
         Returns:
             Target `sleeve_left` or `sleeve_right`.
 
         Raises:
-            PerceptionFailure: neither shows.
+            PerceptionFailure: too little of the gown shows there.
         """
 
     @abstractmethod
@@ -316,7 +317,7 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
+    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestCover:
         """How much of the front of the trunk lies under the gown.
 
         Args:

@@ -1,4 +1,4 @@
-"""Draw the armholes of worn sleeves that are low up to the shoulders, both at once, by their front edges."""
+"""Draw the sleeves of a worn gown up to the shoulders, both at once, by the seams over the shoulders."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import chest_top, watch_arm
+from .belief.person_tracking import watch_arm
 from .control.carry import Carry, carry
 from .control.fingers import open_gripper
 from .control.hands import gap_between_arms, hand_now
@@ -38,23 +37,19 @@ class SeatSleevesTuning(Quantities):
         (0.45, 0.25, 0.0),
         "rad",
         "of the hands outwards, off the vertical, tried in turn",
-        "choice: upright hands come no nearer to the midline than 0.15 m before their wrists meet; leaning ones missed "
-        "the front of an armhole 0.26 m outside the shoulder by 2 mm of their reach (101)",
+        "choice: upright hands come no nearer to the midline than 0.15 m before their wrists meet",
     )
-    lift: float = quantity(0.04, "m", "of the cloth off the arm before it is drawn", "choice: the hand clears the arm")
-    drawn_to: tuple[float, float, float] = quantity(
-        (0.12, -0.02, 0.27),
+    lift: float = quantity(0.12, "m", "of the seams before they are drawn", "choice: they clear the shoulders")
+    drawn_to: tuple[float, float] = quantity(
+        (0.07, 0.14),
         "m",
-        "inwards, headward and up from each shoulder, where the front edge of its armhole is drawn to: until it is "
-        "taut, and its far side, below the arm, comes along",
-        "measured with ideal hands: drawn 0.12 m inwards they came to rest at 0.79 and 0.83 (103) and at 0.83 and 0.82 "
-        "(101), 0.05 m inwards at 0.78 and 0.62 (103)",
+        "inwards and headward from each shoulder, where the end of its seam is drawn to: the armhole then goes round "
+        "the shoulder, not the arm",
+        "measured with ideal hands, the collar laid before: armholes at 0.44 to 0.76 came to rest at 0.70 to 0.84 "
+        "(101, 103, 104); 0.06 and 0.11 m at 0.69 to 0.82, 0.04 and 0.08 m at 0.66 to 0.87; 0.17 m headward, no higher",
     )
-    laid_at: tuple[float, float] = quantity(
-        (0.03, 0.13),
-        "m",
-        "footward of where it was drawn to, and up from the shoulder, where that edge is laid down and let go of",
-        "measured: let go of where it is taut, it springs back by 0.1 more; laid headward, the collar went along",
+    laid_at: float = quantity(
+        -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
     apart: float = quantity(
         0.04,
@@ -63,32 +58,22 @@ class SeatSleevesTuning(Quantities):
         "choice: nothing else keeps them apart while they are driven by velocities; at 0.10 m from the shoulders hands "
         "that leaned inwards were 8 cm inside each other",
     )
-    laying_speed: float = quantity(0.06, "m/s", "of the hands on their way down", "choice: they may meet the chest")
-    above_chest: float = quantity(
-        0.03,
-        "m",
-        "of the hands there, above the front of the chest, at least",
-        "measured: 0.01 m above it fingers met the trunk with 76 N as they opened (101), below it with 64 to 85 N; "
-        "from higher, the sleeve slides back farther",
-    )
+    laying_speed: float = quantity(0.06, "m/s", "of the hands on their way down", "choice: slow beside the neck")
     # at 6.5 N, with 8.1 N for a moment, 1 % of the cloth's edges were 28 % longer, at 6 N and 7.5 N 23 and 25 % (101)
     carry: Carry = field(default_factory=lambda: Carry(max_load=5.5))
     withdrawal: float = quantity(0.12, "m", "by which the open hands are drawn back", "choice: clear of the sleeves")
 
 
 class SeatSleeves(Skill):
-    """Takes each low armhole by its front edge, draws it up and to the shoulder until it is taut, and lays it down.
+    """Takes the outer end of the seam over each shoulder, and lays it down behind that shoulder.
 
-    Drawn one after the other, two of them take the collar to their side and the other sleeve down its arm; drawn
-    together they share the front between them.  A sleeve that is high enough is left alone.  Drawn by the strap, an
-    armhole is drawn long, and goes back as the strap is let go of; its front edge takes the whole armhole along.  The
-    robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn
-    back, after a missed grasp too.
+    An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
+    seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
+    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once, as
+    one alone takes the collar to its side.  The robot stands at the head of the bed, each hand on its side, and the
+    arms have to lie.  The hands end open and drawn back, after a missed grasp too.
     """
 
-    enough = Input(
-        float, unit="1", default=0.72, doc="how far up the upper arm an armhole is left alone: 0 elbow, 1 shoulder"
-    )
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
     reasons = (
         Reason.NOTHING_SEEN,
@@ -108,56 +93,42 @@ class SeatSleeves(Skill):
     def _seat(self) -> Iterator[None]:
         """Look at both, take one after the other, lift, draw, lay down, let go."""
         tuning = self.tuning
-        shoulders, fronts = {}, {}
-        for side in SIDES:  # before a hand comes in between
-            arm = watch_arm(self, side).points_in_map
-            shoulders[side] = arm[0]
-            yield from look_towards(self, np.mean(arm[:2], axis=0))
-            if self._low(side, arm):
-                fronts[side] = self.context.senses.armhole_front(self.world.look("head"), side=side, arm_in_map=arm)
-        for side, front in fronts.items():
-            self.note(f"takes the front of the {side} armhole")
-            yield from self._take(side, front)
-        self.note(f"draws the {' and the '.join(fronts)} armhole up" if fronts else "leaves both as they are")
-        yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in fronts})
-        yield from self._carry({side: _place(side, shoulders[side], tuning.drawn_to) for side in fronts})
-        footward, up = tuning.laid_at
-        laid: dict[Side, np.ndarray] = {}
-        for side in fronts:
-            laid[side] = hand_now(self, side)[:3, 3] - footward * HEADWARD
-            laid[side][2] = max(shoulders[side][2] + up, chest_top(self) + tuning.above_chest)
-        yield from together(*(carry(self, side, laid[side], tuning.carry, tuning.laying_speed) for side in fronts))
-        # at once, so that neither side gives way to the other; wider, a finger would come down to the chest
-        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in fronts))
-        yield from withdraw(self, list(fronts), tuning.withdrawal)
+        shoulders = np.array([watch_arm(self, side).points_in_map[0] for side in SIDES])
+        seams = {}
+        for n, side in enumerate(SIDES):  # before a hand comes in between
+            yield from look_towards(self, shoulders[n])
+            frame = self.world.look("head")
+            seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
+        for side, seam in seams.items():
+            self.note(f"takes the seam over the {side} shoulder")
+            yield from self._take(side, seam)
+        self.note("draws both sleeves up")
+        yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in SIDES})
+        inward, headward = tuning.drawn_to
+        over, laid = {}, {}
+        for side, shoulder in zip(SIDES, shoulders, strict=True):
+            place = shoulder - inward * outwards(side) + headward * HEADWARD
+            over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
+            laid[side] = place + tuning.laid_at * UP
+        yield from self._carry(over)
+        yield from self._carry(laid, tuning.laying_speed)
+        # at once, so that neither side gives way to the other
+        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in SIDES))
+        yield from withdraw(self, SIDES, tuning.withdrawal)
 
-    def _low(self, side: Side, arm: np.ndarray) -> bool:
-        """Whether a sleeve is too far down the arm (4, 3) [m]; one of which too little shows is let pass."""
-        try:
-            seen = self.context.senses.worn_sleeve(self.world.look("head"), side=side, arm_in_map=arm)
-        except PerceptionFailure:
-            return False
-        return seen.reach < self.enough
-
-    def _take(self, side: Side, front: GraspPoint) -> Iterator[None]:
-        """Grasp one front, leaning outwards as far as the arm reaches it that way."""
+    def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
+        """Grasp one seam, leaning outwards as far as the arm reaches it that way."""
         outward, tries = outwards(side), Tries(MotionError)
         for lean in self.tuning.leans:
-            leaning = replace(front, approach_in_map=-np.cos(lean) * UP - np.sin(lean) * outward)
+            leaning = replace(seam, approach_in_map=-np.cos(lean) * UP - np.sin(lean) * outward)
             with tries:
                 yield from take_from_above(self, side, leaning, outward, self.tuning.grasp)
                 return
         raise tries.last
 
-    def _carry(self, places: dict[Side, np.ndarray]) -> Iterator[None]:
-        """Both hands at once, each to its place (3,), as long as the arms stay apart [m]."""
-        for _ in together(*(carry(self, side, place, self.tuning.carry) for side, place in places.items())):
+    def _carry(self, places: dict[Side, np.ndarray], speed: float | None = None) -> Iterator[None]:
+        """Both hands at once, each to its place (3,), as long as the arms stay apart [m, m/s]."""
+        for _ in together(*(carry(self, side, place, self.tuning.carry, speed) for side, place in places.items())):
             if gap_between_arms(self) < self.tuning.apart:
                 return
             yield
-
-
-def _place(side: Side, shoulder: np.ndarray, place: tuple[float, float, float]) -> np.ndarray:
-    """(3,) in the map of a place inwards, headward and up from the shoulder [m]."""
-    inward, headward, up = place
-    return shoulder - inward * outwards(side) + headward * HEADWARD + up * UP

@@ -34,11 +34,11 @@ class SpreadTuning(Quantities):
     """Numbers of `Spread`."""
 
     footward: float = quantity(
-        0.04,
+        0.06,
         "m",
-        "of the collar's middle from the line of the shoulders",
-        "measured with ideal hands: drawn back to 0.05 m it came to rest on that line (102), brought to 0.03 m 0.01 m "
-        "headward of it (101)",
+        "of the collar's middle from the line of the shoulders, as it is let go of",
+        "measured with ideal hands: let go of 0.04 to 0.05 m below that line it came to rest there or 0.02 m above it "
+        "(101, 104); brought to 0.01 m below it by the robot, it went back by 0.11 m (101)",
     )
     lies_well: float = quantity(
         0.03,
@@ -47,11 +47,10 @@ class SpreadTuning(Quantities):
         "choice: 4 cm of the 7 cm allowed, as it is seen to 4 cm",
     )
     lies_along: tuple[float, float] = quantity(
-        (-0.06, 0.05),
+        (-0.06, 0.03),
         "m",
         "headward of the line of the shoulders, within which the collar is left as it is",
-        "measured: straight across the throat, the neckline is wider than the shoulders and holds both armholes down; "
-        "its middle drawn footward, it bends, and they stay where they were drawn to (101)",
+        "choice: sleeves that are drawn up afterwards take it up to 0.04 m headward (101, 104), and 0.10 m are allowed",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(
@@ -74,12 +73,6 @@ class SpreadTuning(Quantities):
         "by which the collar is carried beyond its place, and then drawn back along the body",
         "measured: let go of at its place, it sprang back by 6 to 16 cm, drawn back to it, by less than 3 cm; carried "
         "0.09 m beyond, it took the far sleeve down by 0.05 (101, 102)",
-    )
-    springs_back: float = quantity(
-        0.3,
-        "1",
-        "of its way across the body, by a collar that was brought to the midline and let go of",
-        "measured: 0.03 to 0.09 m in four spreads on 102 and 105 from 0.10 to 0.20 m aside; from 0.06 m, none",
     )
     laid_height: float = quantity(
         0.02,
@@ -138,7 +131,6 @@ class Spread(Skill):
         hand = yield from self._take(SIDES if aside < 0.0 else SIDES[::-1], places, tries)
         low = hand_now(self, hand)[:3, 3]
         way = np.append((middle - tuning.footward * HEADWARD - point.position_in_map)[:2], 0.0)
-        way[0] *= 1.0 + tuning.springs_back
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from carry(self, hand, low + tuning.lift * UP, tuning.carry)

@@ -9,7 +9,7 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
-from ..estimates import Cover
+from ..estimates import ChestCover
 from ..image.garment import gown_labels
 from ..image.projection import pixels_of
 from ..image.surfaces import Surface
@@ -37,7 +37,7 @@ DEFAULT = ChestCoverTuning()
 
 def chest_cover(
     frame: Frame, bed: np.ndarray, shoulders_in_map: np.ndarray, tuning: ChestCoverTuning = DEFAULT
-) -> Cover:
+) -> ChestCover:
     """Ask at a grid of points on the front of the trunk whether the camera sees gown there or something else.
 
     Args:
@@ -66,5 +66,11 @@ def chest_cover(
     open_view = frame.depth[rows, columns] > depth[inside] - tuning.hidden_distance
     if open_view.sum() < tuning.min_share * len(points):
         raise PerceptionFailure(Problem.OUT_OF_REACH, "trunk of the person")
-    covered = labels[rows, columns][open_view] != Surface.OTHER
-    return Cover(stamp=frame.stamp, confidence=float(open_view.sum() / len(points)), share=float(covered.mean()))
+    seen = labels[rows, columns][open_view]
+    covered = seen[seen != Surface.OTHER]
+    return ChestCover(
+        stamp=frame.stamp,
+        confidence=float(open_view.sum() / len(points)),
+        share=len(covered) / len(seen),
+        outside=float(np.mean(covered != Surface.INSIDE)) if len(covered) else 0.0,
+    )

@@ -13,6 +13,7 @@ from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
     ArmPosture,
+    ChestCover,
     ChestFront,
     Cover,
     Estimate,
@@ -32,7 +33,8 @@ from ...perception.senses import Senses
 from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
 from ...sim.scripted.world import ScriptedWorld
-from ...sim.world import Frame, Observation, Side
+from ...sim.world import SIDES, Frame, Observation, Side
+from ..geometry.stances import HEADWARD, outwards
 from .scripted_person import laid_strap, lying_arm, lying_posture
 
 _Senses = TypeVar("_Senses", bound="ScriptedSenses")
@@ -176,15 +178,15 @@ class ScriptedSenses(Senses):
             stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, reach=0.9, round_arm=0.8
         )
 
-    def armhole_front(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> GraspPoint:
-        """On top of the upper arm, a third of it down."""
+    def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
+        """Beside and headward of the shoulder."""
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,
             target=SLEEVE_OF[side],
-            position_in_map=arm_in_map[0] + 0.35 * (arm_in_map[1] - arm_in_map[0]) + (0.0, 0.0, 0.06),
+            position_in_map=shoulders_in_map[SIDES.index(side)] + 0.15 * outwards(side) + 0.10 * HEADWARD,
             approach_in_map=np.array((0.0, 0.0, -1.0)),
-            closing_in_map=np.array((1.0, 0.0, 0.0)),
+            closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
 
     def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
@@ -195,9 +197,9 @@ class ScriptedSenses(Senses):
         """All the way round."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 
-    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> Cover:
+    def chest_cover(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestCover:
         """All of it."""
-        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+        return ChestCover(stamp=frame.stamp, confidence=0.9, share=1.0, outside=1.0)
 
     def chest_front(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestFront:
         """An adult's, and flat."""

@@ -52,7 +52,7 @@ ELSEWHERE = {
     "sleeve_heading",
     "hand_cover",
     "cuff_round",
-    "armhole_front",
+    "shoulder_seam",
     "relocalised_arm",
     "arm_shift",
     "worn_sleeve",

@@ -9,11 +9,11 @@ from caretree.sim.render.solids import box_mesh
 SHOULDERS = np.array((0.0, -0.55, 0.7))
 
 
-def covered(scene, bed, feet):
-    """The share that is seen with a gown from above the shoulders down to `feet` [m]."""
+def covered(scene, bed, feet, surface="gown_outside"):
+    """What is seen with a gown from above the shoulders down to `feet` [m]."""
     top = bed[1, 2] + 0.22
     scene.renderer.add_rigid(
-        "gown", *box_mesh((-0.25, -0.6, top), (0.25, feet, top + 0.01)), scene.look.colours["gown_outside"]
+        "gown", *box_mesh((-0.25, -0.6, top), (0.25, feet, top + 0.01)), scene.look.colours[surface]
     )
     return chest_cover(scene.frame(0, stamp=1.5), bed, SHOULDERS)
 
@@ -23,6 +23,11 @@ def test_a_gown_over_all_of_it_and_over_half_of_it(scenes, bed):
     assert whole.share > 0.95
     assert half.share == pytest.approx(0.5, abs=0.15)
     assert whole.stamp == 1.5
+
+
+@pytest.mark.parametrize(("surface", "outside"), [("gown_outside", 1.0), ("gown_inside", 0.0)])
+def test_which_side_of_it_is_out(scenes, bed, surface, outside):
+    assert covered(scenes.person(0), bed, 0.0, surface).outside == pytest.approx(outside, abs=0.05)
 
 
 def test_no_gown_and_no_chest_are_no_answer(scenes, bed):

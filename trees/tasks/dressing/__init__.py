@@ -30,7 +30,7 @@ from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the 
 from .dress import dress
 from .lay import holds_gown, lay
 from .safe import make_safe
-from .spread import chest_covered, spread
+from .spread import chest_covered, outside_out, spread
 from .take_down import both_ends, hands_open, take_down
 
 STAGES = {
@@ -40,7 +40,7 @@ STAGES = {
     "spread": TaskStage(spread, begins="gown_worn"),
 }
 
-CONDITIONS = (both_ends, chest_covered, hands_open, holds_gown)
+CONDITIONS = (both_ends, chest_covered, hands_open, holds_gown, outside_out)
 
 
 def senses(context: Context) -> Senses:

@@ -1,10 +1,11 @@
-"""The stage `spread` of the dressing tree: draw up sleeves that slipped down, and lay the collar straight."""
+"""The stage `spread` of the dressing tree: lay the collar straight, and draw up sleeves that slipped down."""
 
 from __future__ import annotations
 
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ....perception.estimates import ChestCover
 from ....sim.world import SIDES, Side
 from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
 from ....skills.core.context import Context
@@ -18,7 +19,7 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
-from .arm import MISSES, arm_scope, back_off, grasp_worn, put_down, up_arm
+from .arm import arm_scope, back_off, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .tuning import DRESSING
 
@@ -35,8 +36,7 @@ NEAT = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FO
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    A sleeve that is drawn up takes the front along, and with it the other one down: from the head of the bed both are
-    drawn up at once where both are low, and then the collar is brought to the middle.
+    All of it is done from the head of the bed, from where both hands reach both shoulders and the whole collar shows.
     """
     bed = Scope(context, "gown")
     return timed_stage(
@@ -44,13 +44,13 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "left"),
         arm_lies(context, "right"),
         *go_to_head(bed),
-        *(raised(context, bed, side) for side in SIDES),
-        *neaten(context, bed),
+        *(node for when in ("first", "again") for node in neaten(context, bed, when)),
         *(node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)),
         CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE),
         *(node for side in SIDES for node in still_inside(context, side)),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
+        Condition("the outside is out", outside_out, Reason.WRONG_SIDE),
         seconds=DRESSING.spread_timeout,
     )
 
@@ -83,53 +83,27 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     )
 
 
-def raised(context: Context, bed: Scope, side: Side) -> Behaviour:
-    """A sleeve that is far down its arm is drawn up by its strap, from beside the shoulder."""
-    sleeve = arm_scope(context, f"{side} strap", side)
+def neaten(context: Context, bed: Scope, when: str) -> list[Behaviour]:
+    """From the head of the bed, lay the collar straight, then draw up sleeves that are low.
 
-    def by_strap() -> Behaviour:
-        def come_back() -> Behaviour:
-            away = back_off("let the strap go", sleeve, DRESSING.back_off_distance)
-            return sequence("come back to the sleeve", away, *go_beside(Scope(sleeve, "again"), side))
-
-        once = sequence("draw up once", grasp_worn("grasp", sleeve), up_arm(sleeve, DRESSING.again_load))
-        drawn = RecoverBy("draw at the sleeve", once, dict.fromkeys(MISSES, come_back))
-        return sequence(
-            f"draw the {side} sleeve up again",
-            back_off("leave the head", sleeve, DRESSING.back_off_distance),
-            *go_beside(sleeve, side),
-            fallback("by its strap", drawn, back_off("leave it there", sleeve)),
-            back_off("leave", sleeve, DRESSING.back_off_distance),
-            *go_to_head(Scope(bed, side)),
-        )
-
-    seen = sequence(f"see whether the {side} front is near", *sits(context, side, side, DRESSING.armhole_in_reach))
-    near = RecoverBy(f"the {side} front is near", seen, dict.fromkeys(LOW, by_strap))
-    return fallback(f"near or not, {side}", near, back_off("go on", sleeve))
-
-
-def neaten(context: Context, bed: Scope) -> list[Behaviour]:
-    """From the head of the bed, draw up sleeves that are low, then lay the collar straight.
-
-    Where either gets no farther, it may do all the same, which is looked at in the end.  A sleeve that is drawn up
-    takes the collar along, and where the collar lay on its side, to the middle; laid there before, it sprang back.
+    Where either gets no farther, it may do all the same, which is looked at in the end.  Laying the collar costs the
+    sleeves some of their height; drawn up by the seams over the shoulders afterwards, they take it headward a little.
     """
-
-    def seat() -> Behaviour:
-        draw = SeatSleeves("seat", bed, enough=DRESSING.armhole_sits)
-        return sequence("draw them up", draw, back_off("clear the view of them", bed))
+    gown = Scope(bed, when)
 
     def straighten() -> Behaviour:
-        return sequence("lay it straight", Spread("spread", bed), back_off("clear the view of it", bed))
+        return sequence(f"lay it straight, {when}", Spread("spread", gown), back_off("clear the view of it", gown))
 
-    looks = [node for side in SIDES for node in sits(context, f"{side} now", side, DRESSING.armhole_sits)]
-    sit = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
-    lies = RecoverBy(
-        "until it lies straight", CheckCollar("collar", bed, tuning=NEAT), {Reason.COLLAR_ASIDE: straighten}
-    )
+    def seat() -> Behaviour:
+        return sequence(f"draw them up, {when}", SeatSleeves("seat", gown), back_off("clear the view of them", gown))
+
+    lies = CheckCollar("collar", gown, tuning=NEAT)
+    looks = [node for side in SIDES for node in sits(context, f"{side} {when}", side, DRESSING.armhole_sits)]
+    laid = RecoverBy(f"until it lies straight, {when}", lies, {Reason.COLLAR_ASIDE: straighten})
+    up = RecoverBy(f"until they sit, {when}", sequence(f"both sit, {when}", *looks), dict.fromkeys(LOW, seat))
     return [
-        fallback("as far as they go", sit, back_off("leave them", bed)),
-        fallback("as straight as it gets", lies, back_off("leave it", bed)),
+        fallback(f"as straight as it gets, {when}", laid, back_off("leave it", gown)),
+        fallback(f"as far as they go, {when}", up, back_off("leave them", gown)),
     ]
 
 
@@ -150,8 +124,17 @@ def still_inside(context: Context, side: Side) -> list[Behaviour]:
 
 
 def chest_covered(context: Context) -> bool:
-    """The head camera sees gown on most of the trunk, which lies where the map's bed says."""
+    """The head camera sees gown on most of the trunk."""
+    return _cover(context).share > DRESSING.covered_share
+
+
+def outside_out(context: Context) -> bool:
+    """The head camera sees hardly any of the gown's inside on the trunk: nothing of it is folded over."""
+    return _cover(context).outside > DRESSING.outside_share
+
+
+def _cover(context: Context) -> ChestCover:
+    """How the gown covers the trunk, which lies where the map's bed says."""
     bed = context.world.room.bed
     shoulders = np.array((*bed[:, :2].mean(axis=0), bed[1, 2])) + DRESSING.shoulders_on_bed
-    cover = context.senses.chest_cover(context.world.look("head"), shoulders_in_map=shoulders)
-    return cover.share > DRESSING.covered_share
+    return context.senses.chest_cover(context.world.look("head"), shoulders_in_map=shoulders)
