@@ -32,7 +32,8 @@ from .motion.errors import MotionError
 class SeatSleevesTuning(Quantities):
     """Numbers of `SeatSleeves`."""
 
-    grasp: FromAbove = field(default_factory=FromAbove)
+    # deeper than on the body, as the mattress is 6 cm below: flat cloth at the very fingertips was missed (104)
+    grasp: FromAbove = field(default_factory=lambda: FromAbove(depth=0.02))
     leans: tuple[float, ...] = quantity(
         (0.45, 0.25, 0.0),
         "rad",
