@@ -57,27 +57,45 @@ def test_cloth_below_the_middle_is_grasped_where_it_lies(scenes):
         collar_middle(frame, middle, away=(0.0, 2.0))  # [m]: beyond the hem
 
 
-def tape(bend, end=0.36):
-    """Points (n, 3) of a neckline from x = -0.36 m to `end`, whose left half runs in waves `bend` high [m]."""
+HEIGHT = 0.10  # of a neckline above the shoulders [m]
+
+
+def tape(bend=0.0, end=0.36, sinks=0.0):
+    """Points (n, 3) of a neckline from x = -0.36 m to `end`; its left half is in waves, its right one `sinks` [m]."""
     x = np.linspace(-0.36, end, 400)
-    return np.column_stack([x, np.where(x < 0.0, bend * np.sin(x * 60.0), 0.0), np.zeros_like(x)])
+    y = np.where(x < 0.0, bend * np.sin(x * 60.0), 0.0)
+    return np.column_stack([x, y, HEIGHT - sinks * np.clip(x, 0.0, None) / end])
 
 
-def doubts(points):
-    """Doubt in the left end and in the right end."""
+def doubts(points, armholes=None):
+    """Doubt in the left end and in the right end, beside which the `armholes` (2, 3) begin by default [m]."""
     step = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     ways = (0, step), (len(points) - 1, step[-1] - step)
-    return [hidden_at(points, end, way, np.zeros(3), DEFAULT) for end, way in ways]
+    armholes = points[[0, -1]] if armholes is None else armholes
+    return [hidden_at(points, end, way, np.zeros(3), armholes, DEFAULT) for end, way in ways]
 
 
-def test_more_ishidden_at_an_end_whose_half_is_not_straight():
+def test_more_is_hidden_at_an_end_whose_half_is_not_straight():
     left, right = doubts(tape(bend=0.02))
     assert left > 2.0 * right
 
 
-def test_more_ishidden_at_an_end_inside_of_the_shoulder_seam():
-    left, right = doubts(tape(bend=0.0, end=0.20))
+def test_more_is_hidden_at_an_end_inside_of_the_shoulder_seam():
+    left, right = doubts(tape(end=0.20))
     assert right > 2.0 * left
+
+
+def test_more_is_hidden_at_an_end_that_has_gone_down_beside_a_shoulder():
+    left, right = doubts(tape(sinks=0.09))
+    assert right > 2.0 * left
+
+
+def test_more_is_hidden_at_an_end_with_no_armhole_beside_it():
+    points = tape()
+    left, right = doubts(points, points[:1])
+    assert right > 2.0 * left
+    left, right = doubts(points, np.zeros((0, 3)))
+    assert left == pytest.approx(right), "no armhole shows at all"
 
 
 def test_no_neckline_far_from_the_person(scenes):
