@@ -78,7 +78,7 @@ class ScriptedSenses(Senses):
     def __init__(self, world: Proprioception) -> None:
         self._world = world
         self._moved_before = self._moved()
-        self._collar_aside = 0.06  # [m]
+        self._collar_aside = 0.04  # [m]
 
     def on(self: _Senses, world: Proprioception) -> _Senses:
         """The same senses for another robot, such as one behind a ROS master."""
