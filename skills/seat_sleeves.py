@@ -70,9 +70,9 @@ class SeatSleeves(Skill):
 
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
-    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once, as
-    one alone takes the collar to its side.  The robot stands at the head of the bed, each hand on its side, and the
-    arms have to lie.  The hands end open and drawn back, after a missed grasp too.
+    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
+    which takes half of the time; either alone leaves the other where it is.  The robot stands at the head of the bed,
+    each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed grasp too.
     """
 
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")

@@ -73,13 +73,22 @@ class CollarTuning(Quantities):
         "measured: those views; the middle is found to 0.04 m, 0.07 m by how much the ends look like corners",
     )
     low: float = quantity(
-        0.05, "m", "above the shoulders, below which an end has gone round a fold or a shoulder", "measured: see below"
+        0.05,
+        "m",
+        "above the shoulders, below which an end has gone round a fold or a shoulder",
+        "measured: the views of `per_metre_off_armhole`",
     )
     per_metre_low: float = quantity(
-        16.0, "1/m", "doubt in an end for each metre that it lies lower", "measured: see below"
+        16.0,
+        "1/m",
+        "doubt in an end for each metre that it lies lower",
+        "measured: the views of `per_metre_off_armhole`",
     )
     beside_armhole: float = quantity(
-        0.06, "m", "from the armhole's tape, within which an end is the neckline's own", "measured: see below"
+        0.06,
+        "m",
+        "from the armhole's tape, within which an end is the neckline's own",
+        "measured: the views of `per_metre_off_armhole`",
     )
     per_metre_off_armhole: float = quantity(
         8.0,
