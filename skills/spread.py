@@ -50,7 +50,7 @@ class SpreadTuning(Quantities):
         (-0.06, 0.03),
         "m",
         "headward of the line of the shoulders, within which the collar is left as it is",
-        "choice: sleeves that are drawn up afterwards take it up to 0.04 m headward (101, 104), and 0.10 m are allowed",
+        "choice: sleeves that are drawn up afterwards take it up to 0.07 m headward (0), and 0.10 m are allowed",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(

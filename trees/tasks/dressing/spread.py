@@ -36,7 +36,8 @@ NEAT = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FO
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    All of it is done from the head of the bed, from where both hands reach both shoulders and the whole collar shows.
+    From beside the bed the robot sees that both arms lie, and in the end that they are inside their sleeves.  The gown
+    is put straight from its head, from where both hands reach both shoulders and the whole collar shows.
     """
     bed = Scope(context, "gown")
     return timed_stage(

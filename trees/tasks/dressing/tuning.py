@@ -120,7 +120,7 @@ class DressingTuning(Quantities):
         0.75,
         "1",
         "of the upper arm, below which sleeves are drawn up",
-        "choice: what is seen of it is 0.03 off, and drawing them costs nothing but 25 s",
+        "choice: 0.7 is asked for, and it is seen to 0.05",
     )
     armhole_will_do: float = quantity(
         0.72,
@@ -138,7 +138,7 @@ class DressingTuning(Quantities):
         (0.05, 0.03, 0.07),
         "m",
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
-        "choice: of 0.07, 0.10 and 0.08 m that are allowed; sleeves drawn up take it up to 0.04 m headward (101, 104)",
+        "choice: of 0.07, 0.10 and 0.08 m that are allowed; sleeves drawn up take it up to 0.07 m headward (0)",
     )
     shoulders_on_bed: tuple[float, float, float] = quantity(
         (0.0, -0.55, 0.10), "m", "of an adult, from the middle of the mattress", "choice: where the map's bed says"
