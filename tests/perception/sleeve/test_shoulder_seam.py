@@ -6,21 +6,24 @@ from caretree.perception.errors import PerceptionFailure
 from caretree.perception.sleeve.shoulder_seam import shoulder_seam
 from caretree.sim.world import Frame
 
-from .test_worn_sleeve import DOWN
+from .test_worn_sleeve import DOWN, MAGENTA
 
 PRINTED, BARE = (110, 170, 215), (128, 128, 128)  # the outside of the gown, and what is no gown
 SHOULDERS = np.array(((-0.2, 0.0, 1.0), (0.2, 0.0, 1.0)))  # the head is towards -y, which the picture shows below
 
 
 def picture(*patches):
-    """A camera 1 m above the shoulders, 5 mm a pixel; patches: (x from, to, y from, to, height above them) [m]."""
+    """A camera 1 m above the shoulders, 5 mm a pixel.
+
+    Patches: (x from, to, y from, to, height above them) [m], and a colour if it is not the printed outside.
+    """
     rgb, depth = np.full((120, 160, 3), BARE, np.uint8), np.full((120, 160), 1.2, np.float32)
     rows, columns = np.mgrid[0:120, 0:160]
-    for x0, x1, y0, y1, height in patches:
+    for x0, x1, y0, y1, height, *colour in patches:
         away = 1.0 - height
         x, y = (columns - 80) / 200 * away, -(rows - 60) / 200 * away
         inside = (x0 <= x) & (x < x1) & (y0 <= y) & (y < y1)
-        rgb[inside], depth[inside] = PRINTED, away
+        rgb[inside], depth[inside] = colour[0] if colour else PRINTED, away
     return Frame(
         camera="head", stamp=1.0, rgb=rgb, depth=depth, intrinsics=(200.0, 200.0, 80.0, 60.0), pose_camera_in_map=DOWN
     )
@@ -48,3 +51,19 @@ def test_neither_the_back_panel_on_the_bed_nor_the_neckline_that_stands_up_count
 def test_cloth_on_the_chest_and_on_the_other_side_does_not_count(patch):
     with pytest.raises(PerceptionFailure):
         shoulder_seam(picture(patch), "right", SHOULDERS)
+
+
+def test_where_the_tape_ends_counts_before_the_back_panels_corner_which_is_farther_headward():
+    corner, sleeve = (0.265, 0.295, -0.20, 0.0, 0.0), (0.295, 0.40, -0.06, 0.2, 0.0)
+    tape = (0.38, 0.395, -0.06, 0.2, 0.0, MAGENTA)
+    without = shoulder_seam(picture(corner, sleeve), "right", SHOULDERS)
+    seen = shoulder_seam(picture(corner, sleeve, tape), "right", SHOULDERS)
+    assert without.position_in_map[:2] == pytest.approx((0.28, -0.15), abs=0.03)
+    assert seen.position_in_map[:2] == pytest.approx((0.345, -0.05), abs=0.03)
+
+
+def test_by_its_tape_it_is_found_above_the_height_of_the_arm():
+    seen = shoulder_seam(
+        picture((0.28, 0.38, -0.05, 0.2, 0.09), (0.32, 0.34, -0.05, 0.2, 0.09, MAGENTA)), "right", SHOULDERS
+    )
+    assert seen.position_in_map == pytest.approx((0.33, -0.035, 1.09), abs=0.03)
