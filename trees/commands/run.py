@@ -28,7 +28,8 @@ from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
 from ..run.judging import judge_and_keep
-from ..run.runner import Progress, Run
+from ..run.progress import Progress
+from ..run.runner import Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given

@@ -17,9 +17,8 @@ import difflib
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -43,6 +42,7 @@ from ..guard.limits import DEFAULT, Limits
 from ..guard.tick_watchdog import TickWatchdog
 from ..nodes.decorators import FailSafe, Stage
 from ..nodes.failures import failure_of
+from .progress import Announcer, Progress
 from .task import Task
 from .time_limit import TimeLimit, TookTooLongError
 from .trace import Trace
@@ -62,25 +62,6 @@ class EventSink(Protocol):
     def event(self, event: Mapping[str, Any]) -> None:
         """Append one event to the trace on disk."""
         ...
-
-
-@dataclass(frozen=True)
-class Progress:
-    """One change worth telling the operator.
-
-    Attributes:
-        time: world clock [s].
-        kind: `stage` or `skill`.
-        name: of the node.
-        status: `running`, `success`, `failure` or `stopped`.
-        message: why, or what is going on.
-    """
-
-    time: float
-    kind: Literal["stage", "skill"]
-    name: str
-    status: str
-    message: str = ""
 
 
 class Run:
@@ -158,10 +139,9 @@ class Run:
         self._ticked = float("-inf")
         self._began = time.perf_counter()  # the last tick, by the wall clock
         self._limit = TimeLimit(limits.tick, self._last_resort)
-        self._tell = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
+        told = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
+        self._announcer = Announcer(self.root, self.context.now, told)
         self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
-        self._shown = {node for node in self.root.iterate() if isinstance(node, (Skill, Stage))}
-        self._told: dict[Behaviour, Status] = {}
         self._stop: Failure | None = None
         self.interrupted = False
         self.stopwatch = Stopwatch()
@@ -267,9 +247,10 @@ class Run:
         self._limit.start()
         for visited in node.tick():
             self.trace.visit(visited)
-            self._progress(visited)
+            self._announcer.visit(visited)
         self._limit.pause()
-        self._sweep()
+        self.trace.sweep()
+        self._announcer.sweep()
 
     def _beat(self) -> None:
         """A sign of life to the watchdog; a motion that it has stopped is no longer under way: its skill is told."""
@@ -301,45 +282,6 @@ class Run:
             wait(self.world.clock, self._ticked + self._period)
         finally:
             self._limit.pause()
-
-    def _progress(self, node: Behaviour) -> None:
-        if node not in self._shown:
-            return
-        assert isinstance(node, (Skill, Stage))
-        above, parent = [], node.parent
-        while parent is not None:
-            above += [parent] if isinstance(parent, Stage) and self._told.get(parent) != Status.RUNNING else []
-            parent = parent.parent
-        for stage in reversed(above):  # py_trees yields children first, an operator reads the stage first
-            self._announce(stage, Status.RUNNING)
-        self._announce(node, node.status)
-
-    def _sweep(self) -> None:
-        """Note and tell what was stopped without being visited; what is reset may be told of again."""
-        self.trace.sweep()
-        for node, told in list(self._told.items()):
-            if node.status == Status.INVALID and isinstance(node, (Skill, Stage)):
-                if told == Status.RUNNING:
-                    self._announce(node, Status.INVALID)
-                del self._told[node]
-
-    def _announce(self, node: Skill | Stage, status: Status) -> None:
-        if self._told.get(node) == status:
-            return
-        self._told[node] = status
-        failure = node.failure if status == Status.FAILURE else None
-        if failure is not None and failure.node == node.name:
-            failure = replace(failure, node="")  # the line names the node already
-        words = {Status.INVALID: "stopped"}.get(status, status.name.lower())
-        self._tell(
-            Progress(
-                self.context.now(),
-                "skill" if isinstance(node, Skill) else "stage",
-                node.name,
-                words,
-                failure.sentence() if failure else node.feedback_message,
-            )
-        )
 
     # -- the end -----------------------------------------------------------------------------------------
 
@@ -393,7 +335,8 @@ class Run:
                 each.status = Status.INVALID
                 self.context.lease.release(each)
         self._limit.pause()
-        self._sweep()
+        self.trace.sweep()
+        self._announcer.sweep()
 
     def _run_safe_branches(self) -> None:
         """Tick the safe branch of every fail-safe that was entered, innermost first."""

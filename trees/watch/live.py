@@ -21,7 +21,8 @@ from ...skills.core.reasons import Reason
 from ..nodes.failures import failure_of
 from ..report.looks import Witness, drawn
 from ..report.outline import State, outline_html, outline_of
-from ..run.runner import Progress, Run
+from ..run.progress import Progress
+from ..run.runner import Run
 from .controls import Controls
 from .panel import Curves, Panel
 from .server import address, close_server, open_server

@@ -12,7 +12,8 @@ from ...sim.extras import need
 from ...sim.fence import fenced, said
 from ...sim.world import World
 from ..report.looks import Witness
-from ..run.runner import Progress, Run
+from ..run.progress import Progress
+from ..run.runner import Run
 
 if TYPE_CHECKING:
     from ..groot.publisher import Publisher
