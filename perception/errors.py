@@ -12,6 +12,7 @@ class Problem(enum.Enum):
 
     NOTHING_SEEN = "what was looked for is not in the image"
     NO_DEPTH = "it is in the image but the camera gave no depth for it"
+    HIDDEN = "something else is in front of it"
     OUT_OF_REACH = "nothing of it lies where it was asked for"
     ARM_LOST = "the arm has not been seen for so long that its position is too uncertain"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from .control.take_from_above import FromAbove, take_from_above
 from .control.together import together
 from .control.withdraw import withdraw
 from .core.ports import Input
-from .core.reasons import Reason
+from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import UP
@@ -71,8 +71,9 @@ class SeatSleeves(Skill):
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
-    which takes half of the time; either alone leaves the other where it is.  The robot stands at the head of the bed,
-    each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed grasp too.
+    which takes half of the time; either alone leaves the other where it is, so one that is missed does not keep the
+    other from being drawn.  The robot stands at the head of the bed, each hand on its side, and the arms have to lie.
+    The hands end open and drawn back, after a missed grasp too.
     """
 
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
@@ -100,22 +101,42 @@ class SeatSleeves(Skill):
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
-        for side, seam in seams.items():
-            self.note(f"takes the seam over the {side} shoulder")
-            yield from self._take(side, seam)
-        self.note("draws both sleeves up")
-        yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in SIDES})
+        held = yield from self._take_both(seams)
+        self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up alone")
+        yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held})
         inward, headward = tuning.drawn_to
         over, laid = {}, {}
-        for side, shoulder in zip(SIDES, shoulders, strict=True):
-            place = shoulder - inward * outwards(side) + headward * HEADWARD
+        for side in held:
+            place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
         yield from self._carry(over)
         yield from self._carry(laid, tuning.laying_speed)
         # at once, so that neither side gives way to the other
-        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in SIDES))
-        yield from withdraw(self, SIDES, tuning.withdrawal)
+        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
+        yield from withdraw(self, held, tuning.withdrawal)
+
+    def _take_both(self, seams: dict[Side, GraspPoint]) -> Generator[None, None, list[Side]]:
+        """Grasp one seam after the other, and say which hands hold theirs: one that is missed leaves the other.
+
+        Raises:
+            MotionError: no hand reaches its seam.
+            SkillFailure: GRASP_MISSED where neither holds any, and whatever else goes wrong.
+        """
+        held: list[Side] = []
+        problems: list[MotionError | SkillFailure] = []
+        for side, seam in seams.items():
+            self.note(f"takes the seam over the {side} shoulder")
+            try:
+                yield from self._take(side, seam)
+                held.append(side)
+            except (MotionError, SkillFailure) as problem:
+                if isinstance(problem, SkillFailure) and problem.reason != Reason.GRASP_MISSED:
+                    raise
+                problems.append(problem)
+        if not held:
+            raise problems[-1]
+        return held
 
     def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
         """Grasp one seam, leaning outwards as far as the arm reaches it that way."""

@@ -35,6 +35,12 @@ class LayersTuning(Quantities):
         "of the disc around the fingertips, covered with cloth, that makes it certain",
         "choice: a pinched corner covers a tenth of the disc, and the fingers most of the rest",
     )
+    hidden_share: float = quantity(
+        0.5,
+        "1",
+        "of that disc behind cloth nearer to the camera, from which nobody can tell",
+        "measured: a flap of the back panel that stood up before the camera covered all of it (106)",
+    )
     volume_half_width: float = quantity(
         0.014, "m", "of the volume that closing fingers sweep, across the pads", "choice: a pad and 3 mm on either side"
     )
@@ -69,7 +75,7 @@ def gripped_cloth(frame: Frame, pose_hand_in_map: np.ndarray, tuning: LayersTuni
         tuning: numbers of what counts as held.
 
     Raises:
-        PerceptionFailure: the fingertips are outside the image or there is no depth at all.
+        PerceptionFailure: the fingertips are outside the image, behind other cloth, or there is no depth at all.
     """
     height, width = frame.depth.shape
     tip = project(frame, pose_hand_in_map[:3, 3])[0]
@@ -77,8 +83,14 @@ def gripped_cloth(frame: Frame, pose_hand_in_map: np.ndarray, tuning: LayersTuni
         raise PerceptionFailure(Problem.OUT_OF_REACH, "fingertips")
     if not (frame.depth > 0).any():
         raise PerceptionFailure(Problem.NO_DEPTH, "fingertips")
-    near = np.linalg.norm(_gown_points(frame) - pose_hand_in_map[:3, 3], axis=1) < tuning.held_distance
-    disc = np.pi * (tuning.held_distance * frame.intrinsics[0] / tip[2]) ** 2
+    gown = np.isin(surfaces(frame.rgb), GOWN_SURFACES) & (frame.depth > 0)
+    near = np.linalg.norm(points_in_map(frame)[gown] - pose_hand_in_map[:3, 3], axis=1) < tuning.held_distance
+    radius = tuning.held_distance * frame.intrinsics[0] / tip[2]
+    rows, columns = np.mgrid[0:height, 0:width]
+    inside = (columns - tip[0]) ** 2 + (rows - tip[1]) ** 2 < radius**2
+    if (gown & (frame.depth < tip[2] - tuning.held_distance))[inside].mean() > tuning.hidden_share:
+        raise PerceptionFailure(Problem.HIDDEN, "fingertips")
+    disc = np.pi * radius**2
     return Estimate(stamp=frame.stamp, confidence=float(min(1.0, near.sum() / (tuning.full_held_share * disc))))
 
 

@@ -48,7 +48,7 @@ class ShoulderSeamTuning(Quantities):
     footward: float = quantity(
         0.2, "m", "of the shoulder, to which tape counts", "measured: 0.02 to 0.19 m in 94 views of recorded states"
     )
-    tape_end: float = quantity(0.05, "1", "share of the tape, the nearest to the head, that is its end", "choice")
+    tape_end: float = quantity(0.05, "1", "share of the tape, the nearest to the head, that is its end", "choice: tip")
     by_tape: float = quantity(
         0.09,
         "m",

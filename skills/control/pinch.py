@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...perception.errors import PerceptionFailure
+from ...perception.errors import PerceptionFailure, Problem
 from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, GripperOpening, Side
@@ -179,12 +179,15 @@ def pinch_or_back_off(skill: Skill, side: Side, *, force: float = FINGERS.grip_f
 
 
 def holds_cloth(skill: Skill, side: Side) -> float:
-    """Confidence, 0 to 1, of the hand's camera that the fingers hold cloth."""
-    frame = skill.world.look(f"{side}_hand")
-    try:
-        return skill.context.senses.gripped_cloth(frame, pose_hand_in_map=hand_now(skill, side)).confidence
-    except PerceptionFailure:
-        return 0.0
+    """Confidence, 0 to 1, of the hand's camera that the fingers hold cloth; of the head's where cloth hides them."""
+    for camera in (f"{side}_hand", "head"):
+        frame = skill.world.look(camera)
+        try:
+            return skill.context.senses.gripped_cloth(frame, pose_hand_in_map=hand_now(skill, side)).confidence
+        except PerceptionFailure as failure:
+            if failure.problem != Problem.HIDDEN:
+                break
+    return 0.0
 
 
 def back_off(

@@ -104,6 +104,22 @@ def test_a_miss_ends_with_the_hand_open_and_drawn_back():
     assert run.way("left")[-1, 2] > SEAMS["left"][2] + 0.05  # [m]
 
 
+@pytest.mark.parametrize("missed", SIDES)
+def test_where_one_is_missed_the_other_is_drawn_all_the_same(missed):
+    other = "right" if missed == "left" else "left"
+
+    def cloth(frame, pose_hand_in_map):
+        near = np.linalg.norm(pose_hand_in_map[:3, 3] - SEAMS[missed]) < 0.2
+        return Estimate(stamp=0.0, confidence=0.0 if near else 0.9)
+
+    run = bench(cloth=cloth)
+    assert run.ended() is None
+    closed = run.way(other)[run.openings(other) < 0.005]
+    assert (closed[-1] - SHOULDERS[other]) @ outwards(other) == pytest.approx(-0.07, abs=0.03)
+    assert ((run.way(missed) - SHOULDERS[missed]) @ outwards(missed)).min() > 0.05, "that hand went nowhere else"
+    assert run.openings(missed)[-1] > 0.08
+
+
 @pytest.mark.parametrize("hidden", SIDES)
 def test_a_seam_that_does_not_show_is_told_and_no_hand_moves(hidden):
     run = bench(hidden=(hidden,))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.perception.errors import PerceptionFailure
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.gown.layers import gripped_cloth, layers
 from caretree.sim.render.camera import looking_at
 
@@ -52,6 +52,21 @@ def test_held_or_not(scenes):
         assert gripped_cloth(scene.frame(seed), scene.hand).confidence > 0.6
         scene.renderer.move_cloth(scene.vertices - (0, 0, 0.3))
         assert gripped_cloth(scene.frame(seed), scene.hand).confidence < 0.2
+
+
+@pytest.mark.parametrize("before", [0.0, 0.15])  # the fingertips, towards the camera [m]
+def test_fingertips_behind_other_cloth_cannot_be_told(scenes, before):
+    scene = sheets(scenes, [0.0], wide=1.5)
+    frame = scene.frame()
+    eye = frame.pose_camera_in_map[:3, 3]
+    behind = HAND.copy()
+    behind[:3, 3] = CENTRE - before * (eye - CENTRE) / np.linalg.norm(eye - CENTRE)
+    if before == 0.0:
+        assert gripped_cloth(frame, behind).confidence > 0.6
+        return
+    with pytest.raises(PerceptionFailure) as failure:
+        gripped_cloth(frame, behind)
+    assert failure.value.problem == Problem.HIDDEN
 
 
 def test_failures(scenes, black):

@@ -74,6 +74,17 @@ def test_the_hands_camera_tells_whether_cloth_was_taken(sight, reason):
     assert world.observe().gripper_opening[0] < 0.005
 
 
+@pytest.mark.parametrize(("problem", "confidence"), [(Problem.HIDDEN, 0.8), (Problem.NOTHING_SEEN, 0.0)])
+def test_where_cloth_hides_the_fingertips_the_heads_camera_is_asked(problem, confidence):
+    def sight(frame, pose_hand_in_map):
+        if frame.camera != "head":
+            raise PerceptionFailure(problem, "fingertips")
+        return seen(0.8)
+
+    _, context = robot(gripped_cloth=sight)
+    assert holds_cloth(idle(context), "left") == confidence
+
+
 def test_confidence_in_a_grasp_is_that_of_the_camera():
     _, context = robot(gripped_cloth=seen(0.7))
     assert holds_cloth(idle(context), "left") == 0.7
