@@ -71,9 +71,9 @@ class SeatSleeves(Skill):
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
-    which takes half of the time; either alone leaves the other where it is, so one that is missed does not keep the
-    other from being drawn.  The robot stands at the head of the bed, each hand on its side, and the arms have to lie.
-    The hands end open and drawn back, after a missed grasp too.
+    which takes half of the time; one that is missed does not keep the other from being drawn.  The robot stands at the
+    head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed
+    grasp too.
     """
 
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
@@ -101,8 +101,8 @@ class SeatSleeves(Skill):
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
-        held = yield from self._take_both(seams)
-        self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up alone")
+        held = yield from self._take_all(seams)
+        self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
         yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held})
         inward, headward = tuning.drawn_to
         over, laid = {}, {}
@@ -116,12 +116,12 @@ class SeatSleeves(Skill):
         yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
 
-    def _take_both(self, seams: dict[Side, GraspPoint]) -> Generator[None, None, list[Side]]:
+    def _take_all(self, seams: dict[Side, GraspPoint]) -> Generator[None, None, list[Side]]:
         """Grasp one seam after the other, and say which hands hold theirs: one that is missed leaves the other.
 
         Raises:
             MotionError: no hand reaches its seam.
-            SkillFailure: GRASP_MISSED where neither holds any, and whatever else goes wrong.
+            SkillFailure: GRASP_MISSED where none holds any, and whatever else goes wrong.
         """
         held: list[Side] = []
         problems: list[MotionError | SkillFailure] = []

@@ -45,7 +45,7 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "left"),
         arm_lies(context, "right"),
         *go_to_head(bed),
-        *(node for when in ("first", "again") for node in neaten(context, bed, when)),
+        *(node for when in ("first", "again") for node in (seated(context, bed, when), straight(bed, when))),
         *(node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)),
         CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE),
         *(node for side in SIDES for node in still_inside(context, side)),
@@ -84,28 +84,32 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     )
 
 
-def neaten(context: Context, bed: Scope, when: str) -> list[Behaviour]:
-    """From the head of the bed, lay the collar straight, then draw up sleeves that are low.
+def seated(context: Context, bed: Scope, when: str) -> Behaviour:
+    """From the head of the bed, draw up sleeves that are low; where they get no farther, they may do all the same."""
+    gown = Scope(bed, when)
 
-    Where either gets no farther, it may do all the same, which is looked at in the end.  Laying the collar costs the
-    sleeves some of their height; drawn up by the seams over the shoulders afterwards, they take it headward a little.
+    def seat() -> Behaviour:
+        return sequence(f"draw them up, {when}", SeatSleeves("seat", gown), back_off("clear the view of them", gown))
+
+    looks = [node for side in SIDES for node in sits(context, f"{side} {when}", side, DRESSING.armhole_sits)]
+    up = RecoverBy(f"until they sit, {when}", sequence(f"both sit, {when}", *looks), dict.fromkeys(LOW, seat))
+    return fallback(f"as far as they go, {when}", up, back_off("leave them", gown))
+
+
+def straight(bed: Scope, when: str) -> Behaviour:
+    """From the head of the bed, lay the collar straight; where it gets no nearer, it may do all the same.
+
+    It is done after the sleeves: while one of them is low, half of the neckline is out of sight, and drawing both up
+    takes the collar along.
     """
     gown = Scope(bed, when)
 
     def straighten() -> Behaviour:
         return sequence(f"lay it straight, {when}", Spread("spread", gown), back_off("clear the view of it", gown))
 
-    def seat() -> Behaviour:
-        return sequence(f"draw them up, {when}", SeatSleeves("seat", gown), back_off("clear the view of them", gown))
-
     lies = CheckCollar("collar", gown, tuning=NEAT)
-    looks = [node for side in SIDES for node in sits(context, f"{side} {when}", side, DRESSING.armhole_sits)]
     laid = RecoverBy(f"until it lies straight, {when}", lies, {Reason.COLLAR_ASIDE: straighten})
-    up = RecoverBy(f"until they sit, {when}", sequence(f"both sit, {when}", *looks), dict.fromkeys(LOW, seat))
-    return [
-        fallback(f"as straight as it gets, {when}", laid, back_off("leave it", gown)),
-        fallback(f"as far as they go, {when}", up, back_off("leave them", gown)),
-    ]
+    return fallback(f"as straight as it gets, {when}", laid, back_off("leave it", gown))
 
 
 def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviour]:

@@ -4,17 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.sim.world import SIDES
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.run.runner import run
 from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
-DONE = {f"gown/{when}/{name}": name for when in ("first", "again") for name in ("seat", "spread")}
+SEATED = ("gown/first/seat", "gown/again/seat")
+LAID = ("gown/first/spread", "gown/again/spread")
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
 
 class WornGown(ScriptedSenses):
-    """Armholes at `reach` of the upper arm until they are drawn up, and a collar that is `off` (x, y) until it is laid.
+    """Armholes at `reach` of the upper arms until they are drawn up, a collar that is `off` (x, y) until it is laid.
 
     Attributes:
         done: what was done to it, in turn.
@@ -23,19 +25,19 @@ class WornGown(ScriptedSenses):
     def __init__(self, world, reach, off, *, stays=False, outside=1.0):
         super().__init__(world)
         self.outside = outside
-        self.low, self.off, self.stays, self.done = dict.fromkeys(("left", "right"), reach), off, stays, []
+        self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
         return replace(super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map), reach=self.low[side])
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
-        if progress.status != "success" or progress.name not in DONE:
+        if progress.status != "success" or progress.name not in (*SEATED, *LAID):
             return
-        self.done.append(DONE[progress.name])
-        if self.done[-1] == "seat":
+        self.done.append(progress.name.removeprefix("gown/"))
+        if progress.name in SEATED:
             self.low = {side: low + DRAWN_UP for side, low in self.low.items()}
-        if self.done[-1] == "spread" and not self.stays:
+        if progress.name in LAID and not self.stays:
             self.off = (0.0, 0.0)
 
     def chest_cover(self, frame, *, shoulders_in_map):
@@ -47,11 +49,11 @@ class WornGown(ScriptedSenses):
 
 
 def rehearsed(reach, off=(0.0, 0.0), *, stays=False, outside=1.0):
-    """How the stage ends, and what was done to the gown in turn."""
+    """How the stage ends, and what was done to the gown in turn; `reach` of both armholes, or (2,)."""
     task = load_task("dressing")
     world, _ = task.scripted(1)
     prepare_stage(world, task, "spread")
-    senses = WornGown(world, reach, off, stays=stays, outside=outside)
+    senses = WornGown(world, np.broadcast_to(reach, 2), off, stays=stays, outside=outside)
     result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=senses.drawn)
     return result.outcome, senses.done
 
@@ -60,9 +62,11 @@ def rehearsed(reach, off=(0.0, 0.0), *, stays=False, outside=1.0):
     ("reach", "ends", "done"),
     [
         (0.85, "success", []),
-        (0.65, "success", ["seat"]),
-        (0.50, "success", ["seat", "seat"]),
-        (0.35, "safe_stop", ["seat", "seat"]),
+        (0.65, "success", ["first/seat"]),
+        (0.50, "success", ["first/seat", "again/seat"]),
+        ((0.85, 0.50), "success", ["first/seat", "again/seat"]),
+        ((0.50, 0.85), "success", ["first/seat", "again/seat"]),
+        (0.35, "safe_stop", ["first/seat", "again/seat"]),
     ],
 )
 def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach, ends, done):
@@ -71,11 +75,11 @@ def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach,
 
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
 def test_a_collar_that_is_off_its_place_is_laid_straight(off):
-    assert rehearsed(0.85, off) == ("success", ["spread"])
+    assert rehearsed(0.85, off) == ("success", ["first/spread"])
 
 
-def test_the_collar_is_laid_straight_before_low_sleeves_are_drawn_up():
-    assert rehearsed(0.70, (0.14, 0.0)) == ("success", ["spread", "seat"])
+def test_the_collar_is_laid_straight_once_the_sleeves_that_hide_it_are_up():
+    assert rehearsed(0.70, (0.14, 0.0)) == ("success", ["first/seat", "first/spread"])
 
 
 def test_a_gown_of_which_a_part_is_folded_over_ends_the_task_without_a_claim():
@@ -86,5 +90,5 @@ def test_a_gown_of_which_a_part_is_folded_over_ends_the_task_without_a_claim():
 def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     outcome, done = rehearsed(0.85, (0.0, -0.25), stays=True)
     assert outcome == "safe_stop"
-    assert set(done) == {"spread"}
+    assert set(done) == {"first/spread", "again/spread"}
     assert len(done) <= 4
