@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -12,15 +13,16 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
-from .control.carry import Carry, carry
+from .control.carry import Carry
 from .control.fingers import open_gripper
-from .control.hands import gap_between_arms, hand_now
+from .control.hands import hand_now
 from .control.head import look_towards
 from .control.take_from_above import FromAbove, take_from_above
 from .control.together import together
+from .control.two_hands import carry_each, take_each
 from .control.withdraw import withdraw
 from .core.ports import Input
-from .core.reasons import Reason, SkillFailure
+from .core.reasons import Reason
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import UP
@@ -101,45 +103,25 @@ class SeatSleeves(Skill):
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
-        held = yield from self._take_all(seams)
+        held = yield from take_each({side: partial(self._take, side, seam) for side, seam in seams.items()})
         self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
-        yield from self._carry({side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held})
+        above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
+        yield from carry_each(self, above, tuning.carry, tuning.apart)
         inward, headward = tuning.drawn_to
         over, laid = {}, {}
         for side in held:
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
-        yield from self._carry(over)
-        yield from self._carry(laid, tuning.laying_speed)
+        yield from carry_each(self, over, tuning.carry, tuning.apart)
+        yield from carry_each(self, laid, tuning.carry, tuning.apart, tuning.laying_speed)
         # at once, so that neither side gives way to the other
         yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
 
-    def _take_all(self, seams: dict[Side, GraspPoint]) -> Generator[None, None, list[Side]]:
-        """Grasp one seam after the other, and say which hands hold theirs: one that is missed leaves the other.
-
-        Raises:
-            MotionError: no hand reaches its seam.
-            SkillFailure: GRASP_MISSED where none holds any, and whatever else goes wrong.
-        """
-        held: list[Side] = []
-        problems: list[MotionError | SkillFailure] = []
-        for side, seam in seams.items():
-            self.note(f"takes the seam over the {side} shoulder")
-            try:
-                yield from self._take(side, seam)
-                held.append(side)
-            except (MotionError, SkillFailure) as problem:
-                if isinstance(problem, SkillFailure) and problem.reason != Reason.GRASP_MISSED:
-                    raise
-                problems.append(problem)
-        if not held:
-            raise problems[-1]
-        return held
-
     def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
         """Grasp one seam, leaning outwards as far as the arm reaches it that way."""
+        self.note(f"takes the seam over the {side} shoulder")
         outward, tries = outwards(side), Tries(MotionError)
         for lean in self.tuning.leans:
             leaning = replace(seam, approach_in_map=-np.cos(lean) * UP - np.sin(lean) * outward)
@@ -147,10 +129,3 @@ class SeatSleeves(Skill):
                 yield from take_from_above(self, side, leaning, outward, self.tuning.grasp)
                 return
         raise tries.last
-
-    def _carry(self, places: dict[Side, np.ndarray], speed: float | None = None) -> Iterator[None]:
-        """Both hands at once, each to its place (3,), as long as the arms stay apart [m, m/s]."""
-        for _ in together(*(carry(self, side, place, self.tuning.carry, speed) for side, place in places.items())):
-            if gap_between_arms(self) < self.tuning.apart:
-                return
-            yield

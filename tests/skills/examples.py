@@ -33,7 +33,10 @@ from caretree.skills.take_corner import TakeCorner
 from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
+from caretree.trees.tasks.draw_blanket.draw_up import DrawUp
+from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
+from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
 from caretree.trees.tasks.wipe_forearm.put_back import PutBack
 from caretree.trees.tasks.wipe_forearm.wipe import Wipe
@@ -57,6 +60,9 @@ EXAMPLES = {
     CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
+    TakeEdge: lambda context: TakeEdge("take edge", context, side="right", hand="left"),
+    DrawOver: lambda context: DrawOver("draw over", context),
+    DrawUp: lambda context: DrawUp("draw up", context, side="right", hand="right"),
     FindCorner: lambda context: FindCorner("find corner", context),
     FindStand: lambda context: FindStand("find stand", context, side="right", lifting="left", pulling="right"),
     FlipSideCheck: lambda context: FlipSideCheck("flip side check", context),

@@ -114,7 +114,14 @@ NOT_ACTING = (
     "skills/testing",
     *(
         f"trees/tasks/{name}.py"
-        for name in ("wash_arm/room", "hand_towel/room", "wipe_forearm/room", "wipe_forearm/rehearsal")
+        for name in (
+            "draw_blanket/rehearsal",
+            "draw_blanket/room",
+            "hand_towel/room",
+            "wash_arm/room",
+            "wipe_forearm/rehearsal",
+            "wipe_forearm/room",
+        )
     ),
 )
 GRANTED = {

@@ -21,6 +21,7 @@ from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import arm_scope, back_off, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
+from .draw_over import DrawOver
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
@@ -45,6 +46,7 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "left"),
         arm_lies(context, "right"),
         *go_to_head(bed),
+        over(bed),
         *(node for when in ("first", "again") for node in (seated(context, bed, when), straight(bed, when))),
         *(node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)),
         CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE),
@@ -82,6 +84,13 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
         put_down("first", arm),
         back_off("leave", arm, DRESSING.back_off_distance),
     )
+
+
+def over(bed: Scope) -> Behaviour:
+    """From the head of the bed, draw a gown that lies to one side over; where it cannot be done, the rest may do."""
+    gown = Scope(bed, "over")
+    drawn = sequence("draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
+    return fallback("over the middle", drawn, back_off("leave it there", gown))
 
 
 def seated(context: Context, bed: Scope, when: str) -> Behaviour:

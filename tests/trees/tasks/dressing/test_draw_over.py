@@ -1,0 +1,106 @@
+"""A gown that lies to one side is taken on the chest by both hands, lifted, and carried over."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import Estimate, GraspPoint, WornSleeve
+from caretree.sim.world import SIDES
+from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import stance_at_head
+from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.tasks.dressing.draw_over import DrawOver
+
+from ....skills.bench import LeafBench, beside_bed
+
+MIDDLE = np.mean([lying_posture(side).points_in_map[0] for side in SIDES], axis=0)  # of the shoulders [m]
+HEIGHT = 0.83  # of the chest [m]
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
+HELD = Estimate(stamp=0.0, confidence=0.9)
+
+
+def bench(reach, *, aside=0.0, cloth=HELD):
+    """Armholes at `reach` (left, right) of the upper arms, None where one does not show; the collar `aside` [m]."""
+
+    def sleeve(frame, side, arm_in_map):
+        at = reach[SIDES.index(side)]
+        if at is None:
+            raise HIDDEN
+        return WornSleeve(
+            stamp=0.0, confidence=0.9, side=side, reach=at, armhole_at=1.0 - at, cuff_at=0.5, round_arm=0.9
+        )
+
+    def collar(frame, *, near_in_map, away=(0.0, 0.0)):
+        return GraspPoint(
+            stamp=0.0,
+            confidence=0.9,
+            target="collar_middle",
+            position_in_map=np.append(MIDDLE[:2] + (aside, -0.05) + np.asarray(away), HEIGHT),
+            approach_in_map=np.array((0.0, 0.0, -1.0)),
+            closing_in_map=np.array((0.0, 1.0, 0.0)),
+        )
+
+    return LeafBench(
+        lambda context: DrawOver("draw over", context),
+        beside_bed(
+            stand=stance_at_head(),
+            worn_sleeve=sleeve,
+            collar_middle=collar,
+            gripped_cloth=cloth,
+            arm=lambda frame, side, **_: lying_posture(side),
+        ),
+    )
+
+
+def held(run, side):
+    """Positions (n, 3) of a hand while its fingers were closed [m]."""
+    return run.way(side)[run.openings(side) < 0.005]
+
+
+@pytest.mark.parametrize(
+    ("reach", "aside", "way"),
+    [
+        ((0.71, 0.44), 0.0, -0.15),
+        ((0.44, 0.71), 0.0, 0.15),
+        ((0.80, 0.64), 0.0, -0.09),
+        ((0.80, 0.10), 0.0, -0.15),
+        ((0.71, None), 0.10, -0.10),
+        ((None, 0.71), -0.10, 0.10),
+    ],
+)
+def test_it_is_carried_over_from_the_side_of_the_lower_armhole(reach, aside, way):
+    run = bench(reach, aside=aside)
+    assert run.ended() is None
+    for side in SIDES:
+        path = held(run, side)
+        assert path[-1, 0] - path[0, 0] == pytest.approx(way, abs=0.03)
+        assert path[:, 2].max() - path[0, 2] == pytest.approx(0.10, abs=0.02), "above the body"
+        assert path[-1, 2] - path[0, 2] == pytest.approx(0.02, abs=0.02), "laid down"
+        assert path[0, 1] > MIDDLE[1] + 0.08, "on the chest"
+        assert run.openings(side)[-1] > 0.03
+        assert run.way(side)[-1, 2] > path[-1, 2] + 0.08, "drawn back"
+    assert np.linalg.norm(held(run, "left")[0] - held(run, "right")[0]) > 0.2  # [m]
+
+
+@pytest.mark.parametrize(("reach", "aside"), [((0.75, 0.70), 0.15), ((None, 0.7), 0.03)])
+def test_one_that_lies_in_the_middle_is_left_alone(reach, aside):
+    run = bench(reach, aside=aside)
+    assert run.ended() is None
+    assert all(np.ptp(run.way(side), axis=0) == pytest.approx(0.0, abs=1e-3) for side in SIDES)
+
+
+def test_one_hand_alone_draws_it_too():
+    def cloth(frame, pose_hand_in_map):
+        return dataclasses.replace(HELD, confidence=0.0 if pose_hand_in_map[0, 3] > MIDDLE[0] + 0.05 else 0.9)
+
+    run = bench((0.71, 0.44), cloth=cloth)
+    assert run.ended() is None
+    path = held(run, "left")
+    assert path[-1, 0] - path[0, 0] == pytest.approx(-0.15, abs=0.03)
+
+
+def test_where_neither_hand_holds_cloth_it_fails_with_open_hands():
+    run = bench((0.71, 0.44), cloth=HIDDEN)
+    assert run.ended() == Reason.GRASP_MISSED
+    assert run.seen[-1].gripper_opening.min() > 0.03

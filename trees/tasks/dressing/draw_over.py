@@ -1,0 +1,137 @@
+"""Draw a worn gown that lies to one side over towards the midline."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from ....perception.errors import PerceptionFailure
+from ....perception.estimates import GraspPoint
+from ....sim.quantity import Quantities, quantity
+from ....sim.world import SIDES, Side
+from ....skills.belief.person_motion import while_person_rests
+from ....skills.belief.person_tracking import watch_arm
+from ....skills.belief.shoulders import between_shoulders, look_at_collar, off_middle
+from ....skills.control.carry import Carry
+from ....skills.control.fingers import open_gripper
+from ....skills.control.hands import hand_now
+from ....skills.control.head import look_towards
+from ....skills.control.take_from_above import FromAbove, take_from_above
+from ....skills.control.together import together
+from ....skills.control.two_hands import carry_each, take_each
+from ....skills.control.withdraw import withdraw
+from ....skills.core.ports import Input
+from ....skills.core.reasons import Reason
+from ....skills.core.skill import Skill
+from ....skills.geometry.arm_path import UP
+from ....skills.geometry.stances import HEADWARD, outwards
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrawOverTuning(Quantities):
+    """Numbers of `DrawOver`."""
+
+    least: float = quantity(
+        0.05, "m", "to one side, from which the gown is drawn over", "choice: as well as its collar is seen"
+    )
+    per_reach: float = quantity(
+        0.55,
+        "m",
+        "to draw it over, for each upper arm by which one armhole is lower",
+        "measured with ideal hands: 0.15 m where armholes were at 0.71 and 0.44 (103)",
+    )
+    most: float = quantity(0.15, "m", "to draw it over at a time", "measured: likewise")
+    apart: float = quantity(0.13, "m", "of either hand from the midline", "choice: the wrists do not meet")
+    footward: float = quantity(
+        0.14, "m", "of the hands from the shoulders", "choice: 0.165 m is as far as they get from the head of the bed"
+    )
+    grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
+    lift: float = quantity(0.10, "m", "of the cloth before it is carried", "choice: along the body it would slip back")
+    laid_height: float = quantity(0.02, "m", "of the hands over where they took it", "choice: clear of the chest")
+    laying_speed: float = quantity(0.03, "m/s", "of the hands on their way down", "choice: they may meet the chest")
+    gap: float = quantity(
+        0.04, "m", "between the robot's arms, at which they come no nearer", "choice: they only drift"
+    )
+    carry: Carry = field(default_factory=Carry)
+    withdrawal: float = quantity(0.12, "m", "by which the open hands are drawn back", "choice: clear of the gown")
+
+
+class DrawOver(Skill):
+    """Looks whether one armhole is lower than the other, and draws the front over to the side of the higher one.
+
+    Dressing one arm after the other leaves the whole gown on the side of the first: its sleeve hangs low, and the
+    collar lies aside and springs back.  Both hands take the front on the chest, lift it, carry it over and lay it down.
+    Where an armhole does not show, the collar tells how far.  The robot stands at the head of the bed; the hands end
+    open and drawn back.
+    """
+
+    tuning = Input(DrawOverTuning, default=DrawOverTuning(), doc="numbers of this skill")
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.PERSON_MOVED,
+        Reason.FORCE_LIMIT,
+        Reason.COMMAND_LOST,
+    )
+
+    def steps(self) -> Iterator[None]:
+        """Draw as long as the person does not move."""
+        yield from while_person_rests(self, self._draw())
+
+    def _draw(self) -> Iterator[None]:
+        """Look, take, lift, carry, lay down, let go."""
+        tuning = self.tuning
+        self.note("looks whether the gown lies to one side")
+        middle = between_shoulders(self)
+        lower = yield from self._right_lower()
+        yield from look_towards(self, middle)
+        collar = look_at_collar(self, middle)
+        aside = tuning.per_reach * lower if lower is not None else off_middle(collar.position_in_map, middle)[0]
+        self.note(f"the gown lies {abs(aside) * 100:.0f} cm to the {'right' if aside > 0.0 else 'left'}")
+        if abs(aside) < tuning.least:
+            return
+        way = float(np.clip(aside, -tuning.most, tuning.most)) * outwards("left")
+        places = self._places(middle, collar.position_in_map)
+        held = yield from take_each({side: partial(self._take, side, place) for side, place in places.items()})
+        start: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] for side in held}
+        for shift in (tuning.lift * UP, tuning.lift * UP + way):
+            yield from carry_each(
+                self, {side: place + shift for side, place in start.items()}, tuning.carry, tuning.gap
+            )
+        laid: dict[Side, np.ndarray] = {}
+        for side, place in start.items():
+            laid[side] = np.append(hand_now(self, side)[:2, 3], place[2] + tuning.laid_height)
+        yield from carry_each(self, laid, tuning.carry, tuning.gap, tuning.laying_speed)
+        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
+        yield from withdraw(self, held, tuning.withdrawal)
+
+    def _right_lower(self) -> Generator[None, None, float | None]:
+        """By how much of the upper arm the right armhole is lower than the left one; None where one does not show."""
+        reach = []
+        for side in SIDES:
+            arm = watch_arm(self, side).points_in_map
+            yield from look_towards(self, arm[0])
+            try:
+                seen = self.context.senses.worn_sleeve(self.world.look("head"), side=side, arm_in_map=arm)
+            except PerceptionFailure:
+                return None
+            reach.append(seen.reach)
+        return reach[0] - reach[1]
+
+    def _places(self, middle: np.ndarray, collar: np.ndarray) -> dict[Side, GraspPoint]:
+        """Where each hand takes the cloth on the chest; both are seen before a hand comes in between."""
+        tuning = self.tuning
+        places: dict[Side, GraspPoint] = {}
+        for side in SIDES:
+            away = middle + tuning.apart * outwards(side) - tuning.footward * HEADWARD - collar
+            places[side] = look_at_collar(self, middle, (float(away[0]), float(away[1])))
+        return places
+
+    def _take(self, side: Side, place: GraspPoint) -> Iterator[None]:
+        yield from take_from_above(self, side, place, HEADWARD, self.tuning.grasp)
