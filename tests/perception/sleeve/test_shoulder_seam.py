@@ -9,6 +9,7 @@ from caretree.sim.world import Frame
 from .test_worn_sleeve import DOWN, MAGENTA
 
 PRINTED, BARE = (110, 170, 215), (128, 128, 128)  # the outside of the gown, and what is no gown
+NAVY = (20, 34, 92)  # the neckline's tape
 SHOULDERS = np.array(((-0.2, 0.0, 1.0), (0.2, 0.0, 1.0)))  # the head is towards -y, which the picture shows below
 
 
@@ -53,17 +54,23 @@ def test_cloth_on_the_chest_and_on_the_other_side_does_not_count(patch):
         shoulder_seam(picture(patch), "right", SHOULDERS)
 
 
-def test_where_the_tape_ends_counts_before_the_back_panels_corner_which_is_farther_headward():
-    corner, sleeve = (0.265, 0.295, -0.20, 0.0, 0.0), (0.295, 0.40, -0.06, 0.2, 0.0)
-    tape = (0.38, 0.395, -0.06, 0.2, 0.0, MAGENTA)
+def test_beside_both_tapes_it_is_no_corner_of_the_back_panel_that_is_farther_headward():
+    corner, sleeve = (0.34, 0.39, -0.20, 0.0, 0.0), (0.24, 0.40, -0.06, 0.2, 0.0)
+    tapes = (0.26, 0.28, -0.06, 0.2, 0.0, MAGENTA), (0.19, 0.24, -0.06, -0.03, 0.0, NAVY)
     without = shoulder_seam(picture(corner, sleeve), "right", SHOULDERS)
-    seen = shoulder_seam(picture(corner, sleeve, tape), "right", SHOULDERS)
-    assert without.position_in_map[:2] == pytest.approx((0.28, -0.15), abs=0.03)
-    assert seen.position_in_map[:2] == pytest.approx((0.345, -0.05), abs=0.03)
+    seen = shoulder_seam(picture(corner, sleeve, *tapes), "right", SHOULDERS)
+    assert without.position_in_map[:2] == pytest.approx((0.365, -0.16), abs=0.04)
+    assert seen.position_in_map[:2] == pytest.approx((0.31, -0.05), abs=0.04)
 
 
-def test_by_its_tape_it_is_found_above_the_height_of_the_arm():
+def test_by_its_tapes_it_is_found_above_the_height_of_the_arm():
     seen = shoulder_seam(
-        picture((0.28, 0.38, -0.05, 0.2, 0.09), (0.32, 0.34, -0.05, 0.2, 0.09, MAGENTA)), "right", SHOULDERS
+        picture(
+            (0.26, 0.36, -0.05, 0.2, 0.09),
+            (0.30, 0.32, -0.05, 0.2, 0.09, MAGENTA),
+            (0.20, 0.26, -0.05, -0.02, 0.09, NAVY),
+        ),
+        "right",
+        SHOULDERS,
     )
-    assert seen.position_in_map == pytest.approx((0.33, -0.035, 1.09), abs=0.03)
+    assert seen.position_in_map == pytest.approx((0.30, -0.035, 1.09), abs=0.04)

@@ -35,7 +35,10 @@ class DrawUpTuning(Quantities):
         9.0, "N", "of the blanket, at which it is drawn no farther", "choice: it weighs 6 N, and 18 N stop the robot"
     )
     laid: float = quantity(
-        0.05, "m", "above the shoulder, where the edge is let go of", "choice: above an arm, and it falls from there"
+        0.15,
+        "m",
+        "above the shoulder, where the edge is let go of",
+        "measured: at 0.05 m the hand met the side of the trunk with 64 N (101); it falls from there",
     )
     carry: Carry = field(default_factory=lambda: Carry(speed=0.12, max_load=15.0))
     opening: float = quantity(0.04, "m", "of the fingers that let it go", "choice: just enough; they are near the arm")

@@ -38,10 +38,11 @@ class DrawOverTuning(Quantities):
         0.05, "m", "to one side, from which the gown is drawn over", "choice: as well as its collar is seen"
     )
     per_reach: float = quantity(
-        0.55,
+        0.8,
         "m",
         "to draw it over, for each upper arm by which one armhole is lower",
-        "measured with ideal hands: 0.15 m where armholes were at 0.71 and 0.44 (103)",
+        "measured: 0.15 m did where they were at 0.71 and 0.44 (103); drawn by 0.08 m, a gown 0.16 m to one side came "
+        "nearer by 0.03 m (106)",
     )
     most: float = quantity(0.15, "m", "to draw it over at a time", "measured: likewise")
     apart: float = quantity(0.13, "m", "of either hand from the midline", "choice: the wrists do not meet")
