@@ -36,15 +36,21 @@ class SpreadTuning(Quantities):
     lies_well: float = quantity(
         0.03,
         "m",
-        "aside of the midline, within which the collar is left as it is, and to which it is brought",
+        "aside of the midline, within which the collar is left as it is",
         "choice: 4 cm of the 7 cm allowed, as it is seen to 4 cm",
     )
     lies_along: tuple[float, float] = quantity(
         (-0.04, 0.04),
         "m",
-        "headward of the line of the shoulders, within which the collar is left as it is, and to which it is brought",
-        "measured: brought to 0.06 m below that line, and to the midline, the collar drew both sleeves down by 0.14 on "
-        "average (107); 0.10 m headward and 0.08 m footward are allowed",
+        "headward of the line of the shoulders, within which the collar is left as it is",
+        "choice: 0.10 m headward and 0.08 m footward are allowed",
+    )
+    brought_to: tuple[float, float] = quantity(
+        (0.01, 0.02),
+        "m",
+        "aside of the midline, and off the line of the shoulders towards the other side, to which it is brought",
+        "measured: where it lay right along the body and was brought 0.06 m footward of the shoulders it drew both "
+        "sleeves down by 0.14 on average (107); brought to 0.04 m headward of them, it stayed at 0.14 m (103)",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(
@@ -116,16 +122,21 @@ class Spread(Skill):
         aside, ahead = off_middle(point.position_in_map, middle)
         self.note(f"the collar's middle is {aside * 100:.0f} cm aside, {ahead * 100:.0f} cm headward of the shoulders")
         self.grasp = point
-        aside_to = float(np.clip(aside, -tuning.lies_well, tuning.lies_well))
-        ahead_to = float(np.clip(ahead, *tuning.lies_along))
-        if aside_to == aside and ahead_to == ahead:
+        lowest, highest = tuning.lies_along
+        lies_well, lies_along = abs(aside) < tuning.lies_well, lowest < ahead < highest
+        if lies_well and lies_along:
             yield
             return
+        aside_to, ahead_to = np.copysign(tuning.brought_to, (aside, -ahead))
         tries = Tries(MotionError, PerceptionFailure)
         places = self._places(middle, aside, tries)
         hand = yield from self._take(SIDES if aside < 0.0 else SIDES[::-1], places, tries)
         low = hand_now(self, hand)[:3, 3]
-        way = np.array((aside_to - aside, 0.0, 0.0)) + (ahead_to - ahead) * HEADWARD
+        way = np.zeros(3)
+        if not lies_well:
+            way[0] = aside_to - aside
+        if not lies_along:
+            way += (ahead_to - ahead) * HEADWARD
         past = low + way + tuning.beyond * unit(way)
         self.note("carries the collar to the midline")
         yield from carry(self, hand, low + tuning.lift * UP, tuning.carry)

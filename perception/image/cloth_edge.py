@@ -19,12 +19,21 @@ from .surfaces import Surface
 class ClothEdgeTuning(Quantities):
     """Numbers of the search for an edge."""
 
-    aside: float = quantity(
-        0.22, "m", "from the middle of the bed towards the camera, where it is looked for", "choice: beside the legs"
+    aside: tuple[float, float] = quantity(
+        (0.16, 0.34),
+        "m",
+        "from the middle of the bed towards the camera, where it is looked for",
+        "choice: off the body",
     )
-    band: float = quantity(0.04, "m", "to either side of there, of points that count", "choice: about a cell of cloth")
+    height: float = quantity(
+        0.03,
+        "m",
+        "of the edge above the mattress, where it is taken",
+        "measured: 0.05 m above it, trunk and legs were in the fingers' way (103, 105, 107); lower, the mattress is",
+    )
+    strip: float = quantity(0.03, "m", "of the width that is looked at for that", "choice: half a cell of cloth")
     headmost: float = quantity(0.03, "1", "share of those points, nearest to the head, that is the edge", "choice: tip")
-    min_points: int = quantity(40, "1", "of cloth there", "choice: fewer are noise")
+    min_points: int = quantity(40, "1", "of cloth in a strip", "choice: fewer are noise")
     confidence: float = quantity(0.9, "1", "in the grasp", "choice: a plain thing that shows whole")
 
 
@@ -48,11 +57,17 @@ def cloth_edge(frame: Frame, bed_in_map: np.ndarray, tuning: ClothEdgeTuning = D
     middle = bed_in_map[:, :2].mean(axis=0)
     outward = float(np.sign(frame.pose_camera_in_map[0, 3] - middle[0]))
     points = points_in_map(frame)[(gown_labels(frame) != Surface.OTHER) & (frame.depth > 0)]
-    there = points[np.abs(outward * (points[:, 0] - middle[0]) - tuning.aside) < tuning.band]
-    there = there[there[:, 2] > bed_in_map[:, 2].min() - tuning.band]  # what hangs over the foot of the bed is no edge
-    if len(there) < tuning.min_points:
+    points = points[points[:, 2] > bed_in_map[:, 2].max() - tuning.strip]  # what hangs over the foot is no edge
+    aside = outward * (points[:, 0] - middle[0])
+    edges = []
+    for start in np.arange(*tuning.aside, tuning.strip):
+        there = points[(aside >= start) & (aside < start + tuning.strip)]
+        if len(there) >= tuning.min_points:
+            edges.append(np.median(there[there[:, 1] <= np.quantile(there[:, 1], tuning.headmost)], axis=0))
+    if not edges:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "upper edge of a cloth on the bed")
-    edge = np.median(there[there[:, 1] <= np.quantile(there[:, 1], tuning.headmost)], axis=0)
+    wanted = bed_in_map[:, 2].max() + tuning.height
+    edge = min(edges, key=lambda edge: abs(edge[2] - wanted))
     return GraspPoint(
         stamp=frame.stamp,
         confidence=tuning.confidence,

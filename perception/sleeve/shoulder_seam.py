@@ -55,11 +55,14 @@ class ShoulderSeamTuning(Quantities):
         0.12,
         "m",
         "from there, to which cloth counts",
-        "measured: of 144 views it was the seam in 112, the back panel's corner in 13; in 37 and 99 where what lay "
+        "measured: of 144 views it was the seam in 119, the back panel's corner in 14; in 37 and 99 where what lay "
         "nearest to the head beside the armhole's tape was taken",
     )
-    by_neckline: float = quantity(
-        0.12, "m", "from the neckline's tape, to which cloth counts", "measured: likewise; at 0.20 m the corner in 20"
+    by_neckline: tuple[float, float] = quantity(
+        (0.02, 0.14),
+        "m",
+        "from the neckline's tape, between which cloth counts",
+        "measured: likewise; from 0 to 0.12 m the seam in 111, to 0.20 m in 107",
     )
     neckline: tuple[float, float] = quantity(
         (-0.2, 0.4), "m", "from the shoulder, off the body, between which that tape counts", "choice: its half"
@@ -145,7 +148,7 @@ def _by_both_tapes(
     off = tape.query(armhole)[0]
     meet = np.median(armhole[off <= np.quantile(off, tuning.nearest)], axis=0)
     close = np.linalg.norm(cloth - meet, axis=1) < tuning.by_armhole
-    return cloth[close & (tape.query(cloth)[0] < tuning.by_neckline)]
+    return cloth[close & _between(tape.query(cloth)[0], tuning.by_neckline)]
 
 
 def _headmost(points: np.ndarray, headward: np.ndarray, share: float) -> np.ndarray:

@@ -38,7 +38,9 @@ class TakeEdgeTuning(Quantities):
         "of the grasp from the edge into the cloth, tried in turn",
         "choice: beside the person's arm there is no way",
     )
-    depth: float = quantity(0.006, "m", "of the fingertips beyond the cloth", "choice: leg and mattress give way less")
+    depth: float = quantity(
+        0.010, "m", "of the fingertips beyond the cloth", "choice: it slopes down there, and there is room below it"
+    )
     speed: float = quantity(0.12, "m/s", "of the hand", "choice: slow beside the person")
     lift: float = quantity(0.10, "m", "by which it is lifted to be felt", "choice: clear of what it lies on")
     min_load: float = quantity(0.4, "N", "of a blanket's edge at that height", "choice: a tenth of its weight")

@@ -38,13 +38,18 @@ class DrawOverTuning(Quantities):
         0.05, "m", "to one side, from which the gown is drawn over", "choice: as well as its collar is seen"
     )
     per_reach: float = quantity(
-        0.8,
+        0.6,
         "m",
         "to draw it over, for each upper arm by which one armhole is lower",
-        "measured: 0.15 m did where they were at 0.71 and 0.44 (103); drawn by 0.08 m, a gown 0.16 m to one side came "
-        "nearer by 0.03 m (106)",
+        "measured: where they were at 0.71 and 0.44, the collar lay 0.16 m aside (103)",
     )
-    most: float = quantity(0.15, "m", "to draw it over at a time", "measured: likewise")
+    most: float = quantity(0.12, "m", "to draw it over at a time", "choice: with `beyond`, what was measured")
+    beyond: float = quantity(
+        0.05,
+        "m",
+        "by which it is carried farther than that",
+        "measured: carried by 0.08 m it came over by 0.02 m (106), by 0.15 m by 0.10 m (103)",
+    )
     apart: float = quantity(0.13, "m", "of either hand from the midline", "choice: the wrists do not meet")
     footward: float = quantity(
         0.14, "m", "of the hands from the shoulders", "choice: 0.165 m is as far as they get from the head of the bed"
@@ -97,7 +102,7 @@ class DrawOver(Skill):
         self.note(f"the gown lies {abs(aside) * 100:.0f} cm to the {'right' if aside > 0.0 else 'left'}")
         if abs(aside) < tuning.least:
             return
-        way = float(np.clip(aside, -tuning.most, tuning.most)) * outwards("left")
+        way = np.copysign(min(abs(aside), tuning.most) + tuning.beyond, aside) * outwards("left")
         places = self._places(middle, collar.position_in_map)
         held = yield from take_each({side: partial(self._take, side, place) for side, place in places.items()})
         start: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] for side in held}

@@ -29,7 +29,7 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 # Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
 # is inside is looked at from beside it.
 FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
-MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown)
+MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_headward=DRESSING.collar_headward)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 NEAT = CheckCollarTuning(max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
 

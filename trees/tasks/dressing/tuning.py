@@ -140,6 +140,12 @@ class DressingTuning(Quantities):
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
         "choice: of 0.07, 0.10 and 0.08 m that are allowed; laid without need, it draws the sleeves down",
     )
+    collar_headward: float = quantity(
+        0.08,
+        "m",
+        "of the collar's middle, as it is seen, beyond which it lies on the throat",
+        "measured: 0.10 m are allowed of the neckline's edge; the tape is seen 0.02 m footward of that (25 views)",
+    )
     shoulders_on_bed: tuple[float, float, float] = quantity(
         (0.0, -0.55, 0.10), "m", "of an adult, from the middle of the mattress", "choice: where the map's bed says"
     )
