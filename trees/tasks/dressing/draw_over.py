@@ -51,8 +51,18 @@ class DrawOverTuning(Quantities):
         "measured: carried by 0.08 m it came over by 0.02 m (106), by 0.15 m by 0.10 m (103)",
     )
     apart: float = quantity(0.13, "m", "of either hand from the midline", "choice: the wrists do not meet")
-    footward: float = quantity(
-        0.14, "m", "of the hands from the shoulders", "choice: 0.165 m is as far as they get from the head of the bed"
+    below_collar: float = quantity(
+        0.15,
+        "m",
+        "of the hands from the collar",
+        "measured with ideal hands, drawn over by 0.15 m: the collar came over by 0.17 m, taken 0.30 m below it "
+        "by 0.11 m (103)",
+    )
+    footward: tuple[float, float] = quantity(
+        (0.05, 0.14),
+        "m",
+        "of the hands from the shoulders, at least and at most",
+        "choice: clear of the neck; 0.165 m is as far as they get from the head of the bed",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(0.10, "m", "of the cloth before it is carried", "choice: along the body it would slip back")
@@ -133,9 +143,10 @@ class DrawOver(Skill):
     def _places(self, middle: np.ndarray, collar: np.ndarray) -> dict[Side, GraspPoint]:
         """Where each hand takes the cloth on the chest; both are seen before a hand comes in between."""
         tuning = self.tuning
+        footward = float(np.clip(tuning.below_collar - (collar - middle) @ HEADWARD, *tuning.footward))
         places: dict[Side, GraspPoint] = {}
         for side in SIDES:
-            away = middle + tuning.apart * outwards(side) - tuning.footward * HEADWARD - collar
+            away = middle + tuning.apart * outwards(side) - footward * HEADWARD - collar
             places[side] = look_at_collar(self, middle, (float(away[0]), float(away[1])))
         return places
 

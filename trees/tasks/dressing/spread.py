@@ -18,7 +18,7 @@ from ....skills.seat_sleeves import SeatSleeves
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
-from ...nodes.decorators import RecoverBy, Stage, timed_stage
+from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
 from .arm import arm_scope, back_off, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
@@ -46,10 +46,7 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "left"),
         arm_lies(context, "right"),
         *go_to_head(bed),
-        over(bed),
-        *(node for when in ("first", "again") for node in (seated(context, bed, when), straight(bed, when))),
-        *(node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)),
-        CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE),
+        Retry("until it is neat", neaten(context, bed), attempts=DRESSING.neaten_attempts),
         *(node for side in SIDES for node in still_inside(context, side)),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
@@ -86,39 +83,47 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     )
 
 
+def neaten(context: Context, bed: Scope) -> Behaviour:
+    """From the head of the bed, draw the gown to the middle, its sleeves up, and lay the collar straight; then look.
+
+    The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
+    collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
+    """
+    looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)]
+    middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
+    return sequence("neaten", over(bed), seated(context, bed), straight(bed), *looks, middle)
+
+
 def over(bed: Scope) -> Behaviour:
-    """From the head of the bed, draw a gown that lies to one side over; where it cannot be done, the rest may do."""
+    """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
     drawn = sequence("draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
     return fallback("over the middle", drawn, back_off("leave it there", gown))
 
 
-def seated(context: Context, bed: Scope, when: str) -> Behaviour:
-    """From the head of the bed, draw up sleeves that are low; where they get no farther, they may do all the same."""
-    gown = Scope(bed, when)
+def seated(context: Context, bed: Scope) -> Behaviour:
+    """Draw up sleeves that are low; where they get no farther, they may do all the same."""
+    gown = Scope(bed, "sleeves")
 
     def seat() -> Behaviour:
-        return sequence(f"draw them up, {when}", SeatSleeves("seat", gown), back_off("clear the view of them", gown))
+        return sequence("draw them up", SeatSleeves("seat", gown), back_off("clear the view", gown))
 
-    looks = [node for side in SIDES for node in sits(context, f"{side} {when}", side, DRESSING.armhole_sits)]
-    up = RecoverBy(f"until they sit, {when}", sequence(f"both sit, {when}", *looks), dict.fromkeys(LOW, seat))
-    return fallback(f"as far as they go, {when}", up, back_off("leave them", gown))
+    looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_sits)]
+    up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
+    return fallback("as far as they go", up, back_off("leave them", gown))
 
 
-def straight(bed: Scope, when: str) -> Behaviour:
-    """From the head of the bed, lay the collar straight; where it gets no nearer, it may do all the same.
-
-    It is done after the sleeves: while one of them is low, half of the neckline is out of sight, and drawing both up
-    takes the collar along.
-    """
-    gown = Scope(bed, when)
+def straight(bed: Scope) -> Behaviour:
+    """Lay the collar straight; where it gets no nearer, it may do all the same."""
+    gown = Scope(bed, "collar")
 
     def straighten() -> Behaviour:
-        return sequence(f"lay it straight, {when}", Spread("spread", gown), back_off("clear the view of it", gown))
+        return sequence("lay it straight", Spread("spread", gown), back_off("clear the view", gown))
 
-    lies = CheckCollar("collar", gown, tuning=NEAT)
-    laid = RecoverBy(f"until it lies straight, {when}", lies, {Reason.COLLAR_ASIDE: straighten})
-    return fallback(f"as straight as it gets, {when}", laid, back_off("leave it", gown))
+    laid = RecoverBy(
+        "until it lies straight", CheckCollar("lies straight", gown, tuning=NEAT), {Reason.COLLAR_ASIDE: straighten}
+    )
+    return fallback("as straight as it gets", laid, back_off("leave it", gown))
 
 
 def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviour]:

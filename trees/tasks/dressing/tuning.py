@@ -140,6 +140,9 @@ class DressingTuning(Quantities):
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
         "choice: of 0.07, 0.10 and 0.08 m that are allowed; laid without need, it draws the sleeves down",
     )
+    neaten_attempts: int = quantity(
+        3, "1", "at sleeves and collar, the first one included", "choice: each takes 60 to 90 s"
+    )
     collar_headward: float = quantity(
         0.08,
         "m",
@@ -167,7 +170,7 @@ class DressingTuning(Quantities):
     )
     lay_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
     dress_timeout: float = quantity(600.0, "s", "for dressing both arms", "choice: room for two misses at each arm")
-    spread_timeout: float = quantity(400.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
+    spread_timeout: float = quantity(500.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
 
 
 DRESSING = DressingTuning()
