@@ -89,7 +89,7 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
     collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
     """
-    looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_will_do)]
+    looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits)]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
     return sequence("neaten", over(bed), seated(context, bed), straight(bed), *looks, middle)
 

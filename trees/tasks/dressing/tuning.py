@@ -117,16 +117,10 @@ class DressingTuning(Quantities):
     back_off_distance: float = quantity(0.25, "m", "of the base from a dressed arm", "choice: the arm comes into view")
     # settling the sleeves and the collar
     armhole_sits: float = quantity(
-        0.75,
+        0.73,
         "1",
-        "of the upper arm, below which sleeves are drawn up",
-        "choice: 0.7 is asked for, and it is seen to 0.05",
-    )
-    armhole_will_do: float = quantity(
-        0.72,
-        "1",
-        "of the upper arm, below which the sleeve counts as low in the end",
-        "design requirement: 0.7, and half a standard deviation of what is seen of it",
+        "of the upper arm, below which sleeves are drawn up, and count as low in the end",
+        "design requirement: 0.7, and more than half a standard deviation of what is seen of it",
     )
     collar_shown: float = quantity(
         0.60,
