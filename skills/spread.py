@@ -46,11 +46,11 @@ class SpreadTuning(Quantities):
         "choice: 0.10 m headward and 0.08 m footward are allowed",
     )
     brought_to: tuple[float, float] = quantity(
-        (0.01, 0.02),
+        (0.01, 0.05),
         "m",
         "aside of the midline, and off the line of the shoulders towards the other side, to which it is brought",
-        "measured: where it lay right along the body and was brought 0.06 m footward of the shoulders it drew both "
-        "sleeves down by 0.14 on average (107); brought to 0.04 m headward of them, it stayed at 0.14 m (103)",
+        "measured: held at 0.04 m footward of that line, let go of it went 0.13 m headward (0, 101); where it lay right "
+        "along the body and was brought 0.06 m footward all the same, both sleeves came down by 0.14 on average (107)",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(
