@@ -49,7 +49,7 @@ class SpreadTuning(Quantities):
         (0.01, 0.05),
         "m",
         "aside of the midline, and off the line of the shoulders towards the other side, to which it is brought",
-        "measured: held at 0.04 m footward of that line, let go of it went 0.13 m headward (0, 101); where it lay right "
+        "measured: held 0.04 m footward of that line, let go of it went 0.13 m headward (0, 101); where it lay right "
         "along the body and was brought 0.06 m footward all the same, both sleeves came down by 0.14 on average (107)",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
