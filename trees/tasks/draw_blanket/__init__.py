@@ -41,6 +41,16 @@ SHOULDERS = 0.55  # of an adult's, from the middle of the bed towards its head [
 __all__ = ["build", "judge", "scene", "scripted", "senses"]
 
 
+def drawn_up(context: Context) -> bool:
+    """The head's camera sees the edge no farther down than on the chest."""
+    edge = context.senses.hang_point(context.world.look("head")).position_in_map
+    middle = context.world.room.bed[:, :2].mean(axis=0)
+    return bool((edge[:2] - middle) @ HEADWARD[:2] > SHOULDERS - UP_TO)
+
+
+CONDITIONS = (drawn_up,)
+
+
 def senses(context: Context) -> Senses:
     """What sees, unless the run was given others."""
     return BlanketSenses(context.world.room, context.rng)
@@ -77,10 +87,3 @@ def draw(context: Context, name: str, side: Side) -> Stage:
     return timed_stage(
         name, RecoverBy(f"{side}: drawn up", once, dict.fromkeys(MISSED, again), attempts=3), seconds=240.0
     )
-
-
-def drawn_up(context: Context) -> bool:
-    """The head's camera sees the edge no farther down than on the chest."""
-    edge = context.senses.hang_point(context.world.look("head")).position_in_map
-    middle = context.world.room.bed[:, :2].mean(axis=0)
-    return bool((edge[:2] - middle) @ HEADWARD[:2] > SHOULDERS - UP_TO)
