@@ -84,14 +84,14 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
-    """From the head of the bed, draw the gown to the middle, its sleeves up, and lay the collar straight; then look.
+    """From the head of the bed, draw low sleeves up and lay the collar straight; then look.
 
     The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
     collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
     """
     looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits)]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
-    return sequence("neaten", over(bed), seated(context, bed), straight(bed), *looks, middle)
+    return sequence("neaten", seated(context, bed), straight(bed), *looks, middle)
 
 
 def over(bed: Scope) -> Behaviour:
@@ -102,11 +102,11 @@ def over(bed: Scope) -> Behaviour:
 
 
 def seated(context: Context, bed: Scope) -> Behaviour:
-    """Draw up sleeves that are low; where they get no farther, they may do all the same."""
+    """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
 
     def seat() -> Behaviour:
-        return sequence("draw them up", SeatSleeves("seat", gown), back_off("clear the view", gown))
+        return sequence("draw them up", over(bed), SeatSleeves("seat", gown), back_off("clear the view", gown))
 
     looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_sits)]
     up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))

@@ -129,7 +129,7 @@ class DressingTuning(Quantities):
         "measured: in 108 views of seeds 101 to 108 that showed less it was missed by 0.06 to 0.18 m",
     )
     collar_neat: tuple[float, float, float] = quantity(
-        (0.05, 0.05, 0.05),
+        (0.05, 0.05, 0.07),
         "m",
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
         "choice: of 0.07, 0.10 and 0.08 m that are allowed; laid without need, it draws the sleeves down",

@@ -64,7 +64,7 @@ def test_the_arm_is_lowered_before_the_sleeve_is_pulled_up_and_lies_before_it_is
 def test_both_arms_lie_before_a_sleeve_is_drawn_up_again(nodes):
     names = [node.name for node in nodes if not node.children]
     for side in ("left", "right"):
-        assert names.index(f"{side} sleeve/first/lower") < names.index("gown/first/seat")
+        assert names.index(f"{side} sleeve/first/lower") < names.index("gown/sleeves/seat")
 
 
 def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_come_last(nodes):
