@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 if TYPE_CHECKING:
     import numpy as np
 
+    from .record.recorded_state import RecordedState
     from .record.recorder import Recorder
     from .render.camera import Renderer
     from .scene.objects import RoomObject
@@ -128,6 +129,19 @@ class SupportsInitialStates(Protocol):
 
         Raises:
             WorldError: there is no such state, or the run has begun.
+        """
+        ...
+
+
+@runtime_checkable
+class SupportsRecordedStates(Protocol):
+    """A world that can begin a run where another one was: what it lost there can be tried again."""
+
+    def set_recorded_state(self, state: RecordedState) -> None:
+        """Bring the world to where it was.
+
+        Raises:
+            WorldError: the run has begun, or what was recorded is not in this world.
         """
         ...
 

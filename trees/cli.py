@@ -128,6 +128,12 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     )
     run.add_argument("--tuning", metavar="FILE", help="YAML file of both: parameter, value; skill, number, value")
     run.add_argument(
+        "--from",
+        dest="start",
+        metavar="RECORD@SECONDS",
+        help="begin where another run was then, with empty hands and its seed; with --stage, to try again what it lost",
+    )
+    run.add_argument(
         "--senses",
         default="own",
         choices=("own", "scripted"),

@@ -1,13 +1,15 @@
-"""Beginning a run with the gown somewhere else than on its hook, as the paper's independent trials do."""
+"""Beginning a run with gown and arms somewhere else than at first, as the paper's independent trials do."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from ..scene.gown import GownMesh
-from ..world import SIDES
+from ..scene.person_spec import ARM_AXES, JOINT_LIMITS
+from ..world import SIDES, Side
 from .cloth import ClothBody
 from .grip import Grip
 from .handle import Handle
@@ -25,6 +27,7 @@ _ARM = np.array((1.67, -0.10, -2.02, 2.60, 0.40, 0.18, -0.30))
 HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
 HOLDING_AT = (2.7, -0.9, np.pi / 2)  # of the base, back from the rail [m, m, rad]
 RAISED = (0.85, 0.58, -1.3, 0.25)  # joints of an arm that was lifted, dressed and let go of [rad]
+_RANGE = tuple(zip(*(JOINT_LIMITS[axis] for axis in ARM_AXES), strict=True))  # least and greatest angles [rad]
 _OVER_LEGS = 0.22  # height above the mattress at which a gown hung over raised arms turns to lie on the legs [m]
 _REST, _FALL = 1.0, 2.0  # until the sleeves are at rest, and until arms that fall are [s]
 _DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is drawn to: from here ... to here,
@@ -133,6 +136,24 @@ def put_on_by_hand(
         if k % 5 == 0:
             person.resist()
         step()
+
+
+def put_arms(person: Person, arms: np.ndarray) -> None:
+    """Bend the person's arms to where they were recorded, as near as their joints come.
+
+    Args:
+        person: the manikin.
+        arms: (2, 4, 3) left and right shoulder, elbow, wrist, fingertip in the map frame [m].
+    """
+    for n, side in enumerate(SIDES):
+
+        def missed(angles: np.ndarray, n: int = n, side: Side = side) -> np.ndarray:
+            person.bend_arm(side, tuple(angles.tolist()))
+            return (person.arms()[n] - arms[n]).ravel()
+
+        # the step is much longer than what the engine rounds to
+        found = least_squares(missed, np.clip(person.spec.pose[side], *_RANGE), bounds=_RANGE, diff_step=1e-3)
+        person.bend_arm(side, tuple(found.x.tolist()))
 
 
 def _over_hands(mesh: GownMesh, arms: np.ndarray, over_legs: float) -> np.ndarray:

@@ -10,6 +10,7 @@ from .cloth import ClothBody
 from .handle import Handle
 
 FREE_LOAD = 0.5  # a loop of cloth that pulls down less than this slips off an open hook [N]
+NEAR = 0.05  # cloth of which the hung part is as near as this hangs on it [m]
 FREE_TIME = 0.10  # ... after this long [s]
 
 
@@ -36,6 +37,11 @@ class Hook:
     def load(self, vertices: np.ndarray) -> np.ndarray:
         """(3,) force of the cloth, whose vertices are given, on the hook [N]."""
         return self.cloth.load(self._held, vertices) if self.holds else np.zeros(3)
+
+    def carries(self, vertices: np.ndarray) -> bool:
+        """Whether the cloth, its vertices (V, 3) being there, still hangs where it was hung up."""
+        away = np.linalg.norm(vertices[self._held].mean(axis=0) - self._pose[:3, 3])
+        return self.holds and float(away) < NEAR
 
     def before_step(self) -> None:
         """Keep still."""

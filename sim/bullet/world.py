@@ -23,6 +23,7 @@ from ..effects.cloth.proxy_bodies import ClothPatch
 from ..errors import CaretreeError
 from ..mechanics.capsules import RobotCapsules
 from ..mechanics.kinematics import kinematics_of
+from ..record.recorded_state import RecordedState
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
 from ..render.camera import Renderer
@@ -45,7 +46,7 @@ from .cloth import ClothBody, load_gown
 from .contact import Contact
 from .engines import BULLET, engine_named
 from .furniture import add_furniture
-from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_on_by_hand
+from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
@@ -59,6 +60,7 @@ TIME_STEP = 0.0025  # of the room [s]
 ROBOT_STEPS = 2  # room steps per robot step
 CONTROL_STEPS = 4  # room steps between two looks at the fingers
 SETTLE = 2.0  # the gown hangs still before the clock starts [s]
+SETTLE_RECORDED = 0.2  # what was recorded while it moved comes to rest [s]
 WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
 SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
 SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
@@ -226,9 +228,7 @@ class BulletWorld(World):
             raise WorldError("an initial state can only be set before the run begins")
         if state == InitialState.GOWN_ON_HOOK:
             return
-        self._hook.release()
-        if self._patch is not None:  # proxy bodies cannot jump with the cloth
-            self._patch.detach()
+        self._take_off_hook()
         if state == InitialState.GOWN_IN_HANDS:
             self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
             self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
@@ -246,8 +246,42 @@ class BulletWorld(World):
                     np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist(),
                 )
             beside = "bed_right" if state == InitialState.GOWN_ON_PERSON else "bed_left"
-            self._robot = self._stand(self.room.waypoints[beside])
-            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+            self._stand_ready(self.room.waypoints[beside])
+        self._tell_where_it_lies()
+
+    def set_recorded_state(self, state: RecordedState) -> None:
+        """Begin the run where another one was, at rest: the robot at the waypoint next to where it stood, arms ready.
+
+        Raises:
+            WorldError: the run has begun, or the state is of another gown.
+        """
+        if self._steps:
+            raise WorldError("a recorded state can only be set before the run begins")
+        asked, given = len(self._cloth.vertices()), len(state.vertices)
+        if asked != given:
+            raise WorldError(f"the recorded gown has {given} vertices, but this one has {asked}")
+        if not self._hook.carries(state.vertices):
+            self._take_off_hook()
+        self._cloth.place(state.vertices)
+        put_arms(self._person, state.arms)
+        waypoints = self.room.waypoints.values()
+        self._stand_ready(min(waypoints, key=lambda point: np.linalg.norm(state.robot - point[:2])))
+        self._settle(SETTLE_RECORDED)
+        self._tell_where_it_lies()
+
+    def _take_off_hook(self) -> None:
+        """Let the gown be put elsewhere."""
+        self._hook.release()
+        if self._patch is not None:  # proxy bodies cannot jump with the cloth
+            self._patch.detach()
+
+    def _stand_ready(self, pose_base_in_map: tuple[float, float, float]) -> None:
+        """Put the robot somewhere, arms ready and hands empty."""
+        self._robot = self._stand(pose_base_in_map)
+        self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+
+    def _tell_where_it_lies(self) -> None:
+        """Let sleep, proxy bodies and whatever else remembers it know where the gown has been put."""
         self._vertices = self._cloth.vertices()
         if self._patch is not None:
             self._patch.attach(self._client, self._cloth.body, self._vertices)

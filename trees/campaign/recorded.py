@@ -28,6 +28,7 @@ class Recorded:
         log_rate: measurements a second that its log asked for, between ticks too; None for those of the tree alone.
         inject: faults, as on the command line.
         tuning: skill -> number -> value.
+        start: what `--from` named; None where the run began at its beginning.
         build: parameter of the task -> value.
         versions: of packages, by name.
     """
@@ -42,6 +43,7 @@ class Recorded:
     stage: str | None = None
     look: str | None = None
     engine: str | None = None
+    start: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
     log_rate: float | None = None
@@ -75,6 +77,7 @@ def recorded(directory: Path) -> Recorded:
         build=_value(file, given, "build", dict, _is_mapping, {}),
         world_args=_value(file, given, "world_args", dict, _is_mapping, {}),
         versions=_value(file, run, "versions", dict, _is_mapping, {}),
+        start=_value(file, given, "from", str, _is_text, None),
         **optional,
     )
 

@@ -12,6 +12,7 @@ from ...sim.log.logged_world import logged
 from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
+from ..run.recorded_start import read_start
 from ..run.runner import Run
 from ..run.task import load_task
 from ..run.trace import canonical
@@ -69,7 +70,10 @@ def replay(directory: Path) -> Replay:
             params=loaded.values(given.build) | loaded.parameters(given.stage),
             settings=Settings(given.tuning),
         )
-        prepare_stage(inner, loaded, given.stage)
+        if given.start is None:
+            prepare_stage(inner, loaded, given.stage)
+        else:
+            read_start(given.start).prepare(inner)
         run.run()
         if run.interrupted:
             raise KeyboardInterrupt

@@ -29,6 +29,7 @@ from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
 from ..run.judging import judge_and_keep
 from ..run.progress import Progress
+from ..run.recorded_start import read_start, take_room
 from ..run.runner import Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
@@ -63,6 +64,9 @@ def main(options: argparse.Namespace) -> int:
         CaretreeError: the input is bad, or some of the record could not be written.
     """
     task = load_task(options.task, robot=options.robot)
+    start = read_start(options.start) if options.start else None
+    if start is not None:
+        take_room(options, start.directory)
     if not options.unchecked:
         _refuse_faulty(task, options.stage)
     faults = [parse_fault(text) for text in options.inject]
@@ -82,6 +86,7 @@ def main(options: argparse.Namespace) -> int:
         "inject": options.inject,
         "log_rate": options.log_rate,
         "stage": options.stage,
+        "from": start and str(start),
         "tuning": given.settings.values,
         "build": given.parameters,
     }
@@ -113,6 +118,10 @@ def main(options: argparse.Namespace) -> int:
                 )
                 try:
                     senses = senses or senses_for(options.senses, task, inner, options.seed)
+                    if start is None:
+                        prepare_stage(inner, task, options.stage)
+                    else:
+                        start.prepare(inner)
                     with logged_into(inner, options.log, options.log_rate) as measured:
                         return _run(
                             options, task, inner, measured, senses, faults, given, parameters, claim, signals, watchers
@@ -168,7 +177,6 @@ def _run(
     )
     witness = Witness()
     run.context.watch_senses(witness.watch)
-    prepare_stage(inner, task, options.stage)
     directory = claim.directory
     recorder = Recorder(
         claim,

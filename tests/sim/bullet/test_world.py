@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +19,7 @@ from caretree.sim.bullet.watchers import Watchers
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError, RecordError
 from caretree.sim.evaluate.crossings import sleeve
+from caretree.sim.record.recorded_state import RecordedState
 from caretree.sim.robot import model
 from caretree.sim.scene.person_spec import PERSON_PARTS
 from caretree.sim.world import CAMERAS, SIDES, BaseVelocity, GripperOpening, HandTwist, SensorLost, WorldError
@@ -201,6 +203,37 @@ def test_a_run_can_begin_with_both_sleeves_on_and_not_both_up():
             reached.append(worn.armhole.upper_arm[0])
         world.close()
     assert min(reached) < 0.7 < max(reached)
+
+
+def test_a_run_can_begin_where_another_one_was():
+    before = BulletWorld(seed=1)
+    before.set_initial_state("gown_worn")
+    then = before.truth_frame()
+    before.close()
+    state = RecordedState(t=9.0, vertices=then.vertices, arms=then.arms, robot=np.array((-1.0, -0.2)))
+    world = BulletWorld(seed=1)
+    world.set_recorded_state(state)
+    now, pose = world.truth_frame(), world.observe().pose_base_in_map
+    assert np.abs(now.arms - then.arms).max() < 0.01
+    assert np.linalg.norm(now.vertices - then.vertices, axis=1).mean() < 0.01  # it settles
+    np.testing.assert_allclose(pose, world.room.waypoints["bed_left"], atol=1e-6)
+    world.clock.wait_until(0.1)
+    with pytest.raises(WorldError, match="before the run begins"):
+        world.set_recorded_state(state)
+    world.close()
+    with pytest.raises(WorldError, match="the recorded gown has 3 vertices"):
+        BulletWorld(seed=1).set_recorded_state(replace(state, vertices=np.zeros((3, 3))))
+
+
+def test_a_gown_that_was_recorded_on_its_hook_still_hangs():
+    world = BulletWorld(seed=1)
+    hung = world.truth_frame()
+    world.set_recorded_state(RecordedState(t=0.0, vertices=hung.vertices, arms=hung.arms, robot=np.zeros(2)))
+    world.clock.wait_until(1.0)
+    fallen = hung.vertices[:, 2] - world.truth_frame().vertices[:, 2]  # it swings, but stays up
+    assert abs(fallen.mean()) < 0.02
+    assert np.abs(fallen[world.scene.hang_vertex]) < 0.01
+    world.close()
 
 
 def test_a_hand_that_is_driven_into_the_chest_is_held_back_and_everyone_sees_it():
