@@ -152,7 +152,8 @@ def put_arms(person: Person, arms: np.ndarray) -> None:
             return (person.arms()[n] - arms[n]).ravel()
 
         # the step is much longer than what the engine rounds to
-        found = least_squares(missed, np.clip(person.spec.pose[side], *_RANGE), bounds=_RANGE, diff_step=1e-3)
+        start = np.clip(person.spec.pose[side], _RANGE[0], _RANGE[1])
+        found = least_squares(missed, start, bounds=_RANGE, diff_step=1e-3)
         person.bend_arm(side, tuple(found.x.tolist()))
 
 

@@ -47,7 +47,8 @@ def recorded_state(directory: Path, time: float) -> RecordedState:
     t = np.asarray(frames["t"], float)
     if not t[0] <= time <= t[-1]:
         raise RecordError(f"{directory} lasts from {t[0]:g} to {t[-1]:g} s, but {time:g} s is asked for")
-    free = ~np.asarray(frames["gripper_closed"]).any(axis=1) & (np.asarray(frames["holds_arm"]) < 0).all(axis=1)
+    holding = np.any(frames["gripper_closed"], axis=1) | np.any(np.asarray(frames["holds_arm"]) >= 0, axis=1)
+    free = np.logical_not(holding)
     n = int(np.abs(t - time).argmin())
     if not free[n]:
         empty = t[free]

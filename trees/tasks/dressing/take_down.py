@@ -105,12 +105,22 @@ def both_ends(_: Context, length: float, other_length: float) -> bool:
     return shortest < length + other_length < longest
 
 
-def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Retry:
-    """A corner of the gown that hangs from `hand`; after a miss it hangs otherwise, and that corner is left out."""
-    look = ViewAround("look all round", scope, hand=hand)
-    take = PreGraspManipulate("take a corner", scope, **ports)
-    once = sequence(f"{scope.prefix}once", look, take)
-    return Retry(f"{scope.prefix}until it holds a corner", once, attempts=DRESSING.corner_attempts)
+def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Behaviour:
+    """A corner of the gown that hangs from `hand`; after a miss it hangs otherwise, and that corner is left out.
+
+    Where no corner shows clear of other cloth, looking once more shows the same: then the best one there is is taken,
+    and the tug tells whether it was one.
+    """
+
+    def once(name: str, take: str, **more: float) -> Behaviour:
+        look = ViewAround(f"look all round{name}", scope, hand=hand)
+        return sequence(f"{scope.prefix}once{name}", look, PreGraspManipulate(take, scope, **ports, **more))
+
+    clear = Retry(
+        f"{scope.prefix}until it holds a corner", once("", "take a corner"), attempts=DRESSING.corner_attempts
+    )
+    any_corner = once(" more", "take the best there is", min_confidence=0.0)
+    return fallback(f"{scope.prefix}a corner", clear, any_corner)
 
 
 def hands_open(context: Context) -> bool:
