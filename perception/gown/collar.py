@@ -223,7 +223,7 @@ def collar_middle(
     away: tuple[float, float] = (0.0, 0.0),
     tuning: CollarTuning = DEFAULT,
 ) -> GraspPoint:
-    """The middle of a worn gown's neckline: as much of the tape lies on either side of it.
+    """The middle of a worn gown's neckline: about as much of the tape lies on either side of it.
 
     What is hidden is shared between its ends.  A taut half hides nothing, and a slack one has folds: the less straight
     the tape runs from an end, the nearer to the midline and the lower that end lies, and the farther off the armhole,
@@ -248,17 +248,18 @@ def collar_middle(
     areas = surface_areas(frame, points, tuning.area_radius, tuning.min_cosine)[worn] / share
     tape = points[worn]
     across_body = main_direction(tape)
-    middles, lengths = _slices(tape, areas, tape @ across_body, tuning)
+    across_body *= np.sign(across_body[0]) or 1.0  # the wearer's right: in the map the head lies at -y, the feet at y
+    middles, lengths = slices_across(tape, areas, tape @ across_body, tuning)
     shown = float(lengths.sum())
     hidden = max(0.0, GOWN.neckline_length - shown)
     doubt = (tuning.even_doubt + _doubt(frame, tape, near_in_map, across_body, tuning)) ** 2
-    place = (shown + hidden) / 2 - hidden * doubt[0] / doubt.sum()
+    place = (shown + hidden) / 2 + GOWN.neckline_middle - hidden * doubt[0] / doubt.sum()
     along = np.cumsum(lengths) - lengths / 2
     position = np.array([np.interp(place, along, axis) for axis in middles.T])
     return _grasp(frame, tape, position, shown, away, tuning)
 
 
-def _slices(
+def slices_across(
     points: np.ndarray, areas: np.ndarray, across: np.ndarray, tuning: CollarTuning
 ) -> tuple[np.ndarray, np.ndarray]:
     """Middles (m, 3) and lengths of tape (m,) of slices across the body, in their order [m].

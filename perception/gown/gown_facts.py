@@ -32,6 +32,12 @@ class GownFacts(Quantities):
         "from the hook through the air to both corners, where the gown hangs by the middle of its neckline",
         "design: the neckline of an adult's gown as it hangs, within 4 cm",
     )
+    neckline_middle: float = quantity(
+        0.028,
+        "m",
+        "from half the length of the neckline's tape to its middle, to the wearer's right",
+        "design: of 16 points of its edge the ninth is the middle, half a cell of the gown's cut beyond the half",
+    )
     strap_width: float = quantity(
         0.055, "m", "of the neckline's tape and of the strap that continues it", "design: one cell of the gown's cut"
     )

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.gown.collar import DEFAULT, collar_middle, corner_candidates, hidden_at
+from caretree.perception.gown.collar import DEFAULT, collar_middle, corner_candidates, hidden_at, slices_across
+from caretree.perception.gown.gown_facts import GOWN
 
 
 def corner_places(scene):
@@ -39,8 +40,9 @@ def test_the_middle_of_a_neckline_that_lies_on_the_person(scenes):
         scene = scenes.lying(seed)
         ends = corner_places(scene)
         grasp = collar_middle(scene.frame(), ends.mean(axis=0))
-        away = np.linalg.norm(ends - grasp.position_in_map, axis=1)
-        assert abs(away[0] - away[1]) < 0.15, seed  # [m]: as far from one end as from the other
+        collar = scene.gown.collar
+        middle = scene.vertices[collar[len(collar) // 2]]
+        assert abs(grasp.position_in_map[0] - middle[0]) < 0.075, seed  # [m] across the bed
         assert scene.distance_to_cloth(grasp.position_in_map) < 0.015
         assert grasp.approach_in_map[2] < 0
         assert 0.3 < grasp.confidence <= 1.0
@@ -96,6 +98,29 @@ def test_more_is_hidden_at_an_end_with_no_armhole_beside_it():
     assert right > 2.0 * left
     left, right = doubts(points, np.zeros((0, 3)))
     assert left == pytest.approx(right), "no armhole shows at all"
+
+
+def flat_tape(length=0.4, step=0.004):
+    """(n, 3) points of a straight tape across the body, and the area of it at each (n,)."""
+    along, wide = np.meshgrid(np.arange(0.0, length, step), np.arange(0.0, GOWN.strap_width, step))
+    points = np.column_stack([along.ravel(), wide.ravel(), np.zeros(along.size)])
+    return points, np.full(len(points), step**2)
+
+
+def test_a_fold_that_shows_does_not_shorten_the_tape():
+    points, areas = flat_tape()
+    folded = np.abs(points[:, 0] - 0.2) < 0.03
+    for more in (1.0, 4.0):
+        middles, lengths = slices_across(points, areas * np.where(folded, more, 1.0), points[:, 0], DEFAULT)
+        assert lengths.sum() == pytest.approx(0.4 + 0.06 * (more - 1.0), abs=0.03)
+        assert len(middles) == len(lengths) == 20
+
+
+def test_tape_that_hardly_shows_still_reaches_its_neighbours():
+    points, areas = flat_tape()
+    seen = (points[:, 0] < 0.15) | (points[:, 0] > 0.25)
+    _, lengths = slices_across(points[seen], 0.3 * areas[seen], points[seen, 0], DEFAULT)
+    assert lengths.sum() == pytest.approx(0.4, abs=0.03)
 
 
 def test_no_neckline_far_from_the_person(scenes):
