@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -52,9 +53,9 @@ class FindCornerTuning(Quantities):
 
 @dataclass
 class Tried:
-    """The corners that were found so far, by the wearer's side, the latest last."""
+    """The corners that were found so far, the latest last."""
 
-    sleeves: list[Side] = field(default_factory=list)
+    corners: list[GraspPoint] = field(default_factory=list)
 
 
 class FindCorner(Skill):
@@ -64,7 +65,8 @@ class FindCorner(Skill):
     edge-on from straight ahead.  The last are behind the rail: a gown that is wrapped round itself shows its outside
     on both sides of the rail, but its neckline on one only.
 
-    When it is run again, it looks for the other corner first.  It fails where no corner shows from anywhere.
+    When it is run again, it looks for the other corner first, and where none shows, for the one that it found last,
+    close to where that was: its side is known by then.  It fails where no corner shows from anywhere.
     """
 
     tuning = Input(FindCornerTuning, default=FindCornerTuning(), doc="numbers of this skill")
@@ -85,27 +87,27 @@ class FindCorner(Skill):
             (name for name in ("rail", "rail_back") if name in waypoints),
             key=lambda name: -np.cos(waypoints[name][2] - yaw),
         )
-        tried = self.context.memory.of(Tried, Tried).sleeves
-        wanted = OTHER[tried[-1]] if tried else None
+        tried = self.context.memory.of(Tried, Tried).corners
+        last = tried[-1] if tried else None
         hook = self.context.senses.hook(self.world.look("head"))
         try:
             front = float(waypoints[sides[0]][2]) if sides else yaw
-            hook, found = yield from self._look_round(hook, front, wanted)
+            hook, found = yield from self._look_round(hook, front, last)
         except PerceptionFailure:
             if len(sides) < 2:
                 raise
             self.note("looks for a corner of the neckline from the other side of the rail")
             yield from drive_to(self, sides[1])
             hook = self.context.senses.hook(self.world.look("head"))
-            hook, found = yield from self._look_round(hook, float(waypoints[sides[1]][2]), wanted)
-        sleeve: Side = "left" if found.target == CORNER_OF["left"] else "right"
-        tried.append(sleeve)
+            hook, found = yield from self._look_round(hook, float(waypoints[sides[1]][2]), last)
+        sleeve = _sleeve_of(found)
+        tried.append(found)
         self.note(f"sees the {sleeve} corner of the neckline, confidence {found.confidence:.2f}")
         self.hook, self.corner, self.sleeve, self.other_sleeve = hook, found, sleeve, OTHER[sleeve]
         self.hand, self.other_hand = OTHER[sleeve], sleeve
 
     def _look_round(
-        self, hook: GraspPoint, front: float, wanted: Side | None
+        self, hook: GraspPoint, front: float, last: GraspPoint | None
     ) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
         """Hook and corner: from the first place that shows the wanted corner clear of other cloth, else from the best.
 
@@ -113,23 +115,35 @@ class FindCorner(Skill):
             PerceptionFailure: no corner is seen from anywhere.
         """
         tries, best = Tries(PerceptionFailure), None
+        looks = [(0.0, partial(self._shown, side=None))]
+        if last is not None:
+            looks = [
+                (1.0, partial(self._shown, side=OTHER[_sleeve_of(last)])),
+                *looks,
+                (-1.0, partial(self._same, last=last)),
+            ]
         for turn in self.tuning.view_angles:
             hook, frame = yield from self._stand(hook, front + turn)
-            for side in (wanted, None) if wanted else (None,):
+            for rank, look in looks:
                 with tries:
-                    found = self._shown(frame, hook, side)
-                    score = found.confidence + float(side == wanted)
-                    if score > 1.0 + self.tuning.clear_confidence:
+                    found = look(frame, hook)
+                    score = rank + found.confidence
+                    if rank == looks[0][0] and found.confidence > self.tuning.clear_confidence:
                         return hook, found
                     if best is None or score > best[0]:
-                        best = score, turn, side
+                        best = score, turn, look
         if best is None:
             raise tries.last
         hook, frame = yield from self._stand(hook, front + best[1])
-        return hook, self._shown(frame, hook, best[2])
+        return hook, best[2](frame, hook)
 
-    def _shown(self, frame: Frame, hook: GraspPoint, side: Side | None) -> GraspPoint:
+    def _shown(self, frame: Frame, hook: GraspPoint, *, side: Side | None) -> GraspPoint:
         return self.context.senses.shown_corner(frame, hook_in_map=hook.position_in_map, side=side)
+
+    def _same(self, frame: Frame, hook: GraspPoint, *, last: GraspPoint) -> GraspPoint:
+        return self.context.senses.hung_corner(
+            frame, side=_sleeve_of(last), hook_in_map=hook.position_in_map, near_in_map=last.position_in_map
+        )
 
     def _stand(self, hook: GraspPoint, yaw: float) -> Generator[None, None, tuple[GraspPoint, Frame]]:
         """Step to where the hook is straight ahead at heading `yaw` [rad]; the hook, and the frame seen from there."""
@@ -139,3 +153,8 @@ class FindCorner(Skill):
             yield from drive_to(self, goal, straight=True)
         frame = self.world.look("head")
         return self.context.senses.hook(frame), frame
+
+
+def _sleeve_of(corner: GraspPoint) -> Side:
+    """The wearer's side that a corner belongs to."""
+    return "left" if corner.target == CORNER_OF["left"] else "right"

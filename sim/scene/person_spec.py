@@ -201,6 +201,9 @@ def trunk_capsules(spec: PersonSpec, bed_top: float, bed_xy: tuple[float, float]
             (x + sign * body.foot_x * s, y + body.foot_y * s, z + body.foot_z * s),
             body.leg_radius * s,
         )
+    # between both lies no valley: a chest is flat there, and cloth that sank in could not be grasped
+    level = z + body.chest_radius * s
+    out["trunk_middle"] = ((x, y - body.chest_y, level), (x, y, level), body.chest_radius * s)
     shoulders = y - body.shoulder_y
     out["neck_head"] = (
         (x, shoulders - body.neck_y * s, z + body.neck_z * s),

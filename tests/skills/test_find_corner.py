@@ -31,9 +31,9 @@ def grasp(target, place=HOOK):
 
 
 class Room:
-    """The robot before the rail; `shown` answers where a corner is seen, from place to place."""
+    """The robot before the rail; `shown` answers where a corner is seen, `hung` one that was seen before."""
 
-    def __init__(self, shown):
+    def __init__(self, shown, hung=lambda side, near: NOTHING):
         self.world = ScriptedWorld(seed=1)
         self.guard = GuardedWorld(self.world)
         self.asked = []
@@ -46,7 +46,11 @@ class Room:
             world=self.guard,
             guard=self.guard,
             seed=1,
-            senses=fake_senses(hook=grasp("near_hang"), shown_corner=corner),
+            senses=fake_senses(
+                hook=grasp("near_hang"),
+                shown_corner=corner,
+                hung_corner=lambda frame, **details: hung(details["side"], details["near_in_map"]),
+            ),
         )
 
     def run(self):
@@ -88,6 +92,19 @@ def test_takes_the_same_again_where_the_other_shows_from_nowhere():
     room.run()
     assert room.run().sleeve == "left"
     assert room.asked == [None, *["right", None] * VIEWS, None]
+
+
+def test_one_whose_side_does_not_show_any_more_is_found_where_it_was():
+    was, swung = HOOK - (0.1, 0.0, 0.4), HOOK - (0.12, 0.0, 0.4)
+    room = Room(
+        lambda n, side: grasp(CORNER_OF["right"], was) if n == 1 else NOTHING,
+        lambda side, near: grasp(CORNER_OF[side], swung) if np.allclose(near, was) else NOTHING,
+    )
+    assert room.run().sleeve == "right"
+    again = room.run()
+    assert (again.status, again.sleeve) == (Status.SUCCESS, "right")
+    assert again.corner.position_in_map == pytest.approx(swung)
+    assert len(room.asked) == 1 + 2 * VIEWS  # one that shows its side is preferred, from wherever it does
 
 
 def test_fails_where_nothing_shows():

@@ -34,7 +34,7 @@ def test_the_front_lies_on_the_chest(spec):
 def test_left_and_right_mirror_each_other_in_the_order_that_physics_loads_them():
     spec = PERSONS["small"]
     trunk = trunk_capsules(spec, 0.6, (0.0, 0.0))
-    assert list(trunk) == ["trunk_left", "leg_left", "trunk_right", "leg_right", "neck_head"]
+    assert list(trunk) == ["trunk_left", "leg_left", "trunk_right", "leg_right", "trunk_middle", "neck_head"]
     for part in ("trunk", "leg"):
         for left, right in zip(trunk[f"{part}_left"][:2], trunk[f"{part}_right"][:2], strict=True):
             np.testing.assert_array_equal(left * (-1, 1, 1), right)

@@ -29,7 +29,9 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 # Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
 # is inside is looked at from beside it.
 FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
-MIDDLE = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_headward=DRESSING.collar_headward)
+MIDDLE = CheckCollarTuning(
+    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
+)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
 NEAT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
