@@ -30,7 +30,7 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 # is inside is looked at from beside it.
 FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
 MIDDLE = CheckCollarTuning(
-    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
+    min_shown=DRESSING.collar_all_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
