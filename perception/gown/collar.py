@@ -73,7 +73,7 @@ class CollarTuning(Quantities):
         0.02,
         "m",
         "of slices across the body, in each of which the tape's length is told",
-        "measured: 66 views from the head of the bed of seeds 101 to 111, the half of them looked at before: the middle "
+        "measured: 66 views from the head of the bed of seeds 101 to 111, half of them looked at before: it "
         "is found to 0.029 m aside (root mean square), at worst 0.09 m; along the shortest way on the tape, on 54 of "
         "them, to 0.070 and 0.16 m",
     )
