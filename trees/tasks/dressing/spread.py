@@ -30,8 +30,10 @@ LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does
 # is inside is looked at from beside it.
 FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
 MIDDLE = CheckCollarTuning(
-    min_shown=DRESSING.collar_all_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
+    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
+# A fold at the right shoulder hides from the head of the bed what is seen from across it.
+FROM_LEFT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
 NEAT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
@@ -136,12 +138,17 @@ def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviou
 
 
 def still_inside(context: Context, side: Side) -> list[Behaviour]:
-    """Look from beside the bed whether the arm is inside its sleeve in the end: its cuff shows all round it there."""
+    """Look from beside the bed whether the arm is inside its sleeve in the end: its cuff shows all round it there.
+
+    From its left the collar is looked at once more: the gown was drawn to the right first, where its folds are.
+    """
     sleeve = arm_scope(context, f"{side} cuff", side)
+    collar = [CheckCollar("the collar is in the middle", sleeve, tuning=FROM_LEFT)] if side == "left" else []
     return [
         Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look", sleeve),
         CheckSleeve("is inside", sleeve),
+        *collar,
     ]
 
 
