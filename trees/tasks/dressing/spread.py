@@ -32,7 +32,7 @@ FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
 MIDDLE = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
-# A fold at the right shoulder hides from the head of the bed what is seen from across it.
+WHOLE = CheckCollarTuning(min_shown=DRESSING.collar_whole)
 FROM_LEFT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
@@ -52,6 +52,7 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "right"),
         *go_to_head(bed),
         Retry("until it is neat", neaten(context, bed), attempts=DRESSING.neaten_attempts),
+        surely_middle(context, bed),
         *(node for side in SIDES for node in still_inside(context, side)),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
@@ -99,6 +100,18 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     return sequence("neaten", seated(context, bed), straight(bed), *looks, middle)
 
 
+def surely_middle(context: Context, bed: Scope) -> Behaviour:
+    """See the whole collar, or see it from the left too: folds lie at the right, which is dressed first."""
+    left = arm_scope(context, "left of the collar", "left")
+    from_left = sequence(
+        "from the left",
+        Navigate("go round", left, goal="bed_left"),
+        LookAtPerson("look", left),
+        CheckCollar("it lies in the middle", left, tuning=FROM_LEFT),
+    )
+    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), from_left)
+
+
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
@@ -138,17 +151,12 @@ def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviou
 
 
 def still_inside(context: Context, side: Side) -> list[Behaviour]:
-    """Look from beside the bed whether the arm is inside its sleeve in the end: its cuff shows all round it there.
-
-    From its left the collar is looked at once more: the gown was drawn to the right first, where its folds are.
-    """
+    """Look from beside the bed whether the arm is inside its sleeve in the end: its cuff shows all round it there."""
     sleeve = arm_scope(context, f"{side} cuff", side)
-    collar = [CheckCollar("the collar is in the middle", sleeve, tuning=FROM_LEFT)] if side == "left" else []
     return [
         Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look", sleeve),
         CheckSleeve("is inside", sleeve),
-        *collar,
     ]
 
 

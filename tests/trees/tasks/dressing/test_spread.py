@@ -19,11 +19,13 @@ class WornGown(ScriptedSenses):
 
     Attributes:
         done: what was done to it, in turn.
+        shown: how much of the neckline is seen.
+        from_left: where the collar is seen from the left of the bed, if that is another place.
     """
 
-    def __init__(self, world, reach, off, *, stays=False, outside=1.0):
+    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, from_left=None):
         super().__init__(world)
-        self.outside = outside
+        self.outside, self.shown, self.from_left = outside, shown, from_left
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
@@ -44,15 +46,17 @@ class WornGown(ScriptedSenses):
 
     def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0)):
         seen = super().collar_middle(frame, near_in_map=near_in_map, away=away)
-        return replace(seen, position_in_map=near_in_map + (*np.add(self.off, away), 0.13))
+        beside = self.from_left is not None and self._world.observe().pose_base_in_map[0] < -0.5
+        off = np.add(self.from_left if beside else self.off, away)
+        return replace(seen, confidence=self.shown, position_in_map=near_in_map + (*off, 0.13))
 
 
-def rehearsed(reach, off=(0.0, 0.0), *, stays=False, outside=1.0):
+def rehearsed(reach, off=(0.0, 0.0), **gown):
     """How the stage ends, and what was done to the gown in turn; `reach` of both armholes, or (2,)."""
     task = load_task("dressing")
     world, _ = task.scripted(1)
     prepare_stage(world, task, "spread")
-    senses = WornGown(world, np.broadcast_to(reach, 2), off, stays=stays, outside=outside)
+    senses = WornGown(world, np.broadcast_to(reach, 2), off, **gown)
     result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=senses.drawn)
     return result.outcome, senses.done
 
@@ -92,3 +96,16 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     assert outcome == "safe_stop"
     assert set(done) == {"spread"}
     assert len(done) <= 4
+
+
+@pytest.mark.parametrize(
+    ("shown", "from_left", "ends"),
+    [
+        (0.95, (0.12, 0.0), "success"),
+        (0.80, (0.01, 0.0), "success"),
+        (0.80, (0.12, 0.0), "safe_stop"),
+        (0.60, (0.0, 0.0), "safe_stop"),
+    ],
+)
+def test_a_collar_that_does_not_show_whole_is_seen_from_the_left_too_before_it_is_claimed(shown, from_left, ends):
+    assert rehearsed(0.85, shown=shown, from_left=from_left) == (ends, [])
