@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -11,10 +9,9 @@ import numpy as np
 
 from ..errors import RecordError
 from ..record.record import SPOOL_FOLDER, TRUTH_FILE
+from ..record.spool import DAMAGED
 
 Shape = tuple[str | int | None, ...]  # a letter stands for one length everywhere, None for any
-
-DAMAGED = (OSError, ValueError, EOFError, AttributeError, NotImplementedError, zipfile.BadZipFile, zlib.error)
 
 
 def read_arrays(directory: Path, names: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:

@@ -18,9 +18,10 @@ import numpy as np
 
 from ..errors import RecordError
 from ..record.record import TRUTH_FILE, read_run
+from ..record.spool import DAMAGED
 from ..record.truth import OBJECT
 from ..scene.person_spec import PERSON_PARTS
-from .arrays_file import DAMAGED, read_arrays
+from .arrays_file import read_arrays
 from .findings import Findings
 from .harm import look_at_forces, look_at_robot, look_at_wrists
 from .unharmed_rows import UnharmedRows

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +9,7 @@ import numpy as np
 
 from ..errors import RecordError
 from .record import SPOOL_FOLDER, TRUTH_FILE
-from .spool import open_spool
+from .spool import DAMAGED, open_spool
 
 NEEDED = ("t", "vertices", "arms", "gripper_closed", "holds_arm", "robot_capsules")
 
@@ -75,5 +73,5 @@ def _frames(directory: Path) -> dict[str, np.ndarray]:
         raise RecordError(f"{directory} holds no {TRUTH_FILE}, so nothing can begin there") from None
     except KeyError as error:
         raise RecordError(f"{path} lacks {str(error).split(' ')[0].strip(chr(34) + chr(39))}") from error
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+    except DAMAGED as error:
         raise RecordError(f"{path} is damaged and cannot be read: {error}") from error

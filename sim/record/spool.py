@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import json
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ import numpy as np
 from ..errors import RecordError
 from .truth import TruthFrame, TruthStatic, frame_type
 
+# What numpy raises on an archive that is cut short, damaged or none at all.
+DAMAGED = (OSError, ValueError, EOFError, AttributeError, NotImplementedError, zipfile.BadZipFile, zlib.error)
 CHUNK = 256  # frames held in memory at once while writing truth.npz
 
 
