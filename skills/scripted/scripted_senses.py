@@ -37,6 +37,8 @@ from ...sim.world import SIDES, Frame, Observation, Side
 from ..geometry.stances import HEADWARD, outwards
 from .scripted_person import laid_strap, lying_arm, lying_posture
 
+_CHEST = 0.4  # from the collar, within which cloth lies on the chest [m]
+
 _Senses = TypeVar("_Senses", bound="ScriptedSenses")
 
 
@@ -213,9 +215,9 @@ class ScriptedSenses(Senses):
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
     ) -> GraspPoint:
-        """A little aside until it is asked where to grasp it, and then in the middle, taken from above."""
+        """A little aside until it is asked where to grasp it on the chest, and then in the middle, taken from above."""
         place = np.array((self._collar_aside + away[0], -0.5 + away[1], 0.83))
-        self._collar_aside *= not any(away)
+        self._collar_aside *= not 0.0 < np.hypot(*away) < _CHEST
         return GraspPoint(
             stamp=frame.stamp,
             confidence=0.9,

@@ -36,6 +36,7 @@ from caretree.skills.view_around import ViewAround, Views
 from caretree.trees.tasks.draw_blanket.draw_up import DrawUp
 from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
+from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
 from caretree.trees.tasks.wipe_forearm.put_back import PutBack
@@ -61,6 +62,7 @@ EXAMPLES = {
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     TakeEdge: lambda context: TakeEdge("take edge", context, side="right", hand="left"),
+    DrawFlat: lambda context: DrawFlat("draw flat", context, side="left", hand="left"),
     DrawOver: lambda context: DrawOver("draw over", context),
     DrawUp: lambda context: DrawUp("draw up", context, side="right", hand="right"),
     FindCorner: lambda context: FindCorner("find corner", context),

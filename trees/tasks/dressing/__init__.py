@@ -27,6 +27,7 @@ from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe
 from ...run.stages import TaskStage
 from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the task's own leaves here
+from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
 from .dress import dress
 from .lay import holds_gown, lay

@@ -1,0 +1,69 @@
+"""A worn gown's front is taken above the thigh next to the robot, lifted, and drawn footward and outwards."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import Estimate, GraspPoint
+from caretree.sim.world import SIDES
+from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import PULLING, stance
+from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.tasks.dressing.draw_flat import DrawFlat
+
+from ....skills.bench import LeafBench, beside_bed
+
+MIDDLE = np.mean([lying_posture(side).points_in_map[0] for side in SIDES], axis=0)  # of the shoulders [m]
+HEIGHT = 0.83  # of the gown over the legs [m]
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
+HELD = Estimate(stamp=0.0, confidence=0.9)
+
+
+def bench(side, *, shows=True, cloth=HELD):
+    """Beside the bed on a side; whether the gown `shows` where it is to be taken."""
+
+    def collar(frame, *, near_in_map, away=(0.0, 0.0)):
+        if any(away) and not shows:
+            raise HIDDEN
+        return GraspPoint(
+            stamp=0.0,
+            confidence=0.9,
+            target="collar_middle",
+            position_in_map=np.append(MIDDLE[:2] + (0.03, -0.05) + np.asarray(away), HEIGHT),
+            approach_in_map=np.array((0.0, 0.0, -1.0)),
+            closing_in_map=np.array((0.0, 1.0, 0.0)),
+        )
+
+    return LeafBench(
+        lambda context: DrawFlat("draw flat", context, side=side, hand=PULLING[side]),
+        beside_bed(
+            stand=stance(side, "shoulder"),
+            collar_middle=collar,
+            gripped_cloth=cloth,
+            arm=lambda frame, side, **_: lying_posture(side),
+        ),
+    )
+
+
+@pytest.mark.parametrize(("side", "outwards"), [("left", -1.0), ("right", 1.0)])
+def test_it_is_drawn_footward_and_outwards(side, outwards):
+    run = bench(side)
+    hand = PULLING[side]
+    assert run.ended() is None
+    path = run.way(hand)[run.openings(hand) < 0.005]
+    assert path[0, :2] == pytest.approx(MIDDLE[:2] + (outwards * 0.20, 0.80), abs=0.03), "taken above the thigh"
+    assert path[:, 2].max() - path[0, 2] == pytest.approx(0.08, abs=0.02), "above the body"
+    assert path[-1] - path[0] == pytest.approx((outwards * 0.10, 0.15, 0.02), abs=0.03), "and laid down"
+    assert run.openings(hand)[-1] > 0.03
+    assert run.way(hand)[-1, 2] > path[-1, 2] + 0.08, "drawn back"
+
+
+def test_a_front_that_does_not_show_is_left_alone():
+    run = bench("left", shows=False)
+    assert run.ended() == Reason.NOTHING_SEEN
+    assert run.openings(PULLING["left"]).min() > 0.03
+
+
+def test_a_hand_that_closed_on_nothing_opens_again():
+    run = bench("left", cloth=HIDDEN)
+    assert run.ended() == Reason.GRASP_MISSED
+    assert run.seen[-1].gripper_opening.min() > 0.03

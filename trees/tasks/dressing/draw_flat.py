@@ -1,0 +1,102 @@
+"""Draw the front of a worn gown flat, footward and outwards from beside the bed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ....sim.quantity import Quantities, quantity
+from ....sim.world import Side
+from ....skills.belief.person_motion import while_person_rests
+from ....skills.belief.shoulders import between_shoulders, look_at_collar
+from ....skills.control.base import BaseTuning, stand_for
+from ....skills.control.carry import Carry, carry
+from ....skills.control.fingers import open_gripper
+from ....skills.control.hands import hand_now
+from ....skills.control.head import look_towards
+from ....skills.control.take_from_above import FromAbove, take_from_above
+from ....skills.control.withdraw import withdraw
+from ....skills.core.ports import Input
+from ....skills.core.reasons import Reason
+from ....skills.core.skill import Skill
+from ....skills.geometry.arm_path import UP
+from ....skills.geometry.stances import HEADWARD, outwards
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrawFlatTuning(Quantities):
+    """Numbers of `DrawFlat`."""
+
+    outwards: float = quantity(0.20, "m", "of the hand from the midline, where it takes the front", "choice: the thigh")
+    footward: float = quantity(
+        0.80,
+        "m",
+        "of the hand from the shoulders, where it takes the front",
+        "measured with ideal hands, taken 0.65 and 0.90 m footward: no fold is left, the near sleeve comes to 0.31 "
+        "and 0.37 (109); 0.90 m is the hem of a short gown",
+    )
+    way: tuple[float, float] = quantity(
+        (0.10, 0.15),
+        "m",
+        "outwards and footward that the cloth is drawn",
+        "measured with ideal hands: three layers on 20 % of the chest become none; 0.20 m footward: 1 % (109)",
+    )
+    stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
+    grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
+    lift: float = quantity(0.08, "m", "of the cloth before it is drawn", "choice: along the body it would slip back")
+    laid_height: float = quantity(0.02, "m", "of the hand over where it took it", "choice: clear of the leg")
+    laying_speed: float = quantity(0.05, "m/s", "of the hand on its way down", "choice: it may meet the leg")
+    carry: Carry = field(default_factory=Carry)
+    withdrawal: float = quantity(0.12, "m", "by which the open hand is drawn back", "choice: clear of the gown")
+
+
+class DrawFlat(Skill):
+    """Takes the front above the thigh that is next to the robot, lifts it, and draws it footward and outwards.
+
+    As the second sleeve comes up its arm, the front may fold from that shoulder to the other hip: three layers on a
+    fifth of the chest, 3 cm high, which no camera of the robot tells from one layer.  So every front is drawn flat.
+    Sleeves that come down by that are drawn up afterwards.
+    """
+
+    side = Input(Side, doc="of the bed, the person's own left or right, where the robot stands")
+    hand = Input(Side, doc="hand of the robot, the one nearer to the feet")
+    tuning = Input(DrawFlatTuning, default=DrawFlatTuning(), doc="numbers of this skill")
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.PATH_BLOCKED,
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.GRASP_MISSED,
+        Reason.PERSON_MOVED,
+        Reason.FORCE_LIMIT,
+        Reason.COMMAND_LOST,
+    )
+
+    def steps(self) -> Iterator[None]:
+        """Look, stand near, take, lift, draw, lay down, let go."""
+        tuning = self.tuning
+        self.note("looks at the front")
+        out, middle = outwards(self.side), between_shoulders(self)
+        aim = middle + tuning.outwards * out - tuning.footward * HEADWARD
+        yield from stand_for(self, self.hand, aim, tuning=tuning.stand)
+        yield from while_person_rests(self, self._draw(middle, aim, out))
+
+    def _draw(self, middle: np.ndarray, aim: np.ndarray, out: np.ndarray) -> Iterator[None]:
+        tuning = self.tuning
+        yield from look_towards(self, middle)
+        collar = look_at_collar(self, middle).position_in_map
+        away = aim - collar
+        place = look_at_collar(self, middle, (float(away[0]), float(away[1])))
+        self.note("draws the front flat")
+        yield from take_from_above(self, self.hand, place, out, tuning.grasp)
+        start = hand_now(self, self.hand)[:3, 3]
+        way = tuning.way[0] * out - tuning.way[1] * HEADWARD
+        for shift in (tuning.lift * UP, tuning.lift * UP + way):
+            yield from carry(self, self.hand, start + shift, tuning.carry)
+        laid = np.append(hand_now(self, self.hand)[:2, 3], start[2] + tuning.laid_height)
+        yield from carry(self, self.hand, laid, tuning.carry, tuning.laying_speed)
+        yield from open_gripper(self, self.hand, tuning.grasp.opening)
+        yield from withdraw(self, [self.hand], tuning.withdrawal)
