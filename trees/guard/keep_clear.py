@@ -47,16 +47,17 @@ class KeepClear:
             after = self._motion.after_twist(seen, command.side, tried, command.duration)
             return np.where(rows, least - self._all_room(after, held)[0], -np.inf)
 
-        slid = twist.copy()
-        for _ in range(SLIDES):
-            short = shortfall(slid)
-            if short.max(initial=-np.inf) <= TOLERANCE:
-                return slid
-            worst = np.unravel_index(int(short.argmax()), short.shape)
-            slid[:3] += away[worst] * short[worst] / max(command.duration, 1e-6)
-        for slower in (share * way for way in (slid, twist) for share in SLOWER):  # turning cannot slide
-            if shortfall(slower).max() <= TOLERANCE:
-                return slower
+        for start in (twist, np.append(twist[:3], np.zeros(3))):  # where nothing turns, the hand may still slide
+            slid = start.copy()
+            for _ in range(SLIDES):
+                short = shortfall(slid)
+                if short.max(initial=-np.inf) <= TOLERANCE:
+                    return slid
+                worst = np.unravel_index(int(short.argmax()), short.shape)
+                slid[:3] += away[worst] * short[worst] / max(command.duration, 1e-6)
+            for slower in (share * way for way in (slid, start) for share in SLOWER):  # turning cannot slide
+                if shortfall(slower).max() <= TOLERANCE:
+                    return slower
         return np.zeros(6)
 
     def base(self, command: BaseVelocity, seen: Observation, held: Mapping[Side, str]) -> float:

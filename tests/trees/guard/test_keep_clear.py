@@ -63,6 +63,17 @@ def test_a_hand_slides_along_the_head_instead_of_standing():
     assert gone[0] > 0.1, "and on"
 
 
+def test_a_hand_that_has_no_room_to_turn_slides_on_without_turning():
+    world, guard, place = beside(np.array((-0.09, -0.07, 0.147)))
+    for _ in range(30):
+        twist = np.array((0.07, -0.02, -0.08, 0.29, -0.45, 0.37))
+        sent = guard.send(HandTwist(side="left", twist_in_map=twist)).twist_in_map
+        world.clock.wait_until(world.clock.now() + 1 / 15)
+    assert least_gap(world, place) > 0.0
+    assert sent[0] > 0.05, "and on"
+    assert sent[3:] == pytest.approx(0.0)
+
+
 def test_away_from_the_head_nothing_is_held_back():
     _, guard, _ = beside(np.array((0.15, 0.0, 0.0)))
     sent = guard.send(HandTwist(side="left", twist_in_map=np.array((-0.1, 0.0, 0.0, 0.0, 0.0, 0.0))))
