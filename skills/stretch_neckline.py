@@ -46,14 +46,22 @@ class StretchNecklineTuning(Quantities):
 class StretchNeckline(Skill):
     """Raises both hands before the chest and draws them apart until the cloth between them pulls back.
 
-    It fails where a hand carries no cloth.
+    It fails where a hand carries no cloth, and where the hands stay nearer together than the ends of a neckline: one of
+    them then holds something else.
     """
 
     max_load = Input(float, unit="N", doc="horizontal load on a hand at which the neckline is stretched", default=1.4)
     max_width = Input(float, unit="m", doc="greatest distance between the hands", default=0.92)
+    min_width = Input(float, unit="m", doc="least distance between hands that hold both ends", default=0.0)
     tuning = Input(StretchNecklineTuning, default=StretchNecklineTuning(), doc="numbers of this skill")
     width = Output(float, unit="m", doc="distance between the hands in the end")
-    reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.CLOTH_SLIPPED)
+    reasons = (
+        Reason.UNREACHABLE,
+        Reason.MOTION_BLOCKED,
+        Reason.COMMAND_LOST,
+        Reason.CLOTH_SLIPPED,
+        Reason.GRASP_MISSED,
+    )
 
     def steps(self) -> Iterator[None]:
         """Raise, draw, settle."""
@@ -84,4 +92,9 @@ class StretchNeckline(Skill):
             yield
         self.world.stop()
         yield from self.wait(tuning.settle_time)
+        if width < self.min_width:
+            raise SkillFailure(
+                Reason.GRASP_MISSED,
+                f"stretched, the hands are {width:.2f} m apart, at least {self.min_width} m are asked for",
+            )
         self.width = width

@@ -54,3 +54,14 @@ def test_a_hand_that_lost_the_gown_is_noticed():
     run = bench(taut_at=2.0, weights=(2.0, 0.2))
     assert ended(run) == Reason.CLOTH_SLIPPED
     assert "right" in run.skill.failure.detail
+
+
+def test_hands_that_stay_near_each_other_do_not_hold_both_ends():
+    run = bench(taut_at=0.70, max_load=1.0, min_width=0.81)
+    assert ended(run) == Reason.GRASP_MISSED
+    assert "0.7" in run.skill.failure.detail
+
+
+def test_hands_as_far_apart_as_its_ends_do():
+    run = bench(taut_at=0.84, max_load=1.0, min_width=0.81)
+    assert ended(run) is None

@@ -30,7 +30,7 @@ from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the 
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
 from .dress import dress
-from .lay import holds_gown, lay
+from .lay import holds_gown, holds_gown_with, lay
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
 from .take_down import both_ends, hands_open, take_down
@@ -42,7 +42,7 @@ STAGES = {
     "spread": TaskStage(spread, begins="gown_worn"),
 }
 
-CONDITIONS = (both_ends, chest_covered, hands_open, holds_gown, outside_out)
+CONDITIONS = (both_ends, chest_covered, hands_open, holds_gown, holds_gown_with, outside_out)
 
 
 def senses(context: Context) -> Senses:

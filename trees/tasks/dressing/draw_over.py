@@ -58,10 +58,10 @@ class DrawOverTuning(Quantities):
         "by 0.11 m (103)",
     )
     footward: tuple[float, float] = quantity(
-        (0.05, 0.14),
+        (0.09, 0.14),
         "m",
         "of the hands from the shoulders, at least and at most",
-        "choice: clear of the neck; 0.165 m is as far as they get from the head of the bed",
+        "measured: at 0.07 m one hand found no posture (0); 0.165 m is as far as they get from the head of the bed",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(0.10, "m", "of the cloth before it is carried", "choice: along the body it would slip back")

@@ -1,15 +1,26 @@
-"""The stage `lay` of the dressing tree: unfold the gown and lay it on the person, outside up, arms bare."""
+"""The stage `lay` of the dressing tree: unfold the gown and lay it on the person, outside up, arms bare.
+
+Hands that hold both ends of the neckline can be drawn apart by its length.  Where they cannot, one of them holds
+something else: each lets go in turn and takes an end of the gown that hangs from the other.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+from py_trees.behaviour import Behaviour
 
+from ....sim.world import SIDES, Side
 from ....skills.core.context import Context
+from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
 from ....skills.flip_side_check import FlipSideCheck
 from ....skills.lay_gown import LayGown
+from ....skills.retreat import Retreat
 from ....skills.stretch_neckline import StretchNeckline
+from ...nodes.composers import fallback, sequence
+from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
+from .take_down import LEVEL, look_and_take
 from .tuning import DRESSING
 
 
@@ -18,12 +29,39 @@ def lay(context: Context) -> Stage:
     gown = Scope(context, "gown", keys=("width",))
     return timed_stage(
         "lay",
-        StretchNeckline("stretch the neckline", gown),
+        by_both_ends(context, gown),
         FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence),
         LayGown("lay it on the person", gown),
         precondition=holds_gown,
         seconds=DRESSING.lay_timeout,
     )
+
+
+def by_both_ends(context: Context, gown: Scope) -> Behaviour:
+    """Stretch the neckline; where it is too short, take an end anew with one hand, then with the other."""
+
+    def stretch(name: str) -> StretchNeckline:
+        return StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline)
+
+    def anew(hand: Side) -> Behaviour:
+        other = SIDES[1 - SIDES.index(hand)]
+        end = Scope(context, f"{hand} end", keys=("views", "holder", "former"))
+        return sequence(
+            f"the {hand} hand anew",
+            Condition(f"the {other} hand holds it too", holds_gown_with, Reason.CLOTH_SLIPPED, hand=other),
+            Retreat("let go", end, hands=hand, ready="never", tuning=LEVEL),
+            look_and_take(end, other, min_distance=DRESSING.nearest_corner),
+            stretch(f"stretch it by the new {hand} end"),
+        )
+
+    return fallback("by both ends", stretch("stretch the neckline"), anew("right"))
+
+
+def holds_gown_with(context: Context, hand: Side) -> bool:
+    """The fingers of that hand are closed, and it carries some of the gown [N]."""
+    n, seen = SIDES.index(hand), context.world.observe()
+    closed = seen.gripper_opening[n] < DRESSING.empty_opening
+    return bool(closed and -seen.wrench_hand_in_map[n, 2] > DRESSING.end_weight)
 
 
 def holds_gown(context: Context) -> bool:

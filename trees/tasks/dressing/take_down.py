@@ -27,6 +27,8 @@ from ...nodes.condition import Condition
 from ...nodes.decorators import Retry, Stage, timed_stage
 from .tuning import DRESSING
 
+LEVEL = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
+
 
 def take_down(context: Context) -> Stage:
     """The stage `take_down`."""
@@ -87,14 +89,13 @@ def from_one_hand(context: Context) -> Behaviour:
     """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
     first = Scope(context, "one hand", keys=("views", "holder", "former"))
     second = Scope(context, "other hand", keys=("views", "holder", "former"))
-    level = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", first),
         SegmentAndGrasp("take it near the hook", first, hand="right"),
         Unhook("lift it off", first, hand="right"),
         look_and_take(first, "right"),
-        Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=level),
+        Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=LEVEL),
         look_and_take(second, first["holder"], min_distance=DRESSING.nearest_corner),
     )
 

@@ -92,6 +92,15 @@ class DressingTuning(Quantities):
     gown_weight: float = quantity(
         2.5, "N", "carried by both hands together with a gown in them", "choice: less is no gown"
     )
+    stretched_neckline: float = quantity(
+        0.81,
+        "m",
+        "between hands that hold both ends of a stretched neckline, at least",
+        "measured: 0.86 to 0.91 m where they did (0, 109, 114), 0.77 and 0.44 m where one did not (115, 116)",
+    )
+    end_weight: float = quantity(
+        0.8, "N", "carried by a hand that holds an end of it", "choice: less than half of the gown's weight"
+    )
     laid_inside_confidence: float = quantity(
         0.9,
         "1",
@@ -177,7 +186,9 @@ class DressingTuning(Quantities):
     take_down_timeout: float = quantity(
         400.0, "s", "for taking the gown down", "choice: two tries and one from one hand, three at each corner"
     )
-    lay_timeout: float = quantity(120.0, "s", "for unfolding and laying the gown", "choice: nothing is tried again")
+    lay_timeout: float = quantity(
+        400.0, "s", "for unfolding and laying the gown", "choice: an end is taken anew by each hand, as in `take_down`"
+    )
     dress_timeout: float = quantity(600.0, "s", "for dressing both arms", "choice: room for two misses at each arm")
     spread_timeout: float = quantity(500.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
 

@@ -1,5 +1,8 @@
 """What the dressing tree is made of."""
 
+import dataclasses
+
+import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm, Retreat
@@ -118,3 +121,45 @@ def test_a_person_who_moves_is_noticed_at_once_and_looked_at_anew(leaf):
     told_first = list(dict.fromkeys(after))
     assert told_first[:2] == ["right arm/held/lower", "right arm/free both hands"]
     assert "right arm/look" in told_first[: told_first.index("right arm/lift")]
+
+
+class ShortNeckline:
+    """A neckline that is taut at a width [m], until the right hand lets go of it."""
+
+    def __init__(self, world, taut_at):
+        self.taut_at, self.taut, self.let_go = taut_at, False, False
+        self.observed, world.observe = world.observe, self.observe
+
+    def observe(self):
+        seen = self.observed()
+        across = seen.pose_hand_in_map[0, :3, 3] - seen.pose_hand_in_map[1, :3, 3]
+        width = np.linalg.norm(across)
+        held = bool(seen.gripper_opening.max() < 0.02)
+        self.let_go |= self.taut and not held
+        self.taut |= held and width > self.taut_at
+        if self.let_go or not held or width < self.taut_at:
+            return seen
+        wrench = seen.wrench_hand_in_map + 0.0
+        pull = 50.0 * (width - self.taut_at) * across / width
+        wrench[:, :3] += (-pull, pull)
+        return dataclasses.replace(seen, wrench_hand_in_map=wrench)
+
+
+@pytest.mark.parametrize(("taut_at", "anew"), [(0.86, False), (0.60, True)])
+def test_a_neckline_that_is_too_short_is_taken_anew_by_the_right_hand(taut_at, anew):
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    ShortNeckline(world, taut_at)
+    ended = {}
+    run = Run(
+        task,
+        world,
+        seed=1,
+        senses=senses,
+        params={"stages": ("take_down", "lay")},
+        on_progress=lambda progress: ended.update({progress.name: progress.status}),
+    )
+    assert run.run().outcome == "success"
+    assert ended["gown/stretch the neckline"] == ("failure" if anew else "success")
+    assert ("right end/let go" in ended) == anew
+    assert ended["gown/lay it on the person"] == "success"
