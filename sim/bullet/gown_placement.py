@@ -32,6 +32,10 @@ _OVER_LEGS = 0.22  # height above the mattress at which a gown hung over raised 
 _REST, _FALL = 1.0, 2.0  # until the sleeves are at rest, and until arms that fall are [s]
 _DRAWN = np.array(((0.0, -0.10, 0.04), (0.03, 0.12, 0.10)))  # where a strap is drawn to: from here ... to here,
 # from the shoulder joint, x outwards [m]
+_OVER = np.array(((-0.04, -0.10, 0.10), (-0.08, -0.15, 0.10)))  # where a strap is drawn over the shoulder, likewise:
+# from there it is laid down behind it, as a nurse leaves it
+_BEHIND = 0.12  # by which it is then lowered [m]
+_LOWERING = 1.2  # of the arms [s]
 
 
 def lay_by_hand(cloth: ClothBody, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:
@@ -101,25 +105,8 @@ def put_on_by_hand(
         drawn: how far the left and the right strap are drawn, 0 for beyond the shoulder to 1 for well before it.
         raised: joints of both arms [rad].
     """
-    mesh = cloth.mesh
-    person.brace(True)
-    for side in SIDES:
-        person.bend_arm(side, raised)
-    arms = person.arms()
-    cloth.place(_over_hands(mesh, arms, person.bed_top + _OVER_LEGS))
-    vertices = cloth.vertices()
-    pins, starts, ends = [], [], []
-    for handle, side, arm, share in zip(handles, SIDES, arms, drawn, strict=True):
-        loop = mesh.vertices[mesh.loops[f"armhole_{side}"]]
-        top = np.array((loop[:, 0].mean(), 0.0, loop[:, 2].max()))
-        near = np.argsort(np.linalg.norm(mesh.vertices - top, axis=1))[:4]
-        pose = np.eye(4)
-        pose[:3, 3] = vertices[near].mean(axis=0)
-        handle.reset(pose)
-        pins.append(cloth.pin(near, handle.body, handle.link))
-        starts.append(pose[:3, 3].copy())
-        end = _DRAWN[0] + share * (_DRAWN[1] - _DRAWN[0])
-        ends.append(arm[0] + end * (np.sign(arm[0, 0] - person.bed_xy[0]), 1, 1))
+    pins, starts = _take_straps(cloth, person, handles, raised)
+    ends = _off_shoulders(person, [_DRAWN[0] + share * (_DRAWN[1] - _DRAWN[0]) for share in drawn])
     count = round(np.linalg.norm(ends[0] - starts[0]) / _SPEED / time_step)
     for k in range(count + round(0.5 / time_step)):
         for handle, start, end in zip(handles, starts, ends, strict=True):
@@ -136,6 +123,88 @@ def put_on_by_hand(
         if k % 5 == 0:
             person.resist()
         step()
+
+
+def dress_by_hand(
+    cloth: ClothBody,
+    person: Person,
+    handles: list[Handle],
+    step: Callable[[], None],
+    time_step: float,
+    over: Sequence[float],
+) -> None:
+    """As `put_on_by_hand`, but draw both straps over the shoulders, lay the arms down, and only then let the straps go.
+
+    Args:
+        cloth: the gown, held by nothing.
+        person: the manikin.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+        over: how far the left and the right strap are drawn over the shoulder, 0 to 1.
+    """
+    pins, starts = _take_straps(cloth, person, handles, RAISED)
+    ends = _off_shoulders(person, [_OVER[0] + share * (_OVER[1] - _OVER[0]) for share in over])
+    behind = [end - (0.0, 0.0, _BEHIND) for end in ends]
+    drawing = max(float(np.linalg.norm(end - start)) for start, end in zip(starts, ends, strict=True)) / _SPEED
+
+    def carry(froms: list[np.ndarray], tos: list[np.ndarray], duration: float, lower: bool = False) -> None:
+        count = round(duration / time_step)
+        for k in range(1, count + 1):
+            for handle, start, end in zip(handles, froms, tos, strict=True):
+                pose = np.eye(4)
+                pose[:3, 3] = start + (end - start) * k / count
+                handle.follow(pose)
+            if lower:
+                for side in SIDES:
+                    way = np.subtract(person.spec.pose[side], RAISED)
+                    person.bend_arm(side, tuple((RAISED + way * k / count).tolist()))
+            elif k % 5 == 0:
+                person.resist()
+            step()
+
+    carry(starts, ends, drawing)
+    carry(ends, ends, _LOWERING, lower=True)
+    carry(ends, behind, _BEHIND / _SPEED)
+    for group in pins:
+        cloth.unpin(group)
+    person.brace(False)
+    for k in range(round((_FALL if person.spec.falls else _REST) / time_step)):
+        if k % 5 == 0:
+            person.resist()
+        step()
+
+
+def _take_straps(
+    cloth: ClothBody, person: Person, handles: list[Handle], raised: tuple[float, float, float, float]
+) -> tuple[list[list[int]], list[np.ndarray]]:
+    """Raise both arms, hang the sleeves over the hands, and take both straps: what holds them, and where [m]."""
+    mesh = cloth.mesh
+    person.brace(True)
+    for side in SIDES:
+        person.bend_arm(side, raised)
+    cloth.place(_over_hands(mesh, person.arms(), person.bed_top + _OVER_LEGS))
+    vertices = cloth.vertices()
+    pins, starts = [], []
+    for handle, side in zip(handles, SIDES, strict=True):
+        loop = mesh.vertices[mesh.loops[f"armhole_{side}"]]
+        top = np.array((loop[:, 0].mean(), 0.0, loop[:, 2].max()))
+        near = np.argsort(np.linalg.norm(mesh.vertices - top, axis=1))[:4]
+        pose = np.eye(4)
+        pose[:3, 3] = vertices[near].mean(axis=0)
+        handle.reset(pose)
+        pins.append(cloth.pin(near, handle.body, handle.link))
+        starts.append(pose[:3, 3].copy())
+    return pins, starts
+
+
+def _off_shoulders(person: Person, offsets: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Places (3,) in the map, given from the left and the right shoulder with x outwards [m]."""
+    shoulders = person.arms()[:, 0]
+    return [
+        shoulder + offset * (np.sign(shoulder[0] - person.bed_xy[0]), 1, 1)
+        for shoulder, offset in zip(shoulders, offsets, strict=True)
+    ]
 
 
 def put_arms(person: Person, arms: np.ndarray) -> None:

@@ -46,7 +46,7 @@ from .cloth import ClothBody, load_gown
 from .contact import Contact
 from .engines import BULLET, engine_named
 from .furniture import add_furniture
-from .gown_placement import HOLDING, HOLDING_AT, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
+from .gown_placement import HOLDING, HOLDING_AT, dress_by_hand, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
 from .grip import CLOSED, REOPENED, Grip
 from .handle import Handle
 from .hook import Hook
@@ -237,7 +237,8 @@ class BulletWorld(World):
             if state == InitialState.GOWN_ON_PERSON:
                 lay_by_hand(self._cloth, self._handles, self._soft.step, TIME_STEP)
             else:
-                put_on_by_hand(
+                put_on = dress_by_hand if state == InitialState.GOWN_DRESSED else put_on_by_hand
+                put_on(
                     self._cloth,
                     self._person,
                     self._handles,
@@ -245,7 +246,7 @@ class BulletWorld(World):
                     TIME_STEP,
                     np.random.default_rng([self.scene.seed, 4]).uniform(size=2).tolist(),
                 )
-            beside = "bed_right" if state == InitialState.GOWN_ON_PERSON else "bed_left"
+            beside = "bed_left" if state == InitialState.GOWN_WORN else "bed_right"
             self._stand_ready(self.room.waypoints[beside])
         self._tell_where_it_lies()
 

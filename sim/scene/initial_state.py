@@ -16,6 +16,7 @@ class InitialState(str, enum.Enum):
     GOWN_WORN = (
         "gown_worn"  # both arms are in their sleeves, not all of them far up, and up unless they fall; `bed_left`
     )
+    GOWN_DRESSED = "gown_dressed"  # both arms are in their sleeves up to the shoulders, and lie; robot at `bed_right`
 
     def __str__(self) -> str:
         return self.value

@@ -18,6 +18,7 @@ from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.bullet.watchers import Watchers
 from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.errors import CaretreeError, RecordError
+from caretree.sim.evaluate.coverage import coverage
 from caretree.sim.evaluate.crossings import sleeve
 from caretree.sim.record.recorded_state import RecordedState
 from caretree.sim.robot import model
@@ -203,6 +204,25 @@ def test_a_run_can_begin_with_both_sleeves_on_and_not_both_up():
             reached.append(worn.armhole.upper_arm[0])
         world.close()
     assert min(reached) < 0.7 < max(reached)
+
+
+@pytest.mark.parametrize("seed", [100, 101])
+def test_a_run_can_begin_with_a_dressed_person_whose_arms_lie(seed):
+    world = BulletWorld(seed=seed)
+    lying = world.truth_frame().arms
+    world.set_initial_state("gown_dressed")
+    frame, mesh = world.truth_frame(), world.scene.mesh
+    assert np.abs(frame.arms - lying).max() < 0.03
+    for n, side in enumerate(SIDES):
+        armhole, cuff = (frame.vertices[None, mesh.loops[f"{part}_{side}"]] for part in ("armhole", "cuff"))
+        worn = sleeve(armhole, cuff, frame.arms[None, n])
+        assert worn.on.all()
+        assert worn.armhole.upper_arm[0] > 0.5
+    assert coverage(frame.vertices, mesh.faces, frame.torso_front)[0] > 0.9
+    collar, shoulders = frame.vertices[mesh.collar, 1].mean(), frame.arms[:, 0, 1].mean()
+    assert abs(collar - shoulders) < 0.15, "the neckline lies at the neck [m]"
+    np.testing.assert_allclose(world.observe().pose_base_in_map[:2], world.room.waypoints["bed_right"][:2], atol=1e-6)
+    world.close()
 
 
 def test_a_run_can_begin_where_another_one_was():
