@@ -6,6 +6,7 @@ A module may also have
   `--world scripted` try the task; where it takes `robot` too, it is given that of `--robot`;
 - `STAGES`, a dictionary of `TaskStage` by name and in order: `--stage` then runs some of them alone, and `build` is
   given their names as `stages`;
+- `BEGINS`, the name of the world's state in which the whole task begins, if not as usual;
 - `senses(context) -> Senses`: what sees, unless the run was given others; called before `build`;
 - `scene(world, seed)`, which furnishes the room before the run: `world.add(Box(...))`, `world.remove_gown()`;
 - `judge(record) -> Judgement`, which decides from the truth of a run whether it reached its goal;
@@ -77,6 +78,7 @@ class Task:
         judge: `judge(record)` of its module, if it has one.
         declared: parameters of `function`, by name.
         robot: to rehearse with; the usual one where that is None.
+        begins: name of the world's state in which the whole task begins; empty where any will do.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Task:
     judge: Callable[[RunRecord], Judgement] | None = None
     declared: Mapping[str, BuildParameter] = field(default_factory=dict)
     robot: RobotModel | None = None
+    begins: str = ""
 
     def values(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The value of each parameter of the task: the given one, or its default.
@@ -143,12 +146,12 @@ class Task:
         return {} if stage is None else {"stages": self._span(stage)}
 
     def initial_state(self, stage: str | None) -> str:
-        """Name of the world's state in which a stage or a span of them begins; empty where any will do.
+        """Name of the world's state in which a stage, a span of them or the whole task (None) begins; empty for any.
 
         Raises:
             TaskError: the task has no such stage.
         """
-        return "" if stage is None else self.stages[self._span(stage)[0]].begins
+        return self.begins if stage is None else self.stages[self._span(stage)[0]].begins
 
     def _span(self, text: str) -> tuple[str, ...]:
         if not self.stages:
@@ -266,7 +269,8 @@ def _load_xml(path: Path) -> Task:
 
     first = modules[0] if modules else None
     script, senses, scene, judge = (getattr(first, name, None) for name in ("scripted", "senses", "scene", "judge"))
-    return Task(path.stem, build, path, script, senses=senses, module=first, scene=scene, judge=judge)
+    begins = getattr(first, "BEGINS", "")
+    return Task(path.stem, build, path, script, senses=senses, module=first, scene=scene, judge=judge, begins=begins)
 
 
 def _load_file(path: Path) -> Task:
@@ -302,6 +306,9 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
         isinstance(key, str) and key.isidentifier() and isinstance(stage, TaskStage) for key, stage in stages.items()
     ):
         raise TaskError(f"{file}:1: STAGES is a dictionary of TaskStage by names of letters, digits and underscores")
+    begins = getattr(module, "BEGINS", "")
+    if not isinstance(begins, str):
+        raise TaskError(f"{file}:1: BEGINS is the name of a state of the world, not {type(begins).__name__}")
     function = cast(Callable[..., Behaviour], build)
     for brought, arguments in (("scene", ("world", "seed")), ("judge", ("record",)), ("scripted", ("seed",))):
         _check_callable(module, brought, arguments, file)
@@ -320,6 +327,7 @@ def _task(name: str, module: ModuleType, file: Path) -> Task:
         getattr(module, "scene", None),
         getattr(module, "judge", None),
         declared,
+        begins=begins,
     )
 
 

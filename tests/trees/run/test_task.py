@@ -77,8 +77,19 @@ def test_every_stage_begins_where_both_rooms_can_begin():
     task = load_task("dressing")
     world, _ = task.scripted(0)
     assert isinstance(world, SupportsInitialStates)
-    begins = [stage.begins for stage in task.stages.values()]
+    begins = [*(stage.begins for stage in task.stages.values()), load_task("undress").initial_state(None)]
     assert begins == list(world.initial_states) == list(BulletWorld.initial_states)
+
+
+def test_a_whole_task_begins_where_its_file_says(tmp_path):
+    path = tmp_path / "mine.py"
+    path.write_text(f"{GOOD}\n\nBEGINS = 'gown_worn'\n")
+    assert load_task(str(path)).initial_state(None) == "gown_worn"
+    with pytest.raises(CaretreeError, match="task 'mine' begins with 'gown_worn', but ScriptedWorld has one begin"):
+        prepare_stage(ScriptedWorld(), load_task(str(path)), None)
+    path.write_text(f"{GOOD}\n\nBEGINS = 3\n")
+    with pytest.raises(TaskError, match="BEGINS is the name of a state of the world, not int"):
+        load_task(str(path))
 
 
 @pytest.mark.parametrize("stages", ["{'go-on': TaskStage(build)}", "{'go_on': build}", "['go_on']"])
