@@ -10,7 +10,7 @@ Loads on the hands still count: the guard stops the base when the cloth pulls to
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,6 +77,7 @@ def drive_to(
     *,
     speed: float = BASE.speed,
     straight: bool = False,
+    via: Sequence[np.ndarray] = (),
     turn_from: float = np.inf,
     retreat: bool = False,
     tuning: BaseTuning = BASE,
@@ -88,6 +89,7 @@ def drive_to(
         goal: name of a waypoint, or pose (3,) in the map: x, y [m], yaw [rad].
         speed: of the base [m/s]; the guard slows it near the person.
         straight: do not plan round obstacles, for short slides beside the bed.
+        via: places (2,) in the map on such a slide, whose corners are rounded by a few cm [m].
         turn_from: distance to the end at which turning begins [m].
         retreat: the motion takes load off the person.
         tuning: when it has failed.
@@ -98,7 +100,7 @@ def drive_to(
     """
     goal = waypoint(skill, goal)
     start = skill.world.observe().pose_base_in_map
-    path = np.stack((start[:2], goal[:2])) if straight else plan_path(skill.world.room, start, goal)
+    path = np.stack((start[:2], *via, goal[:2])) if straight else plan_path(skill.world.room, start, goal)
     follower = PathFollower(path, float(goal[2]), skill.world.robot.limits, speed=speed, turn_from=turn_from)
     end = skill.now() + tuning.timeout + tuning.timeout_factor * path_length(path) / speed
     anchor, since = start, skill.now()

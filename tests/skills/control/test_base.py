@@ -36,6 +36,23 @@ def test_a_straight_way_is_straight():
     assert np.abs(np.diff(seen, axis=0)).max() * 15 < 0.21
 
 
+def test_a_straight_way_can_go_by_places_without_a_stop():
+    world, context = robot(base=(2.5, -2.5, 0.0))
+    seen = []
+    carry_out(
+        world,
+        context,
+        lambda skill: drive_to(
+            skill, np.array((2.5, -1.5, 0.0)), straight=True, via=[np.array((2.2, -2.0))], speed=0.2
+        ),
+        each_tick=lambda skill: seen.append(world.observe().pose_base_in_map[:2]),
+    )
+    assert np.linalg.norm(np.array(seen) - (2.2, -2.0), axis=1).min() < 0.08, "a corner is rounded by a few cm [m]"
+    corner = np.argmin(np.linalg.norm(np.array(seen) - (2.2, -2.0), axis=1))
+    assert np.linalg.norm(seen[corner + 3] - seen[corner - 3]) > 0.03, "without a stop"
+    np.testing.assert_allclose(seen[-1], (2.5, -1.5), atol=0.03)
+
+
 def test_an_unknown_waypoint_is_told_with_the_known_ones():
     _, context = robot()
     with pytest.raises(PathBlocked, match=r"kitchen.*bed_right"):
