@@ -39,6 +39,8 @@ from caretree.trees.tasks.dressing.check_collar import CheckCollar
 from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
+from caretree.trees.tasks.undress.draw_off import DrawOff
+from caretree.trees.tasks.undress.take_seam import TakeSeam
 from caretree.trees.tasks.wipe_forearm.put_back import PutBack
 from caretree.trees.tasks.wipe_forearm.wipe import Wipe
 
@@ -61,8 +63,10 @@ EXAMPLES = {
     CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
+    TakeSeam: lambda context: TakeSeam("take seam", context, side="right", hand="left"),
     TakeEdge: lambda context: TakeEdge("take edge", context, side="right", hand="left"),
     DrawFlat: lambda context: DrawFlat("draw flat", context, side="left", hand="left"),
+    DrawOff: lambda context: DrawOff("draw off", context, side="right", hand="left"),
     DrawOver: lambda context: DrawOver("draw over", context),
     DrawUp: lambda context: DrawUp("draw up", context, side="right", hand="right"),
     FindCorner: lambda context: FindCorner("find corner", context),

@@ -22,7 +22,7 @@ def ended(name, rate_hz):
     return outcome, [(event["node"], event["status"], event.get("reason")) for event in nodes]
 
 
-@pytest.mark.parametrize("name", ["draw_blanket", "hand_towel", "wash_arm", "wave", "wipe_forearm"])
+@pytest.mark.parametrize("name", ["draw_blanket", "hand_towel", "undress", "wash_arm", "wave", "wipe_forearm"])
 def test_tasks_go_the_same_way_at_the_rate_that_suffices(name):
     assert ended(name, REHEARSAL.tick_rate) == ended(name, TICK_RATE)
 

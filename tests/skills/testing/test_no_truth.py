@@ -118,6 +118,8 @@ NOT_ACTING = (
             "draw_blanket/rehearsal",
             "draw_blanket/room",
             "hand_towel/room",
+            "undress/rehearsal",
+            "undress/room",
             "wash_arm/room",
             "wipe_forearm/rehearsal",
             "wipe_forearm/room",
