@@ -94,7 +94,7 @@ class DrawOff(Skill):
         pose = self.world.observe().pose_base_in_map
         ways = np.array(places)[:, :2] - hand_now(self, self.hand)[:2, 3]
         draws = drive_to(
-            self, pose + np.append(ways[-1], 0.0), straight=True, via=pose[:2] + ways[:-1], speed=tuning.speed
+            self, pose + np.append(ways[-1], 0.0), straight=True, via=list(pose[:2] + ways[:-1]), speed=tuning.speed
         )
         yield from until_load(self, self.hand, tuning.max_load, draws)
         left = float(np.linalg.norm((places[-1] - hand_now(self, self.hand)[:3, 3])[:2]))

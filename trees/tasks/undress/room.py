@@ -20,16 +20,12 @@ def judge(record: RunRecord) -> Judgement:
     """No arm is in a sleeve, the trunk is bare, the gown lies on the bed, nobody holds it, and nobody is harmed."""
     checks = Checks(record)
     vertices, faces = record.array("vertices"), record.array("faces")
-    end = vertices[-1].astype(float)
+    end, ends = vertices[-1].astype(float), [0, -1]
     for n, side in enumerate(SIDES):
-        loops = [record.array(f"loop_{part}_{side}") for part in ("armhole", "cuff")]
-        begun, ended = (
-            sleeve(*(vertices[frame : frame + 1, loop].astype(float) for loop in loops), record.arms[frame, n][None])
-            for frame in (0, len(record.t) - 1)
-        )
-        checks.that(begun.on[0], f"the {side} arm was in no sleeve in the beginning")
-        through = ended.armhole.net[0] or ended.cuff.net[0]
-        checks.that(not through, f"the {side} arm is still in its sleeve")
+        armhole, cuff = (vertices[:, record.array(f"loop_{part}_{side}")][ends] for part in ("armhole", "cuff"))
+        worn = sleeve(armhole.astype(float), cuff.astype(float), record.arms[ends, n])
+        checks.that(worn.on[0], f"the {side} arm was in no sleeve in the beginning")
+        checks.that(worn.armhole.net[-1] == worn.cuff.net[-1] == 0, f"the {side} arm is still in its sleeve")
     front = record.array("torso_front")[-1].astype(float)
     checks.at_most("trunk_covered", coverage(end, faces, front)[0], COVERED, "1")
     checks.at_least("gown_above_mattress", float(np.median(end[:, 2])) - record.bed_top, -ON_THE_BED, "m")

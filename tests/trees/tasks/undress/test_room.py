@@ -36,7 +36,6 @@ def record(worn="", begun=("left", "right"), up=0.5, trunk=2.0, held=False, face
             vertices[:, ids, 0] += 3.0
         elif side != worn:
             vertices[30:, ids, 0] += 3.0
-    vertices[..., 2] -= 0.0
     vertices[30:, rest:, 2] += bed + 0.05 if up > 0 else up
     vertices[3:20, rest] = made.rows.face[:3] + (-0.2, -0.2, face)
     for k, corner in enumerate(((0.2, -0.2), (-0.2, 0.6), (0.2, 0.6)), 1):
