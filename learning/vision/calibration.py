@@ -23,7 +23,7 @@ def calibrate(network: SeeingNetwork, data: dict[str, np.ndarray]) -> dict[str, 
         data: arrays of `load_dataset`, of pictures that it has not seen.
 
     Returns:
-        `temperature` of the surfaces' scores, and `calibration`: kind of key point -> scale and shift of the score at
+        `temperature` of the surfaces' scores, and `calibration`: kind of key point -> scale and shift of the score of
         its peak, whose logistic is the chance that the peak is right.
     """
     scores: dict[str, list[tuple[float, bool]]] = {name.split("_")[0]: [] for name in KEY_POINTS}
@@ -38,15 +38,29 @@ def calibrate(network: SeeingNetwork, data: dict[str, np.ndarray]) -> dict[str, 
             losses[k] += float((np.log(np.exp(warm - top).sum(axis=0)) + top - mine).mean())
         for k, name in enumerate(KEY_POINTS):
             kind = name.split("_")[0]
-            v, u = np.unravel_index(int(heat[k].argmax()), heat[k].shape)
+            v, u = divmod(int(heat[k].argmax()), heat[k].shape[1])
             peak = np.array((u, v)) * CELL + (CELL - 1) / 2
             away = np.linalg.norm(peak - row["points"][k, :2])
             there = row["seen"][k] != ABSENT if kind in JOINTS else row["seen"][k] == SHOWN
-            scores[kind].append((float(heat[k].max()), bool(there and away < NEAR)))
+            scores[kind].append((peak_score(heat[k], v, u), bool(there and away < NEAR)))
     return {
         "temperature": float(TEMPERATURES[losses.argmin()]),
         "calibration": {kind: logistic(*np.array(rows, float).T) for kind, rows in scores.items()},
     }
+
+
+def peak_score(heat: np.ndarray, row: int, column: int) -> float:
+    """How likely a key point is in the cell of a peak or beside it rather than anywhere else or nowhere: the log odds.
+
+    Args:
+        heat: (h, w) scores, beside 0 for nowhere.
+        row: of the peak.
+        column: of the peak.
+    """
+    top = max(float(heat.max()), 0.0)
+    chance = np.exp(heat.astype(float) - top)
+    here = float(chance[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].sum())
+    return float(np.log(here + 1e-9) - np.log(chance.sum() + np.exp(-top) - here + 1e-9))
 
 
 def _seen(

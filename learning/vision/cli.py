@@ -27,6 +27,16 @@ def _seeds(text: str) -> range:
     return found
 
 
+def _rate(text: str) -> float:
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0.0 < rate <= 0.1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no rate of learning: more than 0, 0.1 at most")
+    return rate
+
+
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     top = CommandParser(prog="caretree learn vision")
@@ -44,11 +54,17 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("--pictures", type=whole_number, default=3000, metavar="N", help="default 3000")
     data.add_argument("--seed", type=seed, default=100, metavar="N", help="default 100")
     train = sub.add_parser("train", help="train the network and write it as ONNX")
-    train.add_argument("data", metavar="DATA", help="folder of `data`")
+    train.add_argument("data", nargs="+", type=Path, metavar="DATA", help="one folder of `data` or more")
     train.add_argument("--out", required=True, metavar="DIR", help="checkpoint, record and seeing.onnx")
     train.add_argument("--steps", type=whole_number, default=6000, metavar="N", help="of 8 pictures (default 6000)")
     train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
-    train.add_argument("--start", type=Path, metavar="DIR", help="begin with the weights of another training")
+    train.add_argument(
+        "--start", type=Path, metavar="PATH", help="begin with the weights of another training, or of a seeing.onnx"
+    )
+    train.add_argument("--apart", type=Path, metavar="DIR", help="pictures to calibrate on, best of other rooms")
+    train.add_argument(
+        "--rate", type=_rate, default=2e-3, metavar="X", help="of learning, at the start (default 0.002)"
+    )
     test = sub.add_parser("evaluate", help="table of what is seen, beside the classical perception")
     test.add_argument("states", metavar="STATES", help="folder of `states`")
     test.add_argument("--network", type=Path, metavar="FILE", help="instead of the one in the package")
@@ -92,8 +108,18 @@ def _train(options: argparse.Namespace) -> None:
     from .train import train
 
     torch.set_num_threads(1)  # as the other trainings: bit by bit the same on any number of cores
-    out, data = Path(options.out), Path(options.data)
-    print(train(data, out, steps=options.steps, seed=options.seed, say=_say, start=options.start))
+    out = Path(options.out)
+    path = train(
+        options.data,
+        out,
+        steps=options.steps,
+        seed=options.seed,
+        say=_say,
+        start=options.start,
+        apart=options.apart,
+        learning_rate=options.rate,
+    )
+    print(path)
 
 
 def _evaluate(options: argparse.Namespace, seers: Callable[[Path | None], Mapping[str, Any]] | None) -> None:

@@ -6,20 +6,28 @@ import io
 import json
 import os
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
-from .dataset import FORMAT, SIZE
+from .dataset import SIZE
 from .labels import KEY_POINTS, SURFACES
 from .network import OUTPUTS, SeeingNetwork
+from .sheet_nodes import SHEET_NODES
+
+FORMAT = "caretree-seeing-2"
+HALF = "half_"  # before the name of weights that the file keeps in half precision
 
 
 def export(network: SeeingNetwork, path: str | Path, record: dict[str, object], calibration: dict[str, object]) -> Path:
     """Write the network completely or not at all; returns the path.
 
+    Weights are kept in half precision, which halves the file; OpenCV makes them whole again when it reads it.
+
     Args:
-        network: trained.
+        network: trained; its weights are rounded to what the file keeps.
         path: of the ONNX file.
         record: hash, seed, time, machine: how it came about; kept with the file's metadata.
         calibration: of `calibrate`.
@@ -32,17 +40,22 @@ def export(network: SeeingNetwork, path: str | Path, record: dict[str, object], 
     except ImportError as error:
         raise CaretreeError("writing the network needs onnx: pip install 'caretree[learn]'") from error
     network = network.eval().to(memory_format=torch.contiguous_format)
+    with torch.no_grad():
+        for weights in network.parameters():
+            weights.copy_(weights.half().float())
     buffer = io.BytesIO()
     torch.onnx.export(
         network, (torch.zeros(1, 5, SIZE[1], SIZE[0]),), buffer, dynamo=False, input_names=["image"],
         output_names=list(OUTPUTS),
     )  # fmt: skip
     model = onnx.load_from_string(buffer.getvalue())
+    _keep_half(model)
     about = {
         "format": FORMAT,
         "surfaces": SURFACES,
         "key_points": KEY_POINTS,
         "size": SIZE,
+        "sheet_nodes": SHEET_NODES,
         "record": record,
     } | calibration
     onnx.helper.set_model_props(model, {key: json.dumps(value) for key, value in about.items()})
@@ -52,3 +65,20 @@ def export(network: SeeingNetwork, path: str | Path, record: dict[str, object], 
     part.write_bytes(model.SerializeToString())
     os.replace(part, path)
     return path
+
+
+def _keep_half(model: Any) -> None:
+    """Let the model keep its weights in half precision, each followed by a cast to what it is computed in."""
+    import onnx  # pyright: ignore[reportMissingImports] - in the extra `learn`
+
+    casts = []
+    for tensor in model.graph.initializer:
+        if tensor.data_type != onnx.TensorProto.FLOAT or len(tensor.dims) < 1:
+            continue
+        half = onnx.numpy_helper.to_array(tensor).astype(np.float16)
+        tensor.CopyFrom(onnx.numpy_helper.from_array(half, HALF + tensor.name))
+        whole = tensor.name.removeprefix(HALF)
+        casts.append(onnx.helper.make_node("Cast", [tensor.name], [whole], to=onnx.TensorProto.FLOAT))
+    nodes = [*casts, *model.graph.node]
+    del model.graph.node[:]
+    model.graph.node.extend(nodes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -17,7 +17,8 @@ from ...sim.world import Frame
 from ..image.surfaces import GOWN_SURFACES, Surface
 from .onnx_record import read_properties
 
-FORMAT = "caretree-seeing-1"
+FORMAT = "caretree-seeing-2"
+BEFORE = "caretree-seeing-1"  # of the weights that ship: places as numbers, key points as a yes or no in every cell
 PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"
 _OUTPUTS = ("surface", "sheet", "heat", "offset")
 _SOLID = (*GOWN_SURFACES, Surface.SKIN)  # what a key point can lie on
@@ -86,13 +87,14 @@ class SeeingNetwork:
         import cv2
 
         about = {name: json.loads(text) for name, text in read_properties(path).items()}
-        if about.get("format") != FORMAT:
+        if about.get("format") not in (FORMAT, BEFORE):
             raise CaretreeError(f"{path}: this is no seeing network in format {FORMAT}")
         if about["surfaces"] != [surface.name.lower() for surface in Surface]:
             raise CaretreeError(f"{path}: it sees {', '.join(about['surfaces'])}, which this version does not know")
         self.record: Mapping[str, Any] = about["record"]
         self._size: tuple[int, int] = (about["size"][0], about["size"][1])
         self._names: list[str] = about["key_points"]
+        self._sheet_nodes = [np.asarray(axis, np.float32) for axis in about.get("sheet_nodes", ())]  # none before
         self._calibration: dict[str, list[float]] = about.get("calibration", {})
         self._temperature = float(about.get("temperature", 1.0))
         self._net = cv2.dnn.readNetFromONNX(str(path))
@@ -110,11 +112,12 @@ class SeeingNetwork:
         chance /= chance.sum(axis=0)
         labels = chance.argmax(axis=0).astype(np.uint8)
         full = frame.depth.shape[::-1]
+        places = places_on_sheet(sheet, self._sheet_nodes) if self._sheet_nodes else sheet.transpose(1, 2, 0)
         solid = np.isin(labels, _SOLID) & (image[3] > 0)
         return Sight(
             surfaces=cv2.resize(labels, full, interpolation=cv2.INTER_NEAREST),
             confidence=cv2.resize(chance.max(axis=0), full, interpolation=cv2.INTER_LINEAR),
-            sheet=cv2.resize(np.ascontiguousarray(sheet.transpose(1, 2, 0)), full, interpolation=cv2.INTER_LINEAR),
+            sheet=cv2.resize(np.ascontiguousarray(places), full, interpolation=cv2.INTER_LINEAR),
             key_points={
                 name: self._key_point(
                     frame, heat[k], offset[k], image[3], solid, self._calibration.get(name.split("_")[0])
@@ -149,17 +152,18 @@ class SeeingNetwork:
     ) -> KeyPoint:
         """Read one key point off its maps (h, w)."""
         row, column = divmod(int(heat.argmax()), heat.shape[1])
-        best = float(heat[row, column])
-        scale, shift = calibration or (1.0, 0.0)
         rows, columns = _around(row, column, heat.shape, self._tuning.peak_cells)
-        weight = 1.0 / (1.0 + np.exp(-heat[np.ix_(rows, columns)].astype(float)))
+        near = np.ix_(rows, columns)
+        chance, score = peak_of_all(heat, near) if self._sheet_nodes else peak_alone(heat)
+        weight = chance[near]
+        scale, shift = calibration or (1.0, 0.0)
         cell = np.array((weight.sum(axis=0) @ columns, weight.sum(axis=1) @ rows)) / weight.sum()
         step = depth.shape[0] / heat.shape[0]
         full = np.array(frame.depth.shape[::-1]) / depth.shape[::-1]
         pixel = ((cell + 0.5) * step) * full - 0.5
         rows, columns = _around(row, column, heat.shape, self._tuning.search_cells)
         at = np.ix_((rows * step + step // 2).astype(int), (columns * step + step // 2).astype(int))
-        weight = solid[at] / (1.0 + np.exp(-heat[np.ix_(rows, columns)].astype(float)))
+        weight = solid[at] * chance[np.ix_(rows, columns)]
         place = None
         if weight.sum() > 0:
             z = float((weight * (depth[at] + offset[np.ix_(rows, columns)])).sum() / weight.sum())
@@ -167,8 +171,43 @@ class SeeingNetwork:
             local = np.array(((pixel[0] - cx) / fx, (pixel[1] - cy) / fy, 1.0)) * z
             place = frame.pose_camera_in_map[:3, :3] @ local + frame.pose_camera_in_map[:3, 3]
         return KeyPoint(
-            confidence=float(1.0 / (1.0 + np.exp(-(scale * best + shift)))), position_in_map=place, pixel=pixel
+            confidence=float(1.0 / (1.0 + np.exp(-(scale * score + shift)))), position_in_map=place, pixel=pixel
         )
+
+
+def places_on_sheet(scores: np.ndarray, nodes: Sequence[np.ndarray]) -> np.ndarray:
+    """(h, w, 3) places [m] from scores (S, h, w) of every axis's nodes: the mean of the best one and its neighbours.
+
+    The mean of all nodes would be between the two where left and right are alike.
+    """
+    found, first = [], 0
+    for axis in nodes:
+        mine = scores[first : first + len(axis)]
+        first += len(axis)
+        best = np.clip(mine.argmax(axis=0), 1, len(axis) - 2)
+        three = best + np.arange(-1, 2)[:, None, None]
+        near = np.take_along_axis(mine, three, 0)
+        weight = np.exp(near - near.max(axis=0))
+        found.append((weight * axis[three]).sum(axis=0) / weight.sum(axis=0))
+    return np.stack(found, axis=2).astype(np.float32)
+
+
+def peak_of_all(heat: np.ndarray, near: tuple[np.ndarray, ...]) -> tuple[np.ndarray, float]:
+    """Chances (h, w) where the cells compete with each other and with nowhere, whose score is 0; and a peak's log odds.
+
+    Args:
+        heat: (h, w) scores.
+        near: the peak and the cells beside it, as `numpy.ix_` gives them.
+    """
+    top = max(float(heat.max()), 0.0)
+    chance = np.exp(heat.astype(float) - top)
+    here, all_ = float(chance[near].sum()), float(chance.sum() + np.exp(-top))
+    return chance, float(np.log(here + 1e-9) - np.log(all_ - here + 1e-9))
+
+
+def peak_alone(heat: np.ndarray) -> tuple[np.ndarray, float]:
+    """Chances (h, w) where every cell is a yes or no of its own, and the best score."""
+    return 1.0 / (1.0 + np.exp(-heat.astype(float))), float(heat.max())
 
 
 def _around(row: int, column: int, shape: tuple[int, ...], by: int) -> tuple[np.ndarray, np.ndarray]:

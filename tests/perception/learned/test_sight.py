@@ -1,5 +1,6 @@
 """The packaged network, run by OpenCV alone, and how its maps are read."""
 
+import json
 import subprocess
 import sys
 
@@ -7,8 +8,10 @@ import numpy as np
 import pytest
 from caretree.learning.vision.dataset import seen
 from caretree.learning.vision.labels import KEY_POINTS, SURFACES
+from caretree.learning.vision.sheet_nodes import SHEET_NODES
 from caretree.perception.image.surfaces import Surface
-from caretree.perception.learned.sight import PACKAGED, SeeingNetwork
+from caretree.perception.learned.onnx_record import read_properties
+from caretree.perception.learned.sight import BEFORE, PACKAGED, SeeingNetwork
 from caretree.sim.errors import CaretreeError
 from caretree.sim.world import Frame
 
@@ -50,10 +53,11 @@ def network():
 def planted(network):
     surface = np.zeros((1, 7, 192, 256), np.float32)
     surface[:, Surface.OUTSIDE] = 4.0
+    network._sheet_nodes = [np.asarray(axis) for axis in SHEET_NODES]  # as the format has it that is trained now
     heat = np.full((1, 17, 48, 64), -9.0, np.float32)
     heat[0, KEY_POINTS.index("corner_left"), 24, 40] = 5.0
     offset = np.full((1, 17, 48, 64), 0.1, np.float32)
-    network._net = Planted(surface=surface, sheet=np.zeros((1, 3, 48, 64), np.float32), heat=heat, offset=offset)
+    network._net = Planted(surface=surface, sheet=np.zeros((1, 35, 48, 64), np.float32), heat=heat, offset=offset)
     return network
 
 
@@ -83,6 +87,33 @@ def test_a_peak_becomes_a_place_in_the_map(planted):
     wanted = ((u - 199.5) / 200 * deep, -(v - 149.5) / 200 * deep, 2.0 - deep)
     assert np.allclose(point.position_in_map, wanted, atol=0.01)
     assert point.confidence > planted.see(frame()).key_points["corner_right"].confidence
+
+
+def test_a_network_of_the_format_before_is_read_too(network):
+    assert json.loads(read_properties(PACKAGED)["format"]) == BEFORE
+    sheet = np.zeros((1, 3, 48, 64), np.float32)
+    sheet[0] += np.array((0.3, 0.0, -0.4), np.float32)[:, None, None]
+    heat = np.full((1, 17, 48, 64), -9.0, np.float32)
+    heat[0, KEY_POINTS.index("corner_left"), 24, 40] = 1.0
+    surface = np.zeros((1, 7, 192, 256), np.float32)
+    surface[:, Surface.OUTSIDE] = 4.0
+    network._net = Planted(surface=surface, sheet=sheet, heat=heat, offset=np.zeros((1, 17, 48, 64), np.float32))
+    network._calibration = {"corner": [0.7, -0.4]}
+    seen_there = network.see(frame())
+    assert np.allclose(seen_there.sheet, (0.3, 0.0, -0.4))
+    point = seen_there.key_points["corner_left"]
+    assert abs(point.confidence - 1 / (1 + np.exp(-(0.7 * 1.0 - 0.4)))) < 1e-6
+    assert np.allclose(point.pixel, ((40 + 0.5) * 4 * 400 / 256 - 0.5, (24 + 0.5) * 4 * 300 / 192 - 0.5), atol=0.5)
+
+
+def test_confidence_is_what_the_calibration_was_fitted_to(planted):
+    planted._calibration = {"corner": [0.7, -0.4]}
+    heat = planted._net.maps["heat"][0, KEY_POINTS.index("corner_left")]
+    heat[24, 41], heat[3, 3] = 4.0, 3.5
+    here = np.exp(5.0) + np.exp(4.0) + 7 * np.exp(-9.0)
+    elsewhere = np.exp(3.5) + (48 * 64 - 10) * np.exp(-9.0) + 1.0  # the one is nowhere
+    wanted = 1 / (1 + np.exp(-(0.7 * np.log(here / elsewhere) - 0.4)))
+    assert abs(planted.see(frame()).key_points["corner_left"].confidence - wanted) < 1e-6
 
 
 def test_without_depth_a_key_point_has_no_place(planted):
