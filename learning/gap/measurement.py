@@ -1,4 +1,4 @@
-"""A measurement set: a folder with `measurement.yaml` and one CSV per episode."""
+"""A measurement set: a folder with `measurement.yaml` and one CSV, or the record of a run, per episode."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ from typing import Any
 import numpy as np
 import yaml
 
+from ...sim.errors import CaretreeError
+from ...sim.world import SIDES
 from ...sim.yaml_text import load_yaml
 from .errors import GapError
 from .table import read_table, table_of
 
-SYSTEMS = ("arm", "axis", "fall", "cloth")
+SYSTEMS = ("arm", "axis", "fall", "cloth", "dressing")
 EPISODE_KEYS = ("file", "role", "phases", "pins", "mass")
+RUN_KEYS = ("run", "role", "t0", "t1", "hand", "phases")  # of an episode that is the record of a run
 SET_KEYS = (
     *("system", "episodes", "phases", "robot", "gravity", "mass", "diameter"),
     *("mesh", "physics", "pins", "capsules", "markers"),
@@ -137,9 +140,10 @@ def load_set(folder: Path | str, own: tuple[str, ...] = ()) -> MeasurementSet:
         raise GapError(f"{file}: `episodes` must list at least two entries with `file`")
     if len(listed) < 2:
         raise GapError(f"{file}: `episodes` lists one episode only, at least two are needed (one to fit, one held out)")
-    _refuse_unknown(file, content, (*SET_KEYS, *NOTE_KEYS))
+    runs = system == "dressing"
+    _refuse_unknown(file, content, (*(("system", "episodes", "phases") if runs else SET_KEYS), *NOTE_KEYS))
     shared = _phases(file, content.get("phases"))
-    episodes = [_episode(file, entry, shared) for entry in listed]
+    episodes = [(_run_episode if runs else _episode)(file, entry, shared) for entry in listed]
     names = [e.name for e in episodes]
     for name in names:
         if names.count(name) > 1:
@@ -182,18 +186,61 @@ def _episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
     if not isinstance(entry, dict) or not isinstance(entry.get("file"), str):
         raise GapError(f"{file}: every episode needs `file`, this one is {entry!r}")
     _refuse_unknown(file, entry, EPISODE_KEYS, f" of episode {entry['file']}")
-    role = entry.get("role", "")
-    if role not in ("", None, *ROLES):
-        raise GapError(f"{file}: role of {entry['file']} is {role!r}, it must be one of {', '.join(ROLES)}")
+    role = _role(file, entry, entry["file"])
     path = file.parent / entry["file"]
     return Episode(
         name=path.stem,
         file=path,
-        role=role or "",
+        role=role,
         columns=read_table(path),
         phases=_phases(file, entry.get("phases")) or shared,
         settings={k: v for k, v in entry.items() if k not in ("file", "role", "phases")},
     )
+
+
+def _run_episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
+    """An episode that is a stretch of a recorded run.
+
+    Raises:
+        GapError: a key or a value cannot be used, or the record cannot.
+    """
+    from ...sim.record.recorded_stretch import read_stretch
+    from .dressing.loads import columns_of
+
+    if not isinstance(entry, dict) or not isinstance(entry.get("run"), str):
+        raise GapError(f"{file}: every episode of system dressing needs `run`, the folder of a record, not {entry!r}")
+    name = entry["run"]
+    _refuse_unknown(file, entry, RUN_KEYS, f" of episode {name}")
+    role, hand = _role(file, entry, name), entry.get("hand")
+    if hand not in (None, *SIDES):
+        raise GapError(f"{file}: hand of {name} is {hand!r}, it must be one of {', '.join(SIDES)}")
+    span: list[float | None] = []
+    for key in ("t0", "t1"):
+        x = entry.get(key)
+        if x is not None and (isinstance(x, bool) or not isinstance(x, int | float) or not 0 <= x < LARGEST):
+            raise GapError(f"{file}: {key} of {name} is {str(x)[:SHOWN]}, a time of its clock in seconds is needed")
+        span.append(None if x is None else float(x))
+    path = file.parent / name
+    try:
+        stretch = read_stretch(path, *span, hand)
+    except CaretreeError as error:
+        raise GapError(f"{file}: {error}") from None
+    at = "" if span[0] is None else f"@{span[0]:g}"
+    return Episode(
+        name=f"{path.resolve().name}{at}{f'_{hand}' if hand else ''}",
+        file=path,
+        role=role,
+        columns=columns_of(stretch),
+        phases=_phases(file, entry.get("phases")) or shared,
+        settings={"stretch": stretch},
+    )
+
+
+def _role(file: Path, entry: dict[str, Any], name: str) -> str:
+    role = entry.get("role", "")
+    if role not in ("", None, *ROLES):
+        raise GapError(f"{file}: role of {name} is {role!r}, it must be one of {', '.join(ROLES)}")
+    return role or ""
 
 
 def _refuse_unknown(file: Path, given: dict[Any, Any], known: tuple[str, ...], of: str = "") -> None:

@@ -19,7 +19,7 @@ def open_study(
     Args:
         measured: the set.
         alpha: level of the tests.
-        cache: folder for what simulations of cloth gave, or None.
+        cache: folder for what simulations of cloth and of dressing gave, or None.
         own: the user's simulator, where it is none of the built-in ones.
         source: where that comes from, for model.yaml.
 
@@ -45,6 +45,10 @@ def open_study(
         from .fall.study import FallStudy
 
         return FallStudy(measured, alpha)
+    if measured.system == "dressing":
+        from .dressing.study import DressingStudy
+
+        return DressingStudy(measured, alpha, cache)
     from .cloth.study import ClothStudy
 
     return ClothStudy(measured, alpha, cache=cache)

@@ -207,14 +207,17 @@ def _off_shoulders(person: Person, offsets: Sequence[np.ndarray]) -> list[np.nda
     ]
 
 
-def put_arms(person: Person, arms: np.ndarray) -> None:
+def put_arms(person: Person, arms: np.ndarray, unless_within: float = 0.0) -> None:
     """Bend the person's arms to where they were recorded, as near as their joints come.
 
     Args:
         person: the manikin.
         arms: (2, 4, 3) left and right shoulder, elbow, wrist, fingertip in the map frame [m].
+        unless_within: an arm that is so near already stays as it is, and its friction goes on holding it [m].
     """
     for n, side in enumerate(SIDES):
+        if np.abs(person.arms()[n] - arms[n]).max() < unless_within:
+            continue
 
         def missed(angles: np.ndarray, n: int = n, side: Side = side) -> np.ndarray:
             person.bend_arm(side, tuple(angles.tolist()))

@@ -119,13 +119,22 @@ class Grip:
         if opening < now_open - 0.003:
             self._open_before, self._armed = now_open, True
 
-    def catch_arm(self, pose_hand_in_map: np.ndarray, opening: float, force: float) -> bool:
-        """Take the arm if its axis runs between the closing fingers and they touch it; tells whether it did."""
+    def catch_arm(
+        self, pose_hand_in_map: np.ndarray, opening: float, force: float, only: int | None = None
+    ) -> bool:
+        """Take the arm if its axis runs between the closing fingers and they touch it; tells whether it did.
+
+        Args:
+            pose_hand_in_map: (4, 4).
+            opening: of the fingers now [m].
+            force: of the fingers [N].
+            only: index in `PERSON_PARTS` of the one part that can be taken; None for any.
+        """
         if self.kind != "nothing" or not self._armed:
             return False
         if opening > 2 * self.person.spec.arm_radii.max() + TOUCH:
             return False
-        found = self._arm_between(pose_hand_in_map)
+        found = self._arm_between(pose_hand_in_map, only)
         if found is None or opening > 2 * found[3] + TOUCH:
             return False
         arm, part, point, radius = found
@@ -204,7 +213,8 @@ class Grip:
 
     def release(self) -> None:
         """Let go of whatever is held."""
-        self.cloth.unpin(self._pins)
+        if self._pins:
+            self.cloth.unpin(self._pins)
         self._pins = []
         if self._constraint is not None:
             self.client.removeConstraint(self._constraint)
@@ -237,14 +247,14 @@ class Grip:
             if np.linalg.norm(np.subtract(held, self.handle.position())) > ARM_SLIP:
                 self.release()
 
-    def _arm_between(self, pose_hand_in_map: np.ndarray) -> tuple[int, int, np.ndarray, float] | None:
+    def _arm_between(self, pose_hand_in_map: np.ndarray, only: int | None) -> tuple[int, int, np.ndarray, float] | None:
         """(arm, part, point on its axis, radius) of the arm part between the fingers."""
         arms, radii = self.person.arms(), self.person.radii()
         origin, turn = pose_hand_in_map[:3, 3], pose_hand_in_map[:3, :3]
         best: tuple[float, tuple[int, int, np.ndarray, float]] | None = None
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
-                if 2 * radii[arm, part] >= self._open_before:
+                if 2 * radii[arm, part] >= self._open_before or only not in (None, arm_part(arm, part)):
                     continue
                 a, b = arms[arm, part], arms[arm, part + 1]
                 f = float(np.clip((origin - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0))

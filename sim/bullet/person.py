@@ -115,6 +115,18 @@ class Person:
             forces=[ROOM.force(t) for t in torques],
         )
 
+    def spring(self) -> None:
+        """Draw the shoulders back to where they started, where this person's are so; before every step."""
+        if not self.spec.shoulder_spring:
+            return
+        joints = [j for side in SIDES for j in self.joints[side][:2]]
+        start = np.array([angle for side in SIDES for angle in self.spec.pose[side][:2]])
+        angles = np.array([state[0] for state in self.client.getJointStates(self.body, joints)])
+        torques = self.spec.shoulder_spring * (start - angles)
+        self.client.setJointMotorControlArray(
+            self.body, joints, self.client.TORQUE_CONTROL, forces=[ROOM.force(t) for t in torques]
+        )
+
     def give_skin(self) -> None:
         """Let the arms be as soft in contact as skin is; only where something soft may touch them.
 

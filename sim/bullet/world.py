@@ -20,6 +20,9 @@ import numpy as np
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..effects.cloth.proxy_bodies import ClothPatch
+from ..effects.dressing.dressing_registry import changed_scene, load_cell_bias
+from ..effects.effect import EffectError
+from ..effects.model_file import EffectModel, load_model
 from ..errors import CaretreeError
 from ..mechanics.capsules import RobotCapsules
 from ..mechanics.kinematics import kinematics_of
@@ -34,7 +37,7 @@ from ..scene.gown import without_cloth
 from ..scene.initial_state import InitialState
 from ..scene.objects import RoomObject
 from ..scene.person_spec import trunk_capsules
-from ..scene.scene import BED_TOP, RAIL_HEIGHT, draw_scene, room_map
+from ..scene.scene import BED_TOP, RAIL_HEIGHT, Scene, draw_scene, room_map
 from ..scripted.clock import SteppedClock
 from ..sensors.sensor_errors import SensorErrors
 from ..stopwatch import Stopwatch, timed
@@ -73,7 +76,7 @@ class BulletWorld(World):
         seed: of everything that varies.
         gown: name of the gown, or path of a gown file; drawn from the seed when omitted.
         person: name of the person; drawn from the seed when omitted.
-        model: model file of the gap workflow whose effects act on the gown.
+        model: model file of the gap workflow whose effects act on the gown, or on person, gown and sensors.
         kind: how hard the world is made, see `sim/world_kind.py`.
         look: of gown, person and room, see `sim/render/looks.py`.
         engine: what moves the cloth, see `engines.py`.
@@ -98,7 +101,7 @@ class BulletWorld(World):
         seed: int = 0,
         gown: str | None = None,
         person: str | None = None,
-        model: str | None = None,
+        model: str | EffectModel | None = None,
         kind: str = EASY,
         look: str = TAPED,
         engine: str = BULLET,
@@ -107,8 +110,8 @@ class BulletWorld(World):
         if model is not None and not self._engine.soft_bodies:
             raise CaretreeError(f"--model needs the engine {BULLET}: on {engine} no effects act")
         appearance = draw_look(look, np.random.default_rng([seed, 1]))
-        self._effects = None if model is None else gown_effects(model)
-        self.scene = draw_scene(seed, gown, person, WorldKind.named(kind))
+        scene = draw_scene(seed, gown, person, WorldKind.named(kind))
+        self._effects, self.scene, bias = (None, scene, None) if model is None else _with_model(model, scene)
         if self.scene.gown.air_drag > 0 and self._engine.soft_bodies:  # springs have air of their own
             self._effects = with_air(self._effects, self.scene.gown.air_drag)
         self.room = room_map()
@@ -118,7 +121,7 @@ class BulletWorld(World):
         self.kinematics = kinematics_of(BAXTER)
         self.stopwatch = Stopwatch()
         self._noise = np.random.default_rng([seed, 2])
-        self._errors = SensorErrors(seed, self.scene.kind)
+        self._errors = SensorErrors(seed, self.scene.kind, bias=bias)
         self._thinking = ThinkingTime(seed, self.scene.kind)
         self._steps = 0
         self._asleep = False
@@ -425,6 +428,7 @@ class BulletWorld(World):
         self._move_person()
         self._apply_effects()
         self._contact.push_arms()
+        self._person.spring()
         with self.stopwatch.of("bullet"):
             self._soft.step()
         for n in held:
@@ -540,3 +544,19 @@ class BulletWorld(World):
             self._person.swing(0.45 if stirring else 0.0)
             if not stirring:
                 self._moving_person = []
+
+
+def _with_model(given: str | EffectModel, scene: Scene) -> tuple[EffectModel | None, Scene, np.ndarray | None]:
+    """What a model makes of a scene: effects on the gown, the scene, and (2, 3) what the hands' sensors add [N].
+
+    Raises:
+        CaretreeError: it cannot be read, or is for neither a gown nor a dressing.
+    """
+    try:
+        model = given if isinstance(given, EffectModel) else load_model(given)
+        if model.system != "dressing" and isinstance(given, str):
+            return gown_effects(given), scene, None
+        model.require("dressing")
+        return None, changed_scene(scene, model), load_cell_bias(model)
+    except EffectError as error:
+        raise CaretreeError(f"--model {error}") from None

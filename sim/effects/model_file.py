@@ -36,7 +36,7 @@ KEYS = (
     "description",
 )
 ENTRY_KEYS = ("name", "target", "parameters")
-SYSTEMS = ("arm", "axis", "fall", "cloth")
+SYSTEMS = ("arm", "axis", "fall", "cloth", "dressing")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +97,7 @@ def load_model(path: Path | str) -> EffectModel:
     try:
         _refuse_unknown(content, KEYS)
         effects, recalibration = (_entries(content, key) for key in ("effects", "recalibration"))
-        for e in effects if not own else ():
+        for e in (*effects, *(recalibration if system == "dressing" else ())) if not own else ():
             check_effect(system, e)
     except EffectError as error:
         raise EffectError(f"{path}: {error}") from None
@@ -153,6 +153,13 @@ def check_effect(system: str, e: EffectEntry) -> None:
         registry: dict[str, Any] = dict(JOINT_EFFECTS)
     elif system == "fall":
         registry = dict(BODY_EFFECTS)
+    elif system == "dressing":
+        from .dressing.dressing_registry import DRESSING_EFFECTS
+
+        if e.name in DRESSING_EFFECTS:
+            DRESSING_EFFECTS[e.name].check(e.target, e.parameters)
+            return
+        registry = dict(DRESSING_EFFECTS)
     else:
         from .cloth.cloth_registry import CLOTH_EFFECTS
 

@@ -18,9 +18,11 @@ from ..errors import RecordError
 from ..fence import said
 from .background import Background
 from .folder_claim import FolderClaim
+from .measured import MeasuredLog
 from .record import (
     ERRORS_FILE,
     LOOKS_FOLDER,
+    MEASURED_FILE,
     REPORT_FILE,
     RESERVE_FILE,
     RUN_FILE,
@@ -63,6 +65,7 @@ class Recorder:
 
     Attributes:
         films: the same.
+        measured: what the robot measures; given to it by the runner, and written at the end.
         caption: stage and skill, written on the pictures of the video.
 
     Raises:
@@ -99,6 +102,7 @@ class Recorder:
         self._video: VideoWriter | None = None
         self._background: Background | None = None
         self._filmed = float("-inf")
+        self.measured = MeasuredLog()
         self.caption: tuple[str, str] = ("", "")
         self._problem: RecordError | None = None  # the first
         self._done = False
@@ -121,7 +125,7 @@ class Recorder:
             return
         for folder in (SPOOL_FOLDER, LOOKS_FOLDER):
             shutil.rmtree(self.directory / folder, ignore_errors=True)
-        for name in (TREE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE, RESERVE_FILE):
+        for name in (TREE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE, ERRORS_FILE, RESERVE_FILE, MEASURED_FILE):
             (self.directory / name).unlink(missing_ok=True)
 
     def begin(self, static: TruthStatic) -> None:
@@ -253,6 +257,8 @@ class Recorder:
             with suppress(RecordError), self._noted():
                 write_npz(self._spool.folder, self.directory / TRUTH_FILE)
                 shutil.rmtree(self._spool.folder)
+        with suppress(RecordError), self._noted():
+            self.measured.write(self.directory)
         ended = time.perf_counter(), time.thread_time()
         whole = time.process_time() - self._started[1]
         self._run.update(

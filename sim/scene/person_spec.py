@@ -111,6 +111,8 @@ class PersonSpec:
         stiff: side -> a shoulder that is not like the others.
         skin_friction: of trunk and arms; times the cloth's, it is the coefficient between both.
         stirring: torque with which the person can swing the arms, if more than three times the friction [N m].
+        arm_mass_added: of each arm, in the shares of its segments [kg].
+        shoulder_spring: torque with which abduction and elevation are drawn back to the start, per angle [N m/rad].
         falls: whether nothing but contact carries the arms: they are let come to rest before a run, and their upper
             parts may lie against the trunk, which is as wide as the shoulders.
     """
@@ -128,6 +130,8 @@ class PersonSpec:
     stiff: dict[str, StiffShoulder] = field(default_factory=dict)
     skin_friction: float = SHAPE.skin_friction
     stirring: float = 0.0
+    arm_mass_added: float = 0.0
+    shoulder_spring: float = 0.0
     falls: bool = False
 
     def __post_init__(self) -> None:
@@ -140,6 +144,11 @@ class PersonSpec:
             raise CaretreeError(f"person '{self.name}': scale {self.scale} is outside 0.85 to 1.15")
         if min(*self.radii, *self.lengths, self.mass, *self.dry_friction, self.viscous, self.skin_friction) <= 0:
             raise CaretreeError(f"person '{self.name}': sizes, mass and friction must be positive")
+        if self.arm_masses.min() <= 0 or self.shoulder_spring < 0:
+            raise CaretreeError(
+                f"person '{self.name}': arms of {self.arm_masses.sum():g} kg on springs of {self.shoulder_spring:g} "
+                "N m/rad, but arms weigh something and springs draw back"
+            )
 
     @property
     def arm_radii(self) -> np.ndarray:
@@ -154,7 +163,12 @@ class PersonSpec:
     @property
     def arm_masses(self) -> np.ndarray:
         """(3,) masses of this person's `ARM_SEGMENTS` [kg]."""
-        return np.array(SHAPE.segment_mass_shares) * self.mass * SHAPE.arm_mass_share
+        return np.array(SHAPE.segment_mass_shares) * (self.arm_mass + self.arm_mass_added)
+
+    @property
+    def arm_mass(self) -> float:
+        """Mass of an arm by the share it has in the body's, without what is added [kg]."""
+        return self.mass * SHAPE.arm_mass_share
 
     @property
     def trunk_mass(self) -> float:

@@ -28,12 +28,15 @@ class SensorErrors:
         seed: of the run; each difficulty draws from a stream of its own.
         kind: of the world.
         sizes: of the difficulties.
+        bias: (2, 3) what the force sensors of both hands add besides, along the hands' axes [N].
 
     Attributes:
         late: what there was to see before, in a world whose images are late.
     """
 
-    def __init__(self, seed: int, kind: WorldKind, sizes: Sizes = SIZES) -> None:
+    def __init__(
+        self, seed: int, kind: WorldKind, sizes: Sizes = SIZES, bias: np.ndarray | None = None
+    ) -> None:
         def drawn(difficulty: str) -> np.random.Generator | None:
             return stream(seed, difficulty) if kind.has(difficulty) else None
 
@@ -46,6 +49,9 @@ class SensorErrors:
         self._wrists = WristSensors.drawn(rng, sizes.wrench_bias) if (rng := drawn("wrench_bias")) else None
         if self._wrists is None and (self._encoders or self._localisation):
             self._wrists = WristSensors()  # the orientation that they are told is off
+        if bias is not None and bias.any():
+            wrists = self._wrists or WristSensors()
+            self._wrists = replace(wrists, bias=wrists.bias + np.pad(bias, ((0, 0), (0, 3))))
 
     def joints(self, reading: JointReading, time: float) -> JointReading:
         """What the robot reads at `time` [s] of joints and base that stand as in `reading`."""

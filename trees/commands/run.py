@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...perception.estimates import ArmPosture
 from ...perception.senses import Senses
 from ...sim.abilities import HasTiming, SupportsRecording
 from ...sim.command_line import drop_output
@@ -22,7 +23,7 @@ from ...sim.log.logged_world import logged_into
 from ...sim.record.folder_claim import FolderClaim, claim_free
 from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
-from ...sim.world import World
+from ...sim.world import Observation, World
 from ...sim.world_kind import WorldKind
 from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
@@ -174,8 +175,9 @@ def _run(
         params=given.parameters | task.parameters(options.stage),
         settings=given.settings,
         before_tick=watchers.before_tick,
+        on_sample=events.sample,
     )
-    witness = Witness()
+    witness = Witness(events.arm)
     run.context.watch_senses(witness.watch)
     directory = claim.directory
     recorder = Recorder(
@@ -256,6 +258,16 @@ class _Events:
             self.looks.event(event)
         if self.watchers is not None:
             self.watchers.event(event)
+
+    def sample(self, seen: Observation) -> None:
+        """Keep what the robot measured."""
+        if self.recorder is not None:
+            self.recorder.measured.sample(seen)
+
+    def arm(self, arm: ArmPosture) -> None:
+        """Keep an arm as it was seen."""
+        if self.recorder is not None:
+            self.recorder.measured.arm(arm.stamp, arm.side, arm.points_in_map)
 
     def progress(self, progress: Progress) -> None:
         """Write stage and skill on the video and the page, and tell the operator."""

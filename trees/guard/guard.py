@@ -74,7 +74,7 @@ class GuardedWorld:
         *,
         on_command: Callable[[Command], None] | None = None,
         before_command: Callable[[], None] = lambda: None,
-        on_sample: Callable[[], None] = lambda: None,
+        on_sample: Callable[[Observation], None] = lambda seen: None,
     ) -> None:
         self.limits = limits
         self._on_command = on_command
@@ -184,7 +184,7 @@ class GuardedWorld:
         self._opening = seen.gripper_opening
         self._judge_load(seen)
         if self._last is None or seen.time > self._last.time:
-            self._on_sample()
+            self._on_sample(seen)
             for side, arm in self._held.items():  # it goes with the hand, seen or not
                 self.zone.move_arm(arm, seen.pose_hand_in_map[SIDES.index(side), :3, 3])
             self._judge_speed(seen)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...perception.estimates import Estimate
+from ...perception.estimates import ArmPosture, Estimate
 from ...perception.senses import Senses
 from ...sim.record.record import LOOKS_FOLDER
 from ...sim.record.spool import disk_error
@@ -61,12 +61,16 @@ class Look:
 class Witness:
     """Remembers the last picture of each camera that something was asked of, with the answers.
 
+    Args:
+        on_arm: told of every arm that was seen.
+
     Attributes:
         looks: by camera.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, on_arm: Callable[[ArmPosture], None] = lambda arm: None) -> None:
         self.looks: dict[str, Look] = {}
+        self._on_arm = on_arm
         self._newest: Look | None = None
 
     def watch(self, senses: Senses) -> Senses:
@@ -75,6 +79,8 @@ class Witness:
 
     def note(self, asked: str, frame: Frame, answer: object) -> None:
         """Remember an answer, an `Estimate` or the error that came instead."""
+        if isinstance(answer, ArmPosture):
+            self._on_arm(answer)
         before = self.looks.get(frame.camera)
         known = before.findings if before is not None and before.t == frame.stamp else ()
         finding = finding_of(asked, frame, answer)

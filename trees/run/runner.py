@@ -32,7 +32,7 @@ from ...sim.record.record import RunResult
 from ...sim.scripted.clock import SteppedClock
 from ...sim.stopwatch import Stopwatch, timed
 from ...sim.waiting import wait
-from ...sim.world import SIDES, GripperOpening, World, WorldError
+from ...sim.world import SIDES, GripperOpening, Observation, World, WorldError
 from ...skills.core.context import Context
 from ...skills.core.reasons import Failure, Reason
 from ...skills.core.settings import Settings
@@ -80,6 +80,7 @@ class Run:
         settings: numbers of skills that this run sets otherwise than the tree does.
         before_tick: called before each tick; may wait, and a simulated world waits too.  An error of it ends the run
             in the safe stop.
+        on_sample: told of every observation of a new time; an error of it ends the run in the safe stop.
         wall: the clock by which the watchdog misses a tick of a world whose time passes by itself [s].
 
     Attributes:
@@ -105,6 +106,7 @@ class Run:
         limits: Limits = DEFAULT,
         settings: Settings | None = None,
         before_tick: Callable[[], None] | None = None,
+        on_sample: Callable[[Observation], None] | None = None,
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
         if not rate_hz > 0:
@@ -113,12 +115,13 @@ class Run:
         self.limits = limits
         self._stepped = isinstance(world.clock, SteppedClock)
         self._watchdog = None if self._stepped else TickWatchdog(world.stop, limits, now=wall)
+        self._on_sample = fenced(on_sample or (lambda seen: None), self.lost)
         self.guard = GuardedWorld(
             world,
             limits,
             on_command=lambda command: self.trace.command(command),
             before_command=self._beat,
-            on_sample=self._watchdog.sampled if self._watchdog else lambda: None,
+            on_sample=self._sampled,
         )
         self._period = 1.0 / rate_hz
         self.context = Context(
@@ -251,6 +254,11 @@ class Run:
         self._limit.pause()
         self.trace.sweep()
         self._announcer.sweep()
+
+    def _sampled(self, seen: Observation) -> None:
+        if self._watchdog is not None:
+            self._watchdog.sampled()
+        self._on_sample(seen)
 
     def _beat(self) -> None:
         """A sign of life to the watchdog; a motion that it has stopped is no longer under way: its skill is told."""

@@ -1,0 +1,74 @@
+"""The four steps for records of dressing runs: those of a user's own system, round after round nearer to the answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ....sim.record.recorded_stretch import Stretch
+from ..errors import GapError
+from ..measurement import Episode, MeasurementSet
+from ..own.naming import Found
+from ..own.study import OwnStudy
+from .loads import LoadPredictions
+from .system import DressingSystem, entries
+
+ROUNDS = 4
+CLOSE = 0.1  # typical sizes by which values may differ from where the world was simulated
+
+
+class DressingStudy(OwnStudy):
+    """Loads on a hand that holds an arm or a sleeve, against the dressing world led through the same motion.
+
+    Args:
+        measured: the set.
+        alpha: level of the tests.
+        cache: folder for what was simulated, or None.
+    """
+
+    system: DressingSystem
+
+    def __init__(self, measured: MeasurementSet, alpha: float = 0.05, cache: Path | None = None) -> None:
+        stretches: list[Stretch] = []
+        for e in measured.episodes:
+            if "stretch" not in e.settings:
+                raise GapError(f"{e.name}: system dressing takes records of runs, given as `run: FOLDER`")
+            stretches.append(e.settings["stretch"])
+        self.predictions = LoadPredictions(cache)
+        numbered = tuple(_numbered(e, k) for k, e in enumerate(measured.episodes))
+        system = DressingSystem(stretches, self.predictions)
+        super().__init__(replace(measured, episodes=numbered), alpha, system, "")
+
+    @cached_property
+    def _searched(self) -> tuple[Found, str]:
+        """The search's result where the world was simulated at the values found."""
+        at = dict.fromkeys((p.name for e in self.system.effects for p in e.parameters), 0.0)
+        searched = None
+        for _ in range(ROUNDS):
+            self.system.move_to(at)
+            self.__dict__.pop("sim", None)  # what it keeps was the world elsewhere
+            searched = OwnStudy._searched.func(self)
+            found = searched[0].point.values
+            simulated = [p for e in self.system.effects if not e.regressor for p in e.parameters]
+            if all(abs(found[p.name] - at[p.name]) < CLOSE * p.typical for p in simulated):
+                break
+            at = {**at, **found}
+        else:
+            self.notes.append(f"The values had not come to rest after {ROUNDS} rounds of simulation.")
+        assert searched is not None
+        return searched
+
+    def patch(self) -> dict[str, Any]:
+        """See `Study.patch`."""
+        found = entries(self.found.effects, self.found.point.values)
+        return {"system": "dressing", "effects": [e.__dict__ for e in found]}
+
+
+def _numbered(episode: Episode, k: int) -> Episode:
+    """An episode that says in a column which one it is."""
+    window = np.full(len(episode.t), float(k))
+    return replace(episode, columns={**episode.columns, "window": window})

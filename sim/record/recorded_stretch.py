@@ -1,0 +1,179 @@
+"""A stretch of a recorded run in which a hand holds something, cut out so that a model can be moved through it again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import RecordError
+from ..scene.person_spec import ARM_SEGMENTS, arm_part
+from ..scene.scene import Scene, draw_scene
+from ..world import SIDES, Side
+from ..world_kind import EASY, WorldKind
+from .measured import Measured, read_measured
+from .record import RUN_FILE, TRUTH_FILE, read_finished_run
+from .spool import DAMAGED
+
+BEFORE = 0.5  # a stretch begins so long before the hand takes hold, at rest [s]
+MOVED = 0.015  # a hand that holds an arm has turned its joints by what friction gives before it slips [m]
+SHORTEST = 1.0  # of a stretch that says something [s]
+NEEDED = ("t", "arms", "holds_arm", "gripper_closed", "person_force", "vertices")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Held:
+    """What each hand holds at each sample of a run.
+
+    Attributes:
+        part: (T, 2) index in `PERSON_PARTS` of the part of an arm, -1 none.
+        cloth: (T, 2) bool.
+    """
+
+    part: np.ndarray
+    cloth: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stretch:
+    """What was measured in a stretch, and where it began.
+
+    Attributes:
+        scene: of the run, as it was drawn: without the effects of a model file.
+        gown, person: names of them, as the run was given.
+        robot: what was measured in the stretch.
+        held: what the hands held.
+        hand: 0 left, 1 right: the one whose load is looked at.
+        arms: (2, 4, 3) of the person where it begins [m].
+        vertices: (V, 3) of the gown there [m]; None where no hand holds it.
+        looked_at: (T,) bool, samples at which model and measurement are compared.
+    """
+
+    scene: Scene
+    gown: str | None
+    person: str | None
+    robot: Measured
+    held: Held
+    hand: int
+    arms: np.ndarray
+    vertices: np.ndarray | None
+    looked_at: np.ndarray
+
+
+def read_stretch(
+    directory: Path, t0: float | None = None, t1: float | None = None, hand: Side | None = None
+) -> Stretch:
+    """The stretch of a record in which a hand holds an arm, or the gown.
+
+    Args:
+        directory: of the record.
+        t0, t1: between which samples are looked at; the first hold of an arm, where nothing is said [s].
+        hand: whose load is looked at; the one that holds, where nothing is said.
+
+    Raises:
+        RecordError: the record is missing, damaged or of another world, or no hand holds anything then.
+    """
+    (scene, gown, person), measured, truth = _scene(directory), read_measured(directory), _truth(directory)
+    frame = np.clip(np.searchsorted(truth["t"], measured.t, side="right") - 1, 0, None)
+    held = _held(truth, frame)
+    hands = range(2) if hand is None else (SIDES.index(hand),)
+    holds = [h for n in hands for h in _holds(measured.t, held, n)]
+    wanted = [h for h in holds if h.overlap(t0, t1) >= SHORTEST]
+    if t0 is None and t1 is None:
+        wanted = [h for h in wanted if h.arm]
+    if not wanted:
+        span = f" between {t0 or 0.0:g} and {t1:g} s" if t1 is not None else f" from {t0:g} s on" if t0 else ""
+        there = ", ".join(f"{SIDES[h.hand]} {h.start:.1f} to {h.end:.1f} s" for h in holds) or "none"
+        what = "an arm" if t0 is None and t1 is None else "anything"
+        raise RecordError(f"{directory}: no hand holds {what} for {SHORTEST:g} s{span} (holds: {there})")
+    hold = min(wanted, key=lambda h: (not h.arm, h.start))
+    first = int(np.searchsorted(measured.t, hold.start - BEFORE))
+    last = int(np.searchsorted(measured.t, min(hold.end, np.inf if t1 is None else t1), side="right"))
+    rows = slice(first, last)
+    t, place = measured.t[rows], measured.pose_hand[rows, hold.hand, :3]
+    taken = int(np.searchsorted(t, hold.start))
+    moved = np.linalg.norm(place - place[taken], axis=1) > (MOVED if hold.arm else 0.0)
+    looked_at = np.arange(len(t)) >= (np.flatnonzero(moved & (t > hold.start))[:1].tolist() or [len(t)])[0]
+    looked_at &= t >= (-np.inf if t0 is None else t0)
+    if not looked_at.any() or np.ptp(t[looked_at]) < SHORTEST:
+        raise RecordError(f"{directory}: the {SIDES[hold.hand]} hand hardly moves what it holds at {hold.start:.1f} s")
+    part, cloth = held.part[rows], held.cloth[rows]
+    return Stretch(
+        scene=scene,
+        gown=gown,
+        person=person,
+        robot=_cut(measured, rows),
+        held=Held(part=part, cloth=cloth),
+        hand=hold.hand,
+        arms=np.array(truth["arms"][frame[first]], float),
+        vertices=np.array(truth["vertices"][frame[first]], float) if cloth.any() else None,
+        looked_at=looked_at,
+    )
+
+
+@dataclass(frozen=True)
+class _Hold:
+    hand: int
+    start: float
+    end: float
+    arm: bool
+
+    def overlap(self, t0: float | None, t1: float | None) -> float:
+        """How long it lasts within a span [s]."""
+        return min(self.end, np.inf if t1 is None else t1) - max(self.start, -np.inf if t0 is None else t0)
+
+
+def _holds(t: np.ndarray, held: Held, hand: int) -> list[_Hold]:
+    """Every time a hand holds something, in order."""
+    kind = np.where(held.part[:, hand] >= 0, held.part[:, hand] + 1, -held.cloth[:, hand].astype(int))
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], kind, [0]))))
+    return [
+        _Hold(hand, float(t[a]), float(t[b - 1]), bool(kind[a] > 0))
+        for a, b in zip(edges[:-1], edges[1:], strict=True)
+        if kind[a]
+    ]
+
+
+def _held(truth: dict[str, np.ndarray], frame: np.ndarray) -> Held:
+    """What the hands hold at the samples; the part of an arm is the one that the hand's load is on."""
+    arm, force = np.asarray(truth["holds_arm"]), np.asarray(truth["person_force"])
+    part = np.full(arm.shape, -1)
+    for hand in range(2):
+        edges = np.flatnonzero(np.diff(np.concatenate(([-1], arm[:, hand], [-1]))))
+        for a, b in zip(edges[:-1], edges[1:], strict=True):
+            side = int(arm[a, hand])
+            if side >= 0:
+                first = arm_part(side, 0)
+                on = np.median(force[a:b, first : first + len(ARM_SEGMENTS)], axis=0)
+                part[a:b, hand] = first + int(np.argmax(on))
+    return Held(part=part[frame], cloth=np.asarray(truth["gripper_closed"], bool)[frame])
+
+
+def _cut(measured: Measured, rows: slice) -> Measured:
+    names = ("t", "pose_hand", "wrench_hand", "gripper_opening", "arm_positions", "head_pan", "pose_base")
+    return replace(measured, **{name: getattr(measured, name)[rows] for name in names})
+
+
+def _scene(directory: Path) -> tuple[Scene, str | None, str | None]:
+    run = read_finished_run(directory)
+    given, seed = run.get("parameters"), run.get("seed")
+    if not isinstance(given, dict) or not isinstance(seed, int):
+        raise RecordError(f"{directory / RUN_FILE} is damaged: it has no seed or no parameters")
+    if run.get("world") != "bullet":
+        raise RecordError(f"{directory} was run on {run.get('world')!r}, only records of the bullet world can be used")
+    gown, person = given.get("gown"), given.get("person")
+    return draw_scene(seed, gown, person, WorldKind.named(given.get("world_kind", EASY))), gown, person
+
+
+def _truth(directory: Path) -> dict[str, np.ndarray]:
+    path = directory / TRUTH_FILE
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
+            return {name: stored[name] for name in NEEDED}
+    except FileNotFoundError:
+        raise RecordError(f"{directory} holds no {TRUTH_FILE}: it tells where arms and gown were") from None
+    except KeyError as error:
+        raise RecordError(f"{path} lacks {str(error).split(' ')[0].strip(chr(34) + chr(39))}") from error
+    except DAMAGED as error:
+        raise RecordError(f"{path} is damaged and cannot be read: {error}") from error
