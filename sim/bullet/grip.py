@@ -119,9 +119,7 @@ class Grip:
         if opening < now_open - 0.003:
             self._open_before, self._armed = now_open, True
 
-    def catch_arm(
-        self, pose_hand_in_map: np.ndarray, opening: float, force: float, only: int | None = None
-    ) -> bool:
+    def catch_arm(self, pose_hand_in_map: np.ndarray, opening: float, force: float, only: int | None = None) -> bool:
         """Take the arm if its axis runs between the closing fingers and they touch it; tells whether it did.
 
         Args:

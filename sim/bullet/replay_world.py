@@ -94,7 +94,9 @@ class ReplayWorld(BulletWorld):
                 loads[row] = [grip.load for grip in self._grips] + self._contact.wrench(self._hands)[:, :3]
                 arms[row] = self._person.arms()
                 row += 1
-            elif still[row] and still[row - 1]:  # nothing changes: on to the next sample, at the same place in the cycle
+            elif (
+                still[row] and still[row - 1]
+            ):  # nothing changes: on to the next sample, at the same place in the cycle
                 cycles = max(1, int((t[row] - self.time.time) / TIME_STEP / CONTROL_STEPS))
                 self._steps += cycles * CONTROL_STEPS
                 self.time.time = self._steps * TIME_STEP
@@ -185,7 +187,9 @@ class _Places:
         rows = len(robot.t)
         self._shape = robot.arm_positions.shape[1:]
         together = np.column_stack((robot.arm_positions.reshape(rows, -1), robot.head_pan, robot.pose_base))
-        self._smooth = CubicSpline(robot.t, together)
+        # between two steps of the simulated robot, its sensors already say where the step under way will have led
+        step = ROBOT_STEPS * TIME_STEP
+        self._smooth = CubicSpline(np.ceil(robot.t / step - 1e-6) * step, together)
         self._t, self._opening = robot.t, robot.gripper_opening
 
     def at(self, time: float) -> JointReading:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -130,7 +131,7 @@ def _holds(t: np.ndarray, held: Held, hand: int) -> list[_Hold]:
     edges = np.flatnonzero(np.diff(np.concatenate(([0], kind, [0]))))
     return [
         _Hold(hand, float(t[a]), float(t[b - 1]), bool(kind[a] > 0))
-        for a, b in zip(edges[:-1], edges[1:], strict=True)
+        for a, b in pairwise(edges)
         if kind[a]
     ]
 
@@ -141,7 +142,7 @@ def _held(truth: dict[str, np.ndarray], frame: np.ndarray) -> Held:
     part = np.full(arm.shape, -1)
     for hand in range(2):
         edges = np.flatnonzero(np.diff(np.concatenate(([-1], arm[:, hand], [-1]))))
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in pairwise(edges):
             side = int(arm[a, hand])
             if side >= 0:
                 first = arm_part(side, 0)

@@ -34,9 +34,7 @@ class SensorErrors:
         late: what there was to see before, in a world whose images are late.
     """
 
-    def __init__(
-        self, seed: int, kind: WorldKind, sizes: Sizes = SIZES, bias: np.ndarray | None = None
-    ) -> None:
+    def __init__(self, seed: int, kind: WorldKind, sizes: Sizes = SIZES, bias: np.ndarray | None = None) -> None:
         def drawn(difficulty: str) -> np.random.Generator | None:
             return stream(seed, difficulty) if kind.has(difficulty) else None
 

@@ -15,16 +15,24 @@ from ....sim.record.recorded_stretch import Stretch
 
 CHANNELS = ("fx", "fy", "fz")  # load on the hand along the map's axes [N]
 TURN = tuple(f"r{i}{k}" for i in range(3) for k in range(3))  # orientation of the hand in the map, row by row
+TICKS = 4  # samples that are averaged, 0.27 s: the simulated robot's servo shakes a moved load by 0.5 N, faster than that
 HAND = "hand"  # 0 left, 1 right
 
 
 def columns_of(stretch: Stretch) -> dict[str, np.ndarray]:
-    """Columns of an episode, (T,) each, at the samples that are looked at."""
+    """Columns of an episode, (n,) each: means of every few of the samples that are looked at."""
     rows, hand = stretch.looked_at, stretch.hand
     load = stretch.robot.wrench_hand[rows, hand, :3]
     turn = Rotation.from_quat(stretch.robot.pose_hand[rows, hand, 3:]).as_matrix().reshape(-1, 9)
     out = {"t": stretch.robot.t[rows].astype(float), HAND: np.full(len(load), float(hand))}
-    return out | dict(zip(CHANNELS, load.T, strict=True)) | dict(zip(TURN, turn.T, strict=True))
+    out |= dict(zip(CHANNELS, load.T, strict=True)) | dict(zip(TURN, turn.T, strict=True))
+    return {name: averaged(x) for name, x in out.items()}
+
+
+def averaged(x: np.ndarray) -> np.ndarray:
+    """Means (n, ...) of every `TICKS` samples of (T, ...)."""
+    n = len(x) // TICKS
+    return x[: n * TICKS].reshape(n, TICKS, *x.shape[1:]).mean(axis=1)
 
 
 class LoadPredictions:
@@ -40,7 +48,7 @@ class LoadPredictions:
         self.simulated = 0
 
     def load(self, stretch: Stretch, effects: tuple[EffectEntry, ...]) -> np.ndarray:
-        """(T, 3) load on the hand at the samples that are looked at [N].
+        """(n, 3) load on the hand where `columns_of` has its rows [N].
 
         Args:
             stretch: of a record.
@@ -51,7 +59,7 @@ class LoadPredictions:
         """
         key = _key(stretch, effects)
         if key not in self._kept:
-            self._kept[key] = self._found(stretch, effects, key)
+            self._kept[key] = averaged(self._found(stretch, effects, key))
         return self._kept[key]
 
     def _found(self, stretch: Stretch, effects: tuple[EffectEntry, ...], key: str) -> np.ndarray:

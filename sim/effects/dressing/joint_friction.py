@@ -26,7 +26,8 @@ class JointFriction(DressingEffect):
         person, more = scene.person, values["torque"]
         shoulder, elbow = person.dry_friction
         stiff = {
-            side: replace(each, dry_friction=max(each.dry_friction + more, LEAST)) for side, each in person.stiff.items()
+            side: replace(each, dry_friction=max(each.dry_friction + more, LEAST))
+            for side, each in person.stiff.items()
         }
         friction = (max(shoulder + more, LEAST), elbow)
         return replace(scene, person=replace(person, dry_friction=friction, stiff=stiff))

@@ -1,0 +1,48 @@
+"""A recorded lift, once more: what the hand feels is what this model's arm weighs."""
+
+import numpy as np
+import pytest
+from caretree.sim.bullet.replay_world import ReplayWorld, replayed
+from caretree.sim.effects.model_file import EffectEntry, EffectModel
+from caretree.sim.record.recorded_stretch import read_stretch
+from caretree.sim.scene.scene import draw_scene
+
+from ..record.recorded_lift import write_record
+from ..record.test_measured import ARMS
+
+
+@pytest.fixture(scope="module")
+def stretch(tmp_path_factory):
+    """A lift over the arms as they lie in this world."""
+    folder = tmp_path_factory.mktemp("lift")
+    first = ReplayWorld(read_stretch(write_record(folder, ARMS)))
+    arms = first._person.arms()
+    first.close()
+    # where the arms lay before the made up posture was put on: draw the room once more, without it
+    return read_stretch(write_record(folder, arms))
+
+
+def with_effect(name, target, **parameters):
+    entry = EffectEntry(name=name, target=target, parameters=parameters)
+    return EffectModel(system="dressing", base={}, recalibration=(), effects=(entry,))
+
+
+def test_the_arm_comes_along_and_weighs_on_the_hand(stretch):
+    answer = replayed(stretch)
+    moved = answer.arms[-1, 1, 1] - answer.arms[0, 1, 1]
+    assert moved[2] == pytest.approx(0.08, abs=0.02)
+    assert answer.load[0, 0] == pytest.approx((0, 0, 0), abs=1e-9)
+    assert -25.0 < answer.load[-1, 0, 2] < -3.0
+    assert np.abs(answer.load[:, 1]).max() < 1e-9  # the other hand holds nothing
+
+
+def test_the_same_question_has_the_same_answer(stretch):
+    np.testing.assert_array_equal(replayed(stretch).load, replayed(stretch).load)
+
+
+def test_a_heavier_arm_weighs_more(stretch):
+    plain, heavy = replayed(stretch), replayed(stretch, with_effect("arm_weight", "arms", mass=0.3))
+    more = plain.load[-1, 0, 2] - heavy.load[-1, 0, 2]
+    arm = draw_scene(100).person.arm_masses.sum()
+    assert arm < 1.2
+    assert 0.4 * 0.3 * 9.81 < more < 1.2 * 0.3 * 9.81
