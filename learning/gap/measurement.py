@@ -222,7 +222,7 @@ def _run_episode(file: Path, entry: Any, shared: tuple[Phase, ...]) -> Episode:
         span.append(None if x is None else float(x))
     path = file.parent / name
     try:
-        stretch = read_stretch(path, *span, hand)
+        stretch = read_stretch(path, span[0], span[1], hand)
     except CaretreeError as error:
         raise GapError(f"{file}: {error}") from None
     at = "" if span[0] is None else f"@{span[0]:g}"

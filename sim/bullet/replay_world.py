@@ -1,4 +1,4 @@
-"""The dressing world, led once more through a stretch of a recorded run: what the hands hold answers as the model has it.
+"""The dressing world, led once more through a stretch of a recorded run: what hands hold answers as the model has it.
 
 The robot's joints go where they were measured; links touch the person, and hands take hold and let go, as in a run.
 Motors, controllers and the tree are not simulated: they are all in the path that the joints really took.  Loads and
@@ -109,7 +109,8 @@ class ReplayWorld(BulletWorld):
         reading = replace(
             self._places.at(self._start), arm_positions=READY, pose_base_in_map=np.array(pose_base_in_map)
         )
-        return _LedRobot(self.kinematics, reading)
+        self._led = _LedRobot(self.kinematics, reading)
+        return self._led
 
     def _settle(self, duration: float) -> None:
         if self._stretch.vertices is None and self._cloth.body >= 0:  # the gown plays no part
@@ -119,9 +120,9 @@ class ReplayWorld(BulletWorld):
     def _step_robot(self) -> None:
         self._meet()
         time = self.time.time + ROBOT_STEPS * TIME_STEP
-        self._robot.reading = self._reading = reading = self._places.at(time)
+        self._led.reading = self._reading = reading = self._places.at(time)
         self._contact.watch(time, reading)
-        self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+        self._hands = np.stack([self._led.pose_hand_in_map(side, reading) for side in SIDES])
 
     def _update_grips(self, reading: JointReading) -> None:
         """Let the fingers close and open when they did."""

@@ -1,4 +1,4 @@
-"""A stretch of a recorded run in which a hand holds something, cut out so that a model can be moved through it again."""
+"""A stretch of a recorded run in which a hand holds something, cut out so that a model can go through it again."""
 
 from __future__ import annotations
 
@@ -69,7 +69,8 @@ def read_stretch(
 
     Args:
         directory: of the record.
-        t0, t1: between which samples are looked at; the first hold of an arm, where nothing is said [s].
+        t0: from when on samples are looked at; the first hold of an arm, where neither time is given [s].
+        t1: until when [s].
         hand: whose load is looked at; the one that holds, where nothing is said.
 
     Raises:
@@ -129,11 +130,7 @@ def _holds(t: np.ndarray, held: Held, hand: int) -> list[_Hold]:
     """Every time a hand holds something, in order."""
     kind = np.where(held.part[:, hand] >= 0, held.part[:, hand] + 1, -held.cloth[:, hand].astype(int))
     edges = np.flatnonzero(np.diff(np.concatenate(([0], kind, [0]))))
-    return [
-        _Hold(hand, float(t[a]), float(t[b - 1]), bool(kind[a] > 0))
-        for a, b in pairwise(edges)
-        if kind[a]
-    ]
+    return [_Hold(hand, float(t[a]), float(t[b - 1]), bool(kind[a] > 0)) for a, b in pairwise(edges) if kind[a]]
 
 
 def _held(truth: dict[str, np.ndarray], frame: np.ndarray) -> Held:

@@ -15,7 +15,9 @@ from ....sim.record.recorded_stretch import Stretch
 
 CHANNELS = ("fx", "fy", "fz")  # load on the hand along the map's axes [N]
 TURN = tuple(f"r{i}{k}" for i in range(3) for k in range(3))  # orientation of the hand in the map, row by row
-TICKS = 4  # samples that are averaged, 0.27 s: the simulated robot's servo shakes a moved load by 0.5 N, faster than that
+TICKS = (
+    4  # samples that are averaged, 0.27 s: the simulated robot's servo shakes a moved load by 0.5 N, faster than that
+)
 HAND = "hand"  # 0 left, 1 right
 
 

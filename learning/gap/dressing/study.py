@@ -50,7 +50,7 @@ class DressingStudy(OwnStudy):
         searched = None
         for _ in range(ROUNDS):
             self.system.move_to(at)
-            self.__dict__.pop("sim", None)  # what it keeps was the world elsewhere
+            vars(self).pop("sim", None)  # what it keeps was the world elsewhere
             searched = OwnStudy._searched.func(self)
             found = searched[0].point.values
             simulated = [p for e in self.system.effects if not e.regressor for p in e.parameters]

@@ -1,7 +1,11 @@
 """A recorded lift, once more: what the hand feels is what this model's arm weighs."""
 
+from contextlib import closing
+from unittest.mock import patch
+
 import numpy as np
 import pytest
+from caretree.sim.bullet import replay_world
 from caretree.sim.bullet.replay_world import ReplayWorld, replayed
 from caretree.sim.effects.model_file import EffectEntry, EffectModel
 from caretree.sim.record.recorded_stretch import read_stretch
@@ -15,10 +19,9 @@ from ..record.test_measured import ARMS
 def stretch(tmp_path_factory):
     """A lift over the arms as they lie in this world."""
     folder = tmp_path_factory.mktemp("lift")
-    first = ReplayWorld(read_stretch(write_record(folder, ARMS)))
-    arms = first._person.arms()
-    first.close()
-    # where the arms lay before the made up posture was put on: draw the room once more, without it
+    begun = read_stretch(write_record(folder, ARMS))
+    with patch.object(replay_world, "put_arms"), closing(ReplayWorld(begun)) as world:
+        arms = world._person.arms()
     return read_stretch(write_record(folder, arms))
 
 
