@@ -20,7 +20,7 @@ import numpy as np
 from ..bullet_client import direct_client
 from ..effects.cloth.gown_patch import gown_effects, with_air
 from ..effects.cloth.proxy_bodies import ClothPatch
-from ..effects.dressing.dressing_registry import changed_scene, load_cell_bias
+from ..effects.dressing.dressing_model import changed_scene, load_cell_bias
 from ..effects.effect import EffectError
 from ..effects.model_file import EffectModel, load_model
 from ..errors import CaretreeError

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from caretree.sim.effects.dressing.dressing_registry import DRESSING_EFFECTS, changed_scene, load_cell_bias
+from caretree.sim.effects.dressing.dressing_model import changed_scene, load_cell_bias
+from caretree.sim.effects.dressing.dressing_registry import DRESSING_EFFECTS
 from caretree.sim.effects.effect import EffectError
 from caretree.sim.effects.model_file import EffectEntry, EffectModel, load_model, save_model
 from caretree.sim.scene.scene import draw_scene
