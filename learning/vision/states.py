@@ -24,6 +24,14 @@ from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import BED_TOP, RAIL_HEIGHT, Scene, draw_scene
 
 KINDS = ("hung", "held", "laid", "worn")
+# What each state of the room shows, and for every how many rooms it is made.
+PREPARED = {
+    InitialState.GOWN_ON_HOOK: ("hung", 1),
+    InitialState.GOWN_IN_HANDS: ("held", 1),
+    InitialState.GOWN_ON_PERSON: ("laid", 2),
+    InitialState.GOWN_WORN: ("worn", 3),
+    InitialState.GOWN_DRESSED: ("worn", 3),
+}
 TEST_SEEDS = 5  # every fifth seed of the room is for tests: 104, 109, 114 ...
 FRAMES = 60  # taken from a recorded run
 HUNG_HIGH = 0.02  # of a gown that hangs on its hook, its highest vertex is this near to the hook's height at least [m]
@@ -84,9 +92,8 @@ def prepared(seed: int, state: InitialState, gown: str | None = None) -> RoomSta
     try:
         world.set_initial_state(state)
         frame = world.truth_frame()
-        kinds = dict(zip(InitialState, KINDS, strict=True))
         return RoomState(
-            kind=kinds[state],
+            kind=PREPARED[state][0],
             seed=seed,
             gown=world.scene.gown.name,
             person=world.scene.person.name,
@@ -193,7 +200,8 @@ def make_states(
 
     Args:
         folder: made when it is not there.
-        seeds: of rooms; every one is prepared hung and in hands, every second one laid and every third one worn.
+        seeds: of rooms; every one is prepared hung and in hands, every second one laid and every third one worn,
+            as the sleeves slip and as they sit.
         runs: folders of recorded runs.
         gowns: cuts of which each is prepared in every state, with the first seeds for tests.
         say: takes lines of progress.
@@ -203,7 +211,7 @@ def make_states(
     jobs: list[tuple[str, Callable[[], list[RoomState]]]] = []
     seeds = list(seeds)
     for k, seed in enumerate(seeds):
-        for state, every in zip(InitialState, (1, 1, 2, 3), strict=True):
+        for state, (_, every) in PREPARED.items():
             test = seed % TEST_SEEDS == TEST_SEEDS - 1
             if k % every == 0 or test:
                 jobs.append((f"{seed:04d}_{state}", lambda s=seed, at=state: [prepared(s, at)]))
