@@ -8,7 +8,6 @@ from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.record.measured import MeasuredLog
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.model import READY
-from caretree.sim.scene.scene import room_map
 from scipy.spatial.transform import Rotation
 
 RATE = 15.0
@@ -31,10 +30,9 @@ def hand_path(elbow, along):
 
 def joints_for(poses, base):
     """(T, 7) joint angles of the left arm for hand poses, by damped least squares from starts drawn at random."""
-    rng, first = np.random.default_rng(0), None
-    while first is None:
-        first = _joints(poses[0], base, READY[0] + rng.normal(size=7) * 0.5, 100)
-    out = [first]
+    rng = np.random.default_rng(0)
+    starts = (_joints(poses[0], base, READY[0] + rng.normal(size=7) * 0.5, 100) for _ in range(100))
+    out = [next(joints for joints in starts if joints is not None)]
     for pose in poses[1:]:
         out.append(_joints(pose, base, out[-1], 30))
     return np.array(out)
@@ -58,7 +56,7 @@ def write_record(folder, arms, seed=100, load=None):
     """Write run.json, truth.npz and measured.npz of the lift; `load` (T, 3) is what the left hand felt [N]."""
     upper = arms[1, 1] - arms[1, 0]
     t, poses, opening = hand_path(arms[1, 1] - 0.01 * upper / np.linalg.norm(upper), upper / np.linalg.norm(upper))
-    base = np.array(room_map().waypoints["bed_right"])
+    base = np.array((1.05, -0.38, np.pi))  # where a robot stands that lifts the right arm [m, m, rad]
     left = joints_for(poses, base)
     right = kinematics_of(BAXTER).pose_hand_in_map("right", READY[1], base)
     log = MeasuredLog()
