@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..errors import RecordError
 from ..world import SIDES, Observation, Side
@@ -70,7 +69,7 @@ class MeasuredLog:
         if not self._rows:
             return
         poses = np.array([seen.pose_hand_in_map for seen in self._rows])
-        turns = Rotation.from_matrix(poses[..., :3, :3].reshape(-1, 3, 3)).as_quat()
+        turns = _quaternions(poses[..., :3, :3])
         arms = self._arms
         path = directory / MEASURED_FILE
         part = path.with_name(path.name + ".part")
@@ -79,7 +78,7 @@ class MeasuredLog:
                 np.savez_compressed(
                     file,
                     t=np.array([seen.time for seen in self._rows]),
-                    pose_hand=np.concatenate([poses[..., :3, 3], turns.reshape(-1, 2, 4)], axis=2),
+                    pose_hand=np.concatenate([poses[..., :3, 3], turns], axis=2),
                     wrench_hand=np.array([seen.wrench_hand_in_map for seen in self._rows]),
                     gripper_opening=np.array([seen.gripper_opening for seen in self._rows]),
                     arm_positions=np.array([seen.arm_positions for seen in self._rows]),
@@ -93,6 +92,17 @@ class MeasuredLog:
         except OSError as error:
             part.unlink(missing_ok=True)
             raise disk_error(error, f"writing {path}") from error
+
+
+def _quaternions(turns: np.ndarray) -> np.ndarray:
+    """(..., 4) quaternions x, y, z, w of rotations (..., 3, 3), exact for half turns too; the core has no scipy.
+
+    Each is the eigenvector of the greatest eigenvalue of a symmetric matrix (Bar-Itzhack, 2000).
+    """
+    (a, b, c), (d, e, f), (g, h, k) = np.moveaxis(turns, (-2, -1), (0, 1))
+    rows = ((a - e - k, b + d, c + g, h - f), (b + d, e - a - k, f + h, c - g), (c + g, f + h, k - a - e, d - b))
+    rows = (*rows, (h - f, c - g, d - b, a + e + k))
+    return np.linalg.eigh(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))[1][..., :, -1]
 
 
 def read_measured(directory: Path) -> Measured:

@@ -79,17 +79,7 @@ def read_stretch(
     (scene, gown, person), measured, truth = _scene(directory), read_measured(directory), _truth(directory)
     frame = np.clip(np.searchsorted(truth["t"], measured.t, side="right") - 1, 0, None)
     held = _held(truth, frame)
-    hands = range(2) if hand is None else (SIDES.index(hand),)
-    holds = [h for n in hands for h in _holds(measured.t, held, n)]
-    wanted = [h for h in holds if h.overlap(t0, t1) >= SHORTEST]
-    if t0 is None and t1 is None:
-        wanted = [h for h in wanted if h.arm]
-    if not wanted:
-        span = f" between {t0 or 0.0:g} and {t1:g} s" if t1 is not None else f" from {t0:g} s on" if t0 else ""
-        there = ", ".join(f"{SIDES[h.hand]} {h.start:.1f} to {h.end:.1f} s" for h in holds) or "none"
-        what = "an arm" if t0 is None and t1 is None else "anything"
-        raise RecordError(f"{directory}: no hand holds {what} for {SHORTEST:g} s{span} (holds: {there})")
-    hold = min(wanted, key=lambda h: (not h.arm, h.start))
+    hold = _first_hold(directory, measured.t, held, (t0, t1), hand)
     first = int(np.searchsorted(measured.t, hold.start - BEFORE))
     last = int(np.searchsorted(measured.t, min(hold.end, np.inf if t1 is None else t1), side="right"))
     rows = slice(first, last)
@@ -124,6 +114,24 @@ class _Hold:
     def overlap(self, t0: float | None, t1: float | None) -> float:
         """How long it lasts within a span [s]."""
         return min(self.end, np.inf if t1 is None else t1) - max(self.start, -np.inf if t0 is None else t0)
+
+
+def _first_hold(
+    directory: Path, t: np.ndarray, held: Held, span: tuple[float | None, float | None], hand: Side | None
+) -> _Hold:
+    """The first time that a hand holds an arm, or in a given span anything, for long enough."""
+    t0, t1 = span
+    hands = range(2) if hand is None else (SIDES.index(hand),)
+    holds = [h for n in hands for h in _holds(t, held, n)]
+    wanted = [h for h in holds if h.overlap(t0, t1) >= SHORTEST]
+    if t0 is None and t1 is None:
+        wanted = [h for h in wanted if h.arm]
+    if not wanted:
+        when = f" between {t0 or 0.0:g} and {t1:g} s" if t1 is not None else f" from {t0:g} s on" if t0 else ""
+        there = ", ".join(f"{SIDES[h.hand]} {h.start:.1f} to {h.end:.1f} s" for h in holds) or "none"
+        what = "an arm" if t0 is None and t1 is None else "anything"
+        raise RecordError(f"{directory}: no hand holds {what} for {SHORTEST:g} s{when} (holds: {there})")
+    return min(wanted, key=lambda h: (not h.arm, h.start))
 
 
 def _holds(t: np.ndarray, held: Held, hand: int) -> list[_Hold]:

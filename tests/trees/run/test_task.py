@@ -85,8 +85,7 @@ def test_a_whole_task_begins_where_its_file_says(tmp_path):
     path = tmp_path / "mine.py"
     path.write_text(f"{GOOD}\n\nBEGINS = 'gown_worn'\n")
     assert load_task(str(path)).initial_state(None) == "gown_worn"
-    with pytest.raises(CaretreeError, match="task 'mine' begins with 'gown_worn', but ScriptedWorld has one begin"):
-        prepare_stage(ScriptedWorld(), load_task(str(path)), None)
+    prepare_stage(ScriptedWorld(), load_task(str(path)), None)  # a room that cannot be prepared is taken as it is
     path.write_text(f"{GOOD}\n\nBEGINS = 3\n")
     with pytest.raises(TaskError, match="BEGINS is the name of a state of the world, not int"):
         load_task(str(path))

@@ -4,8 +4,8 @@
 |---|---|---|
 | take_down | takes both ends of the neckline, outside to the front, and lifts the gown off its hook | take_down.py |
 | lay | stretches the neckline and lays the gown on the person, arms bare | lay.py |
-| dress | one arm after the other: lifts it, draws the sleeve over the hand and up to the shoulder | dress.py, arm.py |
-| spread | draws the front flat and to the middle, slipped sleeves up, and lays the collar straight | spread.py |
+| dress | one arm after the other: lifts it, draws the sleeve up; then the front flat | dress.py, arm.py |
+| spread | draws the gown to the middle, sleeves that have slipped down up, and lays the collar straight | spread.py |
 
 What is owed whenever a stage fails is in safe.py, every number in tuning.py.
 """

@@ -21,7 +21,6 @@ from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
 from .arm import arm_scope, back_off, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
-from .draw_flat import DrawFlat
 from .draw_over import DrawOver
 from .tuning import DRESSING
 
@@ -50,7 +49,6 @@ def spread(context: Context) -> Stage:
     return timed_stage(
         "spread",
         arm_lies(context, "left"),
-        flat(context),
         arm_lies(context, "right"),
         *go_to_head(bed),
         Retry("until it is neat", neaten(context, bed), attempts=DRESSING.neaten_attempts),
@@ -89,14 +87,6 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
         put_down("first", arm),
         back_off("leave", arm, DRESSING.back_off_distance),
     )
-
-
-def flat(context: Context) -> Behaviour:
-    """From where the left arm was dressed, draw folds out of the front; where it cannot be done, the rest may do."""
-    front = arm_scope(context, "front", "left")
-    draw = DrawFlat("draw flat", front, hand=front["pulling"])
-    drawn = sequence("draw it flat", draw, back_off("off the front", front))
-    return fallback("no folds", drawn, back_off("leave the front", front))
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
