@@ -9,7 +9,6 @@ from caretree.sim.bullet import replay_world
 from caretree.sim.bullet.replay_world import ReplayWorld, replayed
 from caretree.sim.effects.model_file import EffectEntry, EffectModel
 from caretree.sim.record.recorded_stretch import read_stretch
-from caretree.sim.scene.scene import draw_scene
 
 from ..record.recorded_lift import write_record
 from ..record.test_measured import ARMS
@@ -35,7 +34,7 @@ def test_the_arm_comes_along_and_weighs_on_the_hand(stretch):
     moved = answer.arms[-1, 1, 1] - answer.arms[0, 1, 1]
     assert moved[2] == pytest.approx(0.08, abs=0.02)
     assert answer.load[0, 0] == pytest.approx((0, 0, 0), abs=1e-9)
-    assert -25.0 < answer.load[-1, 0, 2] < -3.0
+    assert -35.0 < answer.load[-1, 0, 2] < -3.0, "weight, and the dry friction against which it was lifted"
     assert np.abs(answer.load[:, 1]).max() < 1e-9  # the other hand holds nothing
 
 
@@ -45,7 +44,8 @@ def test_the_same_question_has_the_same_answer(stretch):
 
 def test_a_heavier_arm_weighs_more(stretch):
     plain, heavy = replayed(stretch), replayed(stretch, with_effect("arm_weight", "arms", mass=0.3))
-    more = plain.load[-1, 0, 2] - heavy.load[-1, 0, 2]
-    arm = draw_scene(100).person.arm_masses.sum()
-    assert arm < 1.2
-    assert 0.4 * 0.3 * 9.81 < more < 1.2 * 0.3 * 9.81
+    rises = np.flatnonzero(np.diff(plain.arms[:, 1, 1, 2]) > 0.002)[
+        5:
+    ]  # at first, and at rest, dry friction may carry it
+    more = np.mean((plain.load - heavy.load)[rises, 0, 2])
+    assert 0.5 * 0.3 * 9.81 < more < 2.0 * 0.3 * 9.81

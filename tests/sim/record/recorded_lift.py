@@ -8,6 +8,7 @@ from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.record.measured import MeasuredLog
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.model import READY
+from caretree.sim.scene.scene import room_map
 from scipy.spatial.transform import Rotation
 
 RATE = 15.0
@@ -56,7 +57,7 @@ def write_record(folder, arms, seed=100, load=None):
     """Write run.json, truth.npz and measured.npz of the lift; `load` (T, 3) is what the left hand felt [N]."""
     upper = arms[1, 1] - arms[1, 0]
     t, poses, opening = hand_path(arms[1, 1] - 0.01 * upper / np.linalg.norm(upper), upper / np.linalg.norm(upper))
-    base = np.array((1.05, -0.38, np.pi))  # where a robot stands that lifts the right arm [m, m, rad]
+    base = np.array(room_map().waypoints["bed_right"])
     left = joints_for(poses, base)
     right = kinematics_of(BAXTER).pose_hand_in_map("right", READY[1], base)
     log = MeasuredLog()

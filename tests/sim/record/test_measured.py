@@ -5,7 +5,11 @@ from caretree.sim.record.measured import MeasuredLog, read_measured
 
 from .recorded_lift import write_record
 
-ARMS = np.array((((-0.2, -0.5, 0.7), (-0.3, -0.3, 0.67), (-0.4, -0.1, 0.66), (-0.45, 0.05, 0.65)),) * 2) * (1, 1, 1)
+ARMS = np.array((((-0.2, -0.5, 0.7), (-0.35, -0.33, 0.67), (-0.48, -0.15, 0.66), (-0.55, -0.02, 0.65)),) * 2) * (
+    1,
+    1,
+    1,
+)
 ARMS[1, :, 0] *= -1
 
 
