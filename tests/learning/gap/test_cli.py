@@ -104,5 +104,5 @@ def test_a_set_of_ones_own_system_says_how_to_name_its_class(slider_set, tmp_pat
     assert main(["run", folder, "--out", out]) == 2
     assert "--system path.py:Class" in capsys.readouterr().err
     assert main(["run", folder, "--system", kind.replace(":Slider", ":Plain"), "--out", out]) == 2
-    assert "system is 'slider', it must be one of arm, axis, fall, cloth, plain" in capsys.readouterr().err
+    assert "system is 'slider', it must be one of arm, axis, fall, cloth, dressing, plain" in capsys.readouterr().err
     assert main(["export", out, "--to", "x.urdf"]) == 2
