@@ -116,13 +116,7 @@ def put_on_by_hand(
         if k % 5 == 0:
             person.resist()
         step()
-    for group in pins:
-        cloth.unpin(group)
-    person.brace(False)
-    for k in range(round((_FALL if person.spec.falls else _REST) / time_step)):
-        if k % 5 == 0:
-            person.resist()
-        step()
+    _let_go(cloth, person, pins, step, time_step)
 
 
 def dress_by_hand(
@@ -166,13 +160,7 @@ def dress_by_hand(
     carry(starts, ends, drawing)
     carry(ends, ends, _LOWERING, lower=True)
     carry(ends, behind, _BEHIND / _SPEED)
-    for group in pins:
-        cloth.unpin(group)
-    person.brace(False)
-    for k in range(round((_FALL if person.spec.falls else _REST) / time_step)):
-        if k % 5 == 0:
-            person.resist()
-        step()
+    _let_go(cloth, person, pins, step, time_step)
 
 
 def _take_straps(
@@ -196,6 +184,19 @@ def _take_straps(
         pins.append(cloth.pin(near, handle.body, handle.link))
         starts.append(pose[:3, 3].copy())
     return pins, starts
+
+
+def _let_go(
+    cloth: ClothBody, person: Person, pins: list[list[int]], step: Callable[[], None], time_step: float
+) -> None:
+    """Let both straps go, and the arms carry themselves, until all is at rest."""
+    for group in pins:
+        cloth.unpin(group)
+    person.brace(False)
+    for k in range(round((_FALL if person.spec.falls else _REST) / time_step)):
+        if k % 5 == 0:
+            person.resist()
+        step()
 
 
 def _off_shoulders(person: Person, offsets: Sequence[np.ndarray]) -> list[np.ndarray]:

@@ -13,7 +13,8 @@ import numpy as np
 from ..errors import RecordError
 from ..world import SIDES, Observation, Side
 from .record import MEASURED_FILE
-from .spool import DAMAGED, disk_error
+from .spool import disk_error
+from .stored_arrays import stored_arrays
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,17 +113,8 @@ def read_measured(directory: Path) -> Measured:
         RecordError: the record has no such file, or it is damaged.
     """
     path = directory / MEASURED_FILE
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            found = Measured(**{name: stored[name] for name in Measured.__dataclass_fields__})
-    except FileNotFoundError:
-        raise RecordError(
-            f"{directory} holds no {MEASURED_FILE}: the run was cut short, or is older than that file"
-        ) from None
-    except KeyError as error:
-        raise RecordError(f"{path} lacks {str(error).split(' ')[0].strip(chr(34) + chr(39))}") from error
-    except DAMAGED as error:
-        raise RecordError(f"{path} is damaged and cannot be read: {error}") from error
+    missing = ": the run was cut short, or is older than that file"
+    found = Measured(**stored_arrays(path, Measured.__dataclass_fields__, missing))
     rows, looks = len(found.t), len(found.arm_t)
     joints = found.arm_positions.shape[-1:]
     asked = ((rows,), (rows, 2, 7), (rows, 2, 6), (rows, 2), (rows, 2, *joints), (rows,), (rows, 3))

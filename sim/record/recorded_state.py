@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import RecordError
 from .record import SPOOL_FOLDER, TRUTH_FILE
-from .spool import DAMAGED, open_spool
+from .spool import open_spool
+from .stored_arrays import stored_arrays
 
 NEEDED = ("t", "vertices", "arms", "gripper_closed", "holds_arm", "robot_capsules")
 
@@ -66,12 +67,4 @@ def _frames(directory: Path) -> dict[str, np.ndarray]:
     if not path.exists() and (directory / SPOOL_FOLDER).exists():
         _static, rows = open_spool(directory / SPOOL_FOLDER)
         return {name: rows[name] for name in NEEDED}
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            return {name: stored[name] for name in NEEDED}
-    except FileNotFoundError:
-        raise RecordError(f"{directory} holds no {TRUTH_FILE}, so nothing can begin there") from None
-    except KeyError as error:
-        raise RecordError(f"{path} lacks {str(error).split(' ')[0].strip(chr(34) + chr(39))}") from error
-    except DAMAGED as error:
-        raise RecordError(f"{path} is damaged and cannot be read: {error}") from error
+    return stored_arrays(path, NEEDED, ", so nothing can begin there")

@@ -15,7 +15,7 @@ from ..world import SIDES, Side
 from ..world_kind import EASY, WorldKind
 from .measured import Measured, read_measured
 from .record import RUN_FILE, TRUTH_FILE, read_finished_run
-from .spool import DAMAGED
+from .stored_arrays import stored_arrays
 
 BEFORE = 0.5  # a stretch begins so long before the hand takes hold, at rest [s]
 MOVED = 0.015  # a hand that holds an arm has turned its joints by what friction gives before it slips [m]
@@ -76,7 +76,8 @@ def read_stretch(
     Raises:
         RecordError: the record is missing, damaged or of another world, or no hand holds anything then.
     """
-    (scene, gown, person), measured, truth = _scene(directory), read_measured(directory), _truth(directory)
+    (scene, gown, person), measured = _scene(directory), read_measured(directory)
+    truth = stored_arrays(directory / TRUTH_FILE, NEEDED, ": it tells where arms and gown were")
     frame = np.clip(np.searchsorted(truth["t"], measured.t, side="right") - 1, 0, None)
     held = _held(truth, frame)
     hold = _first_hold(directory, measured.t, held, (t0, t1), hand)
@@ -170,16 +171,3 @@ def _scene(directory: Path) -> tuple[Scene, str | None, str | None]:
         raise RecordError(f"{directory} was run on {run.get('world')!r}, only records of the bullet world can be used")
     gown, person = given.get("gown"), given.get("person")
     return draw_scene(seed, gown, person, WorldKind.named(given.get("world_kind", EASY))), gown, person
-
-
-def _truth(directory: Path) -> dict[str, np.ndarray]:
-    path = directory / TRUTH_FILE
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            return {name: stored[name] for name in NEEDED}
-    except FileNotFoundError:
-        raise RecordError(f"{directory} holds no {TRUTH_FILE}: it tells where arms and gown were") from None
-    except KeyError as error:
-        raise RecordError(f"{path} lacks {str(error).split(' ')[0].strip(chr(34) + chr(39))}") from error
-    except DAMAGED as error:
-        raise RecordError(f"{path} is damaged and cannot be read: {error}") from error
