@@ -33,7 +33,10 @@ class CollisionChecker:
 
     Attributes:
         robot: whose arms these are.
+        head_pan: angle of its head where none is given [rad].
     """
+
+    head_pan: float = 0.0
 
     def __init__(
         self, kinematics: Kinematics, boxes: np.ndarray | None = None, margin: float = 0.01, room: float = 0.008
@@ -67,16 +70,18 @@ class CollisionChecker:
             for request in data.collisionRequests:
                 request.security_margin = closest
 
-    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
+    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None) -> bool:
         """Whether arms (2, n) at these angles touch nothing, with some room."""
-        q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
+        pan = self.head_pan if head_pan is None else head_pan
+        q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
         return not self._compute(q, self._roomy, stop_at_first=True)
 
     def collisions(
-        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0
+        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
-        q = self._kinematics.configuration(pose_base_in_map, arm_positions, head_pan)
+        pan = self.head_pan if head_pan is None else head_pan
+        q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
         self._compute(q, self._data, stop_at_first=False)
         hit = [
             pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True) if result.isCollision()

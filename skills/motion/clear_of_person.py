@@ -26,7 +26,7 @@ class ClearOfPerson(CollisionChecker):
         links: of the robot.
         zone: where the person is.
         held: hand -> the arm that it holds, which its fingers and palm may touch.
-        begins: where the motion begins, with the fingers as they stay.
+        begins: where the motion begins, with the fingers and the head as they stay.
     """
 
     def __init__(
@@ -40,26 +40,29 @@ class ClearOfPerson(CollisionChecker):
         self.robot = checker.robot
         self._checker, self._links, self._zone, self._held = checker, links, zone, held
         self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
+        self.head_pan = begins.head_pan
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
         self._least = np.minimum(room, 0.0) - EPSILON
         planned = self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)
         self._least_gaps = self._clearance.least_gaps(zone.names, held) + planned
 
-    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0) -> bool:
+    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None) -> bool:
         """Whether arms (2, n) at these angles touch nothing and come near nobody, with room for a smooth motion."""
-        zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, head_pan, self._opening)
+        pan = self.head_pan if head_pan is None else head_pan
+        zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, pan, self._opening)
         assert len(zone.names) == self._least.shape[1], "one checker serves one plan: the person must not change"
         near = any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)
-        return not near and self._checker.free(pose_base_in_map, arm_positions, head_pan)
+        return not near and self._checker.free(pose_base_in_map, arm_positions, pan)
 
     def collisions(
-        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float = 0.0
+        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
-        room = self._room(pose_base_in_map, arm_positions, head_pan)
+        pan = self.head_pan if head_pan is None else head_pan
+        room = self._room(pose_base_in_map, arm_positions, pan)
         links, parts = self._links.names, self._zone.names
         near = [(links[n], f"the person's {parts[m]}") for n, m in np.argwhere(room < self._least)]
-        return [*dict.fromkeys(near), *self._checker.collisions(pose_base_in_map, arm_positions, head_pan)]
+        return [*dict.fromkeys(near), *self._checker.collisions(pose_base_in_map, arm_positions, pan)]
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:
         ends = self._links.ends(base, arms, head_pan, self._opening)

@@ -23,10 +23,10 @@ def zone():
     return PersonZone(np.zeros((2, 3)))
 
 
-def checker(zone, held=None, opening=0.085, arms=AWAY):
+def checker(zone, held=None, opening=0.085, arms=AWAY, head_pan=0.0):
     robot = kinematics_of(BAXTER)
     begins = SimpleNamespace(
-        pose_base_in_map=BASE, arm_positions=arms, head_pan=0.0, gripper_opening=np.full(2, opening)
+        pose_base_in_map=BASE, arm_positions=arms, head_pan=head_pan, gripper_opening=np.full(2, opening)
     )
     return ClearOfPerson(CollisionChecker(robot), RobotCapsules(robot), zone, held or {}, begins)
 
@@ -78,3 +78,12 @@ def test_where_a_motion_begins_too_near_it_may_leave_but_come_no_nearer(zone):
     assert not made.collisions(BASE, model.READY), "it stands there already"
     zone.update((place + (0.0, 0.0, 0.03))[None], part="head", radius=0.09)
     assert made.collisions(BASE, model.READY), "nearer than where it began"
+
+
+def test_the_robots_own_head_stays_turned_as_it_is_while_arms_move(zone):
+    raised = np.array((AWAY[0], (-0.48, -1.68, 1.36, 1.83, -1.49, 2.41, 0.44)))  # the elbow beside the head
+    assert checker(zone).free(BASE, raised)
+    turned = checker(zone, head_pan=-1.2)  # [rad]
+    assert not turned.free(BASE, raised)
+    assert turned.collisions(BASE, raised) == [("right_lower_elbow", "head")]
+    assert turned.free(BASE, raised, 0.0), "unless another angle is asked about"
