@@ -34,7 +34,7 @@ def bench(load=SLIDES, *, begin=2.9, goal=GOAL, hold=None, deaf_to=(), cover=1.0
             relocalised_arm=lies,
             held_armhole=PerceptionFailure(Problem.NOTHING_SEEN, "armhole"),
             hand_cover=Cover(stamp=0.0, confidence=0.9, share=cover),
-            cuff_round=Cover(stamp=0.0, confidence=0.9, share=cuff),
+            cuff_round=cuff if callable(cuff) else Cover(stamp=0.0, confidence=0.9, share=cuff),
         ),
         each_tick=each_tick or (lambda bench: None),
     )
@@ -97,6 +97,21 @@ def test_a_sleeve_that_goes_beside_the_hand_or_the_arm_is_missed(seen, near):
     run = bench(**seen)
     assert run.ended() == Reason.SLEEVE_MISSED
     assert coordinates(run)[-1] == pytest.approx(near, abs=0.1)
+
+
+def test_a_cuff_that_swings_round_the_arm_once_the_hand_stands_is_not_missed():
+    looks = []
+
+    def settles(frame, points_in_map):
+        looks.append(frame.stamp)
+        return Cover(stamp=frame.stamp, confidence=0.9, share=0.25 if len(looks) == 1 else 0.8)
+
+    run = bench(cuff=settles)
+    assert run.ended() is None
+    assert len(looks) == 2
+    assert 0.5 < looks[1] - looks[0] < 1.5  # [s]
+    still = run.way("right")[np.array([seen.time for seen in run.seen]) > looks[0] + 0.3]
+    assert np.ptp(still, axis=0) == pytest.approx(0.0, abs=0.01), "the hand waits [m]"
 
 
 def test_it_ends_when_the_other_hand_loses_the_arm():
