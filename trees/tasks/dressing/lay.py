@@ -50,7 +50,7 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
             f"the {hand} hand anew",
             Condition(f"the {other} hand holds it too", holds_gown_with, Reason.CLOTH_SLIPPED, hand=other),
             Retreat("let go", end, hands=hand, ready="never", tuning=LEVEL),
-            look_and_take(end, other, min_distance=DRESSING.nearest_corner),
+            look_and_take(end, other, DRESSING.second_corner),
             stretch(f"stretch it by the new {hand} end"),
         )
 

@@ -94,9 +94,9 @@ def from_one_hand(context: Context) -> Behaviour:
         Retreat("let go of the neckline", first),
         SegmentAndGrasp("take it near the hook", first, hand="right"),
         Unhook("lift it off", first, hand="right"),
-        look_and_take(first, "right"),
+        look_and_take(first, "right", DRESSING.first_corner),
         Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=LEVEL),
-        look_and_take(second, first["holder"], min_distance=DRESSING.nearest_corner),
+        look_and_take(second, first["holder"], DRESSING.second_corner),
     )
 
 
@@ -106,8 +106,8 @@ def both_ends(_: Context, length: float, other_length: float) -> bool:
     return shortest < length + other_length < longest
 
 
-def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Behaviour:
-    """A corner of the gown that hangs from `hand`; after a miss it hangs otherwise, and that corner is left out.
+def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> Behaviour:
+    """A corner `away` [m] from the `hand` that the gown hangs from; after a miss it hangs otherwise, without that one.
 
     Where no corner shows clear of other cloth, looking once more shows the same: then the best one there is is taken,
     and the tug tells whether it was one.
@@ -115,7 +115,8 @@ def look_and_take(scope: Scope, hand: Side | Key, **ports: float) -> Behaviour:
 
     def once(name: str, take: str, **more: float) -> Behaviour:
         look = ViewAround(f"look all round{name}", scope, hand=hand)
-        return sequence(f"{scope.prefix}once{name}", look, PreGraspManipulate(take, scope, **ports, **more))
+        take_it = PreGraspManipulate(take, scope, min_distance=away[0], max_distance=away[1], **more)
+        return sequence(f"{scope.prefix}once{name}", look, take_it)
 
     clear = Retry(
         f"{scope.prefix}until it holds a corner", once("", "take a corner"), attempts=DRESSING.corner_attempts

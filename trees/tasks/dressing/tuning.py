@@ -85,8 +85,18 @@ class DressingTuning(Quantities):
     corner_attempts: int = quantity(
         3, "1", "at a corner of a gown that hangs from one hand", "choice: each looks at the gown from all sides anew"
     )
-    nearest_corner: float = quantity(
-        0.3, "m", "from the holding hand to the other corner, at least", "choice: not the corner that it holds"
+    first_corner: tuple[float, float] = quantity(
+        (0.25, 0.62),
+        "m",
+        "from a hand that took the gown near its hook to a corner, at least and at most",
+        "choice: half of a neckline; nearer than that the middle of the neckline was taken for its end (116)",
+    )
+    second_corner: tuple[float, float] = quantity(
+        (0.60, 1.00),
+        "m",
+        "from a hand that holds one corner to the other one, at least and at most",
+        "measured: 0.78 to 0.94 m with both drawn apart; at 0.38 m hangs the neckline's middle, which was taken for an "
+        "end in three of three tries that reached cloth (116, 121, 123)",
     )
     # laying it on the person
     gown_weight: float = quantity(
