@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import PERSON_TRACKING, visible_share, watch_arm
@@ -29,13 +28,13 @@ class CheckLaidOutTuning(Quantities):
 class CheckLaidOut(Skill):
     """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
 
-    It fails where the arm is covered or the sleeve lies elsewhere; a sleeve that does not show is no failure.
+    It fails where the arm is covered, and where the sleeve lies elsewhere or does not show.
     """
 
     commands = False
     side = Input(Side, doc="the person's side")
     tuning = Input(CheckLaidOutTuning, default=CheckLaidOutTuning(), doc="numbers of this skill")
-    reasons = (Reason.ARM_LOST, Reason.ARM_COVERED, Reason.SLEEVE_MISSED)
+    reasons = (Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.ARM_COVERED, Reason.SLEEVE_MISSED)
 
     def steps(self) -> Iterator[None]:
         """One look."""
@@ -44,10 +43,7 @@ class CheckLaidOut(Skill):
         self.note(f"{share:.0%} of the {self.side} arm show")
         if share < PERSON_TRACKING.min_visible:
             raise SkillFailure(Reason.ARM_COVERED, f"{share:.0%} of it show")
-        try:
-            sleeve = find_sleeve(self, self.side, posture.points_in_map)
-        except PerceptionFailure:
-            return
+        sleeve = find_sleeve(self, self.side, posture.points_in_map)
         away = float(np.linalg.norm((sleeve.position_in_map - posture.points_in_map[3])[:2]))
         if away > self.tuning.max_distance:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")

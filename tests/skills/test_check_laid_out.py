@@ -26,7 +26,7 @@ def away(distance):
         (away(FARTHEST - 0.02), 1.0, None),
         (away(FARTHEST + 0.02), 1.0, Reason.SLEEVE_MISSED),
         (away(0.1), 0.5, Reason.ARM_COVERED),
-        (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, None),
+        (PerceptionFailure(Problem.NOTHING_SEEN, "sleeve"), 1.0, Reason.NOTHING_SEEN),
     ],
 )
 def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, share, reason):

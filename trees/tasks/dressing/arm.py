@@ -4,14 +4,16 @@ over the hand    stand, lift the arm, take the sleeve by its strap, hold it open
                  wrist, lower the arm and let it go
 to the shoulder  pull on; where that fails, with a new hold of the sleeve, which stays on the arm
 inside?          back off, put the arm down and look; whatever went wrong until here, a held arm is put down, a stray
-                 sleeve, or one under which the arm lies, is laid out by the hand, and all begins again
+                 sleeve, or one under which the arm lies, is laid out by the hand, or fetched from the other
+                 side of the bed, and all begins again
 """
 
 from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
-from ....sim.world import Side
+from ....sim.world import SIDES, Side
+from ....skills.carry_across import CarryAcross
 from ....skills.check_laid_out import CheckLaidOut
 from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
@@ -63,7 +65,13 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
             f"begin the {side} arm again",
             let_down("held", arm, "lifting"),
             back_off("free both hands", arm),
-            fallback("arm and sleeve laid out", laid_out, lay_out(arm), back_off("leave it as it lies", arm)),
+            fallback(
+                "arm and sleeve laid out",
+                laid_out,
+                lay_out(arm),
+                fetch_sleeve(arm, side),
+                back_off("leave it as it lies", arm),
+            ),
         )
 
     up = RecoverBy(
@@ -158,6 +166,18 @@ def lay_out(arm: Scope) -> Behaviour:
         fallback("take the stray sleeve", take("lift"), take("shoulder")),
         LaySleeve("lay it beyond the hand", arm),
         back_off("leave the sleeve there", arm),
+    )
+
+
+def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
+    """From the other side of the bed, carry a sleeve back that lies there, and come back."""
+    other = SIDES[1 - SIDES.index(side)]
+    return sequence(
+        f"the {side} sleeve from the other side",
+        back_off("free the way", arm),
+        Navigate("go to the other side", arm, goal=f"bed_{other}"),
+        CarryAcross("carry the sleeve back", arm, side=side),
+        Navigate("go back to its side", arm, goal=f"bed_{side}"),
     )
 
 
