@@ -126,7 +126,7 @@ def seated(context: Context, bed: Scope) -> Behaviour:
     def seat() -> Behaviour:
         return sequence("draw them up", over(bed), SeatSleeves("seat", gown), back_off("clear the view", gown))
 
-    looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_sits)]
+    looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_low)]
     up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
     return fallback("as far as they go", up, back_off("leave them", gown))
 
