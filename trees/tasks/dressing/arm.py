@@ -176,9 +176,15 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
         f"the {side} sleeve from the other side",
         back_off("free the way", arm),
         Navigate("go to the other side", arm, goal=f"bed_{other}"),
-        CarryAcross("carry the sleeve back", arm, side=side),
+        carried_across("the sleeve", arm, side),
         Navigate("go back to its side", arm, goal=f"bed_{side}"),
     )
+
+
+def carried_across(name: str, scope: Scope, side: Side) -> Behaviour:
+    """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
+    across = CarryAcross(f"carry {name} across", scope, side=side)
+    return sequence(f"{scope.prefix}{name} to its side", across, back_off(f"clear of {name}", scope))
 
 
 def grasp_worn(name: str, arm: Scope) -> GraspSleeve:

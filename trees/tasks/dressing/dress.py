@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from py_trees.behaviour import Behaviour
 
-from ....skills.carry_across import CarryAcross
 from ....skills.core.context import Context
 from ....skills.core.scope import Scope
 from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import Stage, timed_stage
-from .arm import arm_scope, back_off, dress_arm
+from .arm import arm_scope, back_off, carried_across, dress_arm
 from .draw_flat import DrawFlat
 from .tuning import DRESSING, FIRST_SLEEVE, SECOND_SLEEVE
 
@@ -26,7 +25,7 @@ def dress(context: Context) -> Stage:
         dress_arm(context, "right", FIRST_SLEEVE),
         fallback(
             "bring the left sleeve to its side",
-            CarryAcross("carry the left sleeve across", bed, side="left"),
+            carried_across("the left sleeve", bed, "left"),
             back_off("leave the left sleeve", bed),
         ),
         Navigate("go round to the left side", bed, goal="bed_left"),
