@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
-from caretree.skills import LaySleeve, PresentSleeve, PullAlongArm, Retreat
+from caretree.skills import CarryAcross, LaySleeve, PresentSleeve, PullAlongArm, Retreat
 from caretree.skills.core.reasons import Reason
 from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
@@ -48,6 +48,14 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
     ]
     assert len(free) == 4  # up: both arms; laid out: both arms
     assert all(node.bindings["hold"] is None for node in free)
+
+
+def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_the_bed(nodes):
+    carries = [node for node in nodes if isinstance(node, CarryAcross)]
+    assert len(carries) == 3  # the left sleeve after the right arm, and either one that does not show
+    for carry in carries:
+        steps = carry.parent.children
+        assert isinstance(steps[steps.index(carry) + 1], Retreat)
 
 
 def test_the_second_sleeve_is_drawn_less_hard_than_the_first(nodes):
