@@ -146,8 +146,7 @@ class DressingTuning(Quantities):
         0.70,
         "1",
         "of the upper arm, below which sleeves are drawn up (once more)",
-        "measured: seen at 0.70 to 0.73, five armholes were at 0.71 to 0.77 (0, 5, 114); drawn up once more for that, "
-        "one gown of three went out of its bounds (5)",
+        "measured: seen at 0.70 to 0.73, three armholes were at 0.72 to 0.76 (101, 109, 114), which is up",
     )
     collar_shown: float = quantity(
         0.70,
@@ -167,7 +166,8 @@ class DressingTuning(Quantities):
         "m",
         "of the collar's middle aside, headward and footward, beyond which it is laid straight",
         "choice: of 0.07, 0.10 and 0.08 m that are allowed.  Headward it lies 0.027 m (0.02 to 0.04) beyond where it "
-        "is seen (57 looks of seven runs); laid without need, it draws the sleeves down: from 0.76 to 0.64 (6)",
+        "is seen (114 to 123); laid without need, it comes to lie farther headward (107: 0.02, then 0.09 m) and draws "
+        "the sleeves down (114: from 0.78 to 0.69)",
     )
     neaten_attempts: int = quantity(
         3, "1", "at sleeves and collar, the first one included", "choice: each takes 60 to 90 s"
