@@ -39,7 +39,7 @@ class LaySleeveTuning(Quantities):
     )
     laid_height: float = quantity(0.06, "m", "of the laid strap above the mattress", "choice: the fingers stay clear")
     start_height: float = quantity(
-        0.30, "m", "of the start of the way down above its end", "choice: what hangs below the strap is off the bed"
+        0.30, "m", "of the start of the way down above its end", "choice: what hangs below the strap is off the arm"
     )
     start_outwards: float = quantity(
         0.16, "m", "from the end of the way down outwards to its start", "choice: the back panel touches down outwards"
@@ -54,7 +54,7 @@ class LaySleeveTuning(Quantities):
 
 
 class LaySleeve(Skill):
-    """Hangs the sleeve out over the edge of the bed, then lowers it inwards and headward, and lets go.
+    """Holds the sleeve out towards the edge of the bed, then lowers it inwards and headward, and lets go.
 
     What hangs below the strap touches the bed first, outwards of where the strap then comes to lie.  A hand that cannot
     draw back after opening is no failure; a person who moves is one.

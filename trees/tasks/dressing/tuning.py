@@ -35,7 +35,7 @@ class SleeveTuning(Quantities):
 
 
 FIRST_SLEEVE = SleeveTuning()
-# The other arm is in its sleeve already: the second sleeve must not draw the first off it, nor does it open as wide.
+# The other arm is in its sleeve already: the second sleeve must not draw the first off it.
 SECOND_SLEEVE = SleeveTuning(carry_load=2.0, pull_load=3.8)
 
 
