@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
@@ -43,12 +44,42 @@ class FindCornerTuning(Quantities):
         "confidence above which no other cloth hangs beside a corner, so that the search ends",
         "design: perception gives less to a corner with other cloth beside it",
     )
+    part_confidence: float = quantity(
+        0.21,
+        "1",
+        "confidence up to which a corner shows in part only, so that the other side of the rail is looked at first",
+        "design: perception gives less to a corner that is seen at an angle",
+    )
     tolerance: float = quantity(
         0.04,
         "m, rad",
         "distance from a place to stand at which no step is made",
         "choice: a shorter step is not worth driving",
     )
+
+
+Look: TypeAlias = Callable[[Frame, GraspPoint], GraspPoint]  # of a frame and the hook in it: a corner
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sight:
+    """A corner that was seen.
+
+    Attributes:
+        rank: how much it is wanted, above all confidence.
+        hook: where the gown hung.
+        heading: of the robot, the hook straight ahead [rad].
+        look: that showed it.
+        corner: that it showed.
+        clear: whether it is the wanted one, and no other cloth hangs beside it, so that the search ended there.
+    """
+
+    rank: float
+    hook: GraspPoint
+    heading: float
+    look: Look
+    corner: GraspPoint
+    clear: bool
 
 
 @dataclass
@@ -63,7 +94,8 @@ class FindCorner(Skill):
 
     The first of these are beside the hook: if the front of the gown bulges towards the camera, its neckline is seen
     edge-on from straight ahead.  The last are behind the rail: a gown that is wrapped round itself shows its outside
-    on both sides of the rail, but its neckline on one only.
+    on both sides of the rail, but its neckline on one only.  A corner that shows in part, at an angle to the camera, is
+    taken where none shows whole from either side.
 
     When it is run again, it looks for the other corner first, and where none shows, for the one that it found last,
     close to where that was: its side is known by then.  It fails where no corner shows from anywhere.
@@ -90,32 +122,44 @@ class FindCorner(Skill):
         tried = self.context.memory.of(Tried, Tried).corners
         last = tried[-1] if tried else None
         hook = self.context.senses.hook(self.world.look("head"))
-        try:
-            front = float(waypoints[sides[0]][2]) if sides else yaw
-            hook, found = yield from self._look_round(hook, front, last)
-        except PerceptionFailure:
-            if len(sides) < 2:
-                raise
+        tries = Tries(PerceptionFailure)
+        seen = yield from self._look_round(hook, float(waypoints[sides[0]][2]) if sides else yaw, last, tries)
+        if len(sides) > 1 and not any(self._all_shows(sight) for sight in seen):
             self.note("looks for a corner of the neckline from the other side of the rail")
             yield from drive_to(self, sides[1])
-            hook = self.context.senses.hook(self.world.look("head"))
-            hook, found = yield from self._look_round(hook, float(waypoints[sides[1]][2]), last)
+            behind: list[_Sight] = []
+            with tries:
+                hook = self.context.senses.hook(self.world.look("head"))
+                behind = yield from self._look_round(hook, float(waypoints[sides[1]][2]), last, tries)
+            if seen and not any(self._all_shows(sight) for sight in behind):
+                yield from drive_to(self, sides[0])
+            else:
+                seen = behind
+        if not seen:
+            raise tries.last
+        hook, found = yield from self._look_again(max(seen, key=lambda sight: sight.rank + sight.corner.confidence))
         sleeve = _sleeve_of(found)
         tried.append(found)
         self.note(f"sees the {sleeve} corner of the neckline, confidence {found.confidence:.2f}")
         self.hook, self.corner, self.sleeve, self.other_sleeve = hook, found, sleeve, OTHER[sleeve]
         self.hand, self.other_hand = OTHER[sleeve], sleeve
 
-    def _look_round(
-        self, hook: GraspPoint, front: float, last: GraspPoint | None
-    ) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
-        """Hook and corner: from the first place that shows the wanted corner clear of other cloth, else from the best.
+    def _all_shows(self, sight: _Sight) -> bool:
+        return sight.corner.confidence > self.tuning.part_confidence
 
-        Raises:
-            PerceptionFailure: no corner is seen from anywhere.
+    def _look_round(
+        self, hook: GraspPoint, front: float, last: GraspPoint | None, tries: Tries[PerceptionFailure]
+    ) -> Generator[None, None, list[_Sight]]:
+        """What shows of corners from three places, or from fewer if the wanted one shows clear of other cloth.
+
+        Args:
+            hook: where the gown hangs.
+            front: heading squarely before the rail [rad].
+            last: the corner that was found last.
+            tries: gets what kept corners from being seen.
         """
-        tries, best = Tries(PerceptionFailure), None
-        looks = [(0.0, partial(self._shown, side=None))]
+        seen: list[_Sight] = []
+        looks: list[tuple[float, Look]] = [(0.0, partial(self._shown, side=None))]
         if last is not None:
             looks = [
                 (1.0, partial(self._shown, side=OTHER[_sleeve_of(last)])),
@@ -127,15 +171,20 @@ class FindCorner(Skill):
             for rank, look in looks:
                 with tries:
                     found = look(frame, hook)
-                    score = rank + found.confidence
-                    if rank == looks[0][0] and found.confidence > self.tuning.clear_confidence:
-                        return hook, found
-                    if best is None or score > best[0]:
-                        best = score, turn, look
-        if best is None:
-            raise tries.last
-        hook, frame = yield from self._stand(hook, front + best[1])
-        return hook, best[2](frame, hook)
+                    clear = rank == looks[0][0] and found.confidence > self.tuning.clear_confidence
+                    seen.append(
+                        _Sight(rank=rank, hook=hook, heading=front + turn, look=look, corner=found, clear=clear)
+                    )
+                    if clear:
+                        return seen
+        return seen
+
+    def _look_again(self, best: _Sight) -> Generator[None, None, tuple[GraspPoint, GraspPoint]]:
+        """Hook and corner, from where the corner showed best."""
+        if best.clear:  # it still stands there
+            return best.hook, best.corner
+        hook, frame = yield from self._stand(best.hook, best.heading)
+        return hook, best.look(frame, hook)
 
     def _shown(self, frame: Frame, hook: GraspPoint, *, side: Side | None) -> GraspPoint:
         return self.context.senses.shown_corner(frame, hook_in_map=hook.position_in_map, side=side)

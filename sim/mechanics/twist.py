@@ -18,7 +18,9 @@ else:
 
 _GAIN = 8.0  # of the position feedback that takes out the drift of integrating joint rates [1/s]
 _MAX_LAG = np.array((0.01, 0.06))  # the pose to follow never runs further ahead than this [m, rad]
-_CENTRING = 0.4  # pull of the null space towards the ready posture [1/s]
+_CENTRING = 0.4  # pull of the null space towards the ready posture [1/s] ...
+# ... of a hand that moves as fast as this: where it stands, the elbow stands too [m/s, rad/s]
+_CENTRED_AT = np.array((0.1, 0.5))
 _DAMPING = 0.04  # least squares damping at a singularity [m per rad]
 _SINGULAR = 0.06  # smallest singular value below which damping sets in
 _TURN = 0.15  # what an error in turning counts once joints at their limits leave no exact solution [m/rad]
@@ -99,7 +101,7 @@ class TwistTracker:
         room = 0.5 / max(dt, 1e-6)  # a joint may use half of what is left to its limit in one period
         low = np.maximum(-limits.velocity, (limits.lower - q) * room)
         high = np.minimum(limits.velocity, (limits.upper - q) * room)
-        centring = _CENTRING * (self._ready - q)
+        centring = _CENTRING * self._pace() * (self._ready - q)
         free = np.ones(len(q), bool)
         rates = np.zeros(len(q))
         for _ in range(3):
@@ -120,6 +122,13 @@ class TwistTracker:
         if scale > 1.0:  # slower, in the same direction
             rates = rates / scale
         return np.clip(rates, low, high)
+
+    def _pace(self) -> float:
+        """How fast the hand is told to move, from 0 to 1.
+
+        A guard that slows a hand down as a link comes near to something must not see that link go on by itself.
+        """
+        return min(1.0, float(np.linalg.norm(self._twist.reshape(2, 3), axis=1) @ (1.0 / _CENTRED_AT)))
 
     def _lead(self, target: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Keep the pose to follow within `_MAX_LAG` of where the hand is: it must not wind up at a limit."""

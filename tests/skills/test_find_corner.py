@@ -19,10 +19,10 @@ SECOND_VIEW = np.deg2rad(-30.0)  # about the hook [rad]
 VIEWS = 3  # from one side of the rail
 
 
-def grasp(target, place=HOOK):
+def grasp(target, place=HOOK, confidence=0.9):
     return GraspPoint(
         stamp=0.0,
-        confidence=0.9,
+        confidence=confidence,
         target=target,
         position_in_map=place,
         approach_in_map=np.array((0.0, 1.0, 0.0)),
@@ -105,6 +105,28 @@ def test_one_whose_side_does_not_show_any_more_is_found_where_it_was():
     assert (again.status, again.sleeve) == (Status.SUCCESS, "right")
     assert again.corner.position_in_map == pytest.approx(swung)
     assert len(room.asked) == 1 + 2 * VIEWS  # one that shows its side is preferred, from wherever it does
+
+
+def test_one_that_shows_in_part_is_taken_where_none_shows_whole_from_behind():
+    first, second = CORNER_OF["left"], CORNER_OF["right"]
+    room = Room(lambda n, side: grasp(first, confidence=0.15) if n in (2, 7) else NOTHING)
+    found = room.run()
+    assert (found.status, found.sleeve, len(room.asked)) == (Status.SUCCESS, "left", 2 * VIEWS + 1)
+    assert ahead_of(room) @ ahead_at_start(room) > 0.0
+    room = Room(lambda n, side: grasp(first, confidence=0.15) if n == 2 else grasp(second) if n > 4 else NOTHING)
+    found = room.run()
+    assert (found.status, found.sleeve) == (Status.SUCCESS, "right")
+    assert ahead_of(room) @ ahead_at_start(room) < 0.0
+
+
+def ahead_of(room):
+    yaw = room.world.observe().pose_base_in_map[2]
+    return np.array((np.cos(yaw), np.sin(yaw)))
+
+
+def ahead_at_start(room):
+    yaw = room.world.room.waypoints["rail"][2]
+    return np.array((np.cos(yaw), np.sin(yaw)))
 
 
 def test_fails_where_nothing_shows():

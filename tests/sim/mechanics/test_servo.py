@@ -97,6 +97,20 @@ def test_twist_keeps_direction_speed_and_orientation(servo, kinematics, directio
     assert not servo.moving
 
 
+def test_the_elbow_stands_where_the_hand_is_told_to_stand(servo):
+    start = servo.positions[:14].copy()
+    servo.command(
+        JointTrajectory(
+            joints=model.ALL_ARM_JOINTS, times=np.array((0.0, 2.0)), positions=np.stack((start, start + 0.3))
+        )
+    )
+    play(servo, 2.5)
+    here = servo.positions[:14].copy()
+    servo.command(HandTwist(side="left", twist_in_map=np.zeros(6), duration=1.0))
+    play(servo, 1.0, 2.5)
+    np.testing.assert_allclose(servo.positions[:7], here[:7], atol=1e-3)
+
+
 def test_angular_twist_turns_about_the_hand_point(servo, kinematics):
     before = kinematics.pose_hand_in_map("left", servo.positions[:7], BASE)
     servo.command(HandTwist(side="left", twist_in_map=np.array((0, 0, 0, 0, 0, 0.4)), duration=1.0))

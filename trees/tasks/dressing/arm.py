@@ -34,6 +34,7 @@ from ....skills.release_arm import ReleaseArm
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import RecoverBy
+from .draw_flat import DrawFlat
 from .tuning import DRESSING, SleeveTuning
 
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
@@ -46,8 +47,8 @@ def arm_scope(context: Context, name: str, side: Side) -> Scope:
     return Scope(context, name, keys=("grip",), side=side, lifting=LIFTING[side], pulling=PULLING[side])
 
 
-def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
-    """One arm into its `sleeve`, from beside the bed."""
+def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: bool) -> Behaviour:
+    """One arm into its `sleeve`, from beside the bed; one that `strays` may lie on the other side of it."""
     arm = arm_scope(context, f"{side} arm", side)
 
     def grasp_again() -> Behaviour:
@@ -69,7 +70,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
                 "arm and sleeve laid out",
                 laid_out,
                 lay_out(arm),
-                fetch_sleeve(arm, side),
+                *([fetch_sleeve(arm, side)] if strays else []),
                 back_off("leave it as it lies", arm),
             ),
         )
@@ -185,6 +186,13 @@ def carried_across(name: str, scope: Scope, side: Side) -> Behaviour:
     """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
     across = CarryAcross(f"carry {name} across", scope, side=side)
     return sequence(f"{scope.prefix}{name} to its side", across, back_off(f"clear of {name}", scope))
+
+
+def flat(front: Scope) -> Behaviour:
+    """From beside an arm, draw folds out of the gown's front; where it cannot be done, the rest may do."""
+    draw = DrawFlat("draw flat", front, hand=front["pulling"])
+    drawn = sequence(f"{front.prefix}draw it flat", draw, back_off("off the front", front))
+    return fallback(f"{front.prefix}no folds", drawn, back_off("leave the front", front))
 
 
 def grasp_worn(name: str, arm: Scope) -> GraspSleeve:

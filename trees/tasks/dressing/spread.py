@@ -19,7 +19,7 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
-from .arm import arm_scope, back_off, put_down
+from .arm import arm_scope, back_off, flat, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
 from .tuning import DRESSING
@@ -92,12 +92,23 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 def neaten(context: Context, bed: Scope) -> Behaviour:
     """From the head of the bed, draw low sleeves up and lay the collar straight; then look.
 
+    A front that shows its inside is drawn flat before, as that draws sleeves down.
+
     The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
     collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
     """
     looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits)]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
-    return sequence("neaten", seated(context, bed), straight(bed), *looks, middle)
+    flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
+    return sequence("neaten", unfolded(context), seated(context, bed), straight(bed), *looks, middle, flat_now)
+
+
+def unfolded(context: Context) -> Behaviour:
+    """Where the front shows its inside in a fold, go beside the bed and draw it flat; then the sleeves may be low."""
+    front = arm_scope(context, "fold", "left")
+    beside = Navigate("go beside it", front, goal="bed_left")
+    draw = sequence("unfold it", beside, flat(front), *go_to_head(front))
+    return fallback("unfolded", Condition("no fold shows", outside_out, Reason.WRONG_SIDE), draw)
 
 
 def surely_middle(context: Context, bed: Scope) -> Behaviour:

@@ -170,7 +170,7 @@ class DressingTuning(Quantities):
         "the sleeves down (114: from 0.78 to 0.69)",
     )
     neaten_attempts: int = quantity(
-        3, "1", "at sleeves and collar, the first one included", "choice: each takes 60 to 90 s"
+        5, "1", "at sleeves and collar, the first one included", "choice: each takes 60 to 90 s"
     )
     collar_aside: float = quantity(
         0.055,
@@ -209,7 +209,7 @@ class DressingTuning(Quantities):
         400.0, "s", "for unfolding and laying the gown", "choice: an end is taken anew by each hand, as in `take_down`"
     )
     dress_timeout: float = quantity(600.0, "s", "for dressing both arms", "choice: room for two misses at each arm")
-    spread_timeout: float = quantity(500.0, "s", "for spreading and settling the gown", "choice: room for recoveries")
+    spread_timeout: float = quantity(700.0, "s", "for spreading and settling the gown", "choice: room for five rounds")
 
 
 DRESSING = DressingTuning()
