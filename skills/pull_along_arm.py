@@ -15,7 +15,7 @@ from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now
-from .control.head import look_towards
+from .control.head import keep_off_the_arms, look_towards
 from .control.load_easing import LoadEasing
 from .control.pull_law import PullLaw
 from .core.ports import Input
@@ -177,6 +177,7 @@ class PullAlongArm(Skill):
                 yield
                 continue
             self._look_at_armhole(pull, now)
+            keep_off_the_arms(self, now.path.point(0.5 * (now.coordinate + self.grip_goal)))
             ease_hold(self, self.hold)
             linear = self._velocity(pull, now)
             wanted = presenting(self.grip, now.path.direction(now.coordinate), now.hand[:3, 3])

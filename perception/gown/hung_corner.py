@@ -79,6 +79,9 @@ class HungCornerTuning(Quantities):
     fold_lean: float = quantity(
         0.28, "1", "of a free edge in a fold towards the camera, for its fall", "choice: by trial, not recorded"
     )
+    edge_on_aside: float = quantity(
+        0.10, "m", "sideways of the hook, of the armhole of a strip that is seen edge-on", "choice: it hangs below it"
+    )
     # where it is taken
     clear_distance: float = quantity(0.04, "m", "round a corner without other cloth", "choice: what fingers would take")
     sheet_distance: float = quantity(0.07, "m", "within which the corner's own sheet is followed", "choice: wider")
@@ -273,7 +276,7 @@ def _in_fold(frame: Frame, found: list[Strip], top: np.ndarray, length: float, t
     sideways = frame.pose_camera_in_map[:3, 0]
     below = [strip for strip in found if abs((strip.tip_in_map - top) @ sideways) < tuning.below_hook * strip.length]
     if not below:
-        raise PerceptionFailure(Problem.NOTHING_SEEN, "second strip of the hung gown's neckline")
+        return _above_armhole(frame, top, length, tuning)
     tip = max(below, key=lambda each: each.length).tip_in_map
     fall_squared = max(length**2 - float(((tip - top)[:2] ** 2).sum()), tuning.min_fall_squared)
     level = min(top[2] - np.sqrt(fall_squared), tip[2])
@@ -288,6 +291,22 @@ def _in_fold(frame: Frame, found: list[Strip], top: np.ndarray, length: float, t
     ahead = np.cross((0.0, 0.0, 1.0), sideways)
     lean = -tuning.fold_lean * (top[2] - level) - (tip - top) @ ahead
     return np.array((*(tip + lean * ahead)[:2], level))
+
+
+def _above_armhole(frame: Frame, top: np.ndarray, length: float, tuning: HungCornerTuning) -> np.ndarray:
+    """The corner (3,) of a strip that is seen edge-on, if at all: just above an armhole as far below the hook as it.
+
+    Raises:
+        PerceptionFailure: no armhole is seen there.
+    """
+    away, cloud = points_in_map(frame) - top, points_in_map(frame)
+    seen = (frame.depth > 0) & (np.abs(away @ frame.pose_camera_in_map[:3, 0]) < tuning.edge_on_aside)
+    seen &= np.abs(np.linalg.norm(away, axis=2) - length) < tuning.length_tolerance
+    armhole = cloud[seen & (gown_labels(frame) == Surface.ARMHOLE)]
+    if len(armhole) < tuning.min_fold_points:
+        raise PerceptionFailure(Problem.NOTHING_SEEN, "second strip of the hung gown's neckline")
+    highest = armhole[armhole[:, 2] >= np.percentile(armhole[:, 2], 90)]
+    return np.median(highest, axis=0) + (0.0, 0.0, tuning.armhole_to_corner)
 
 
 def _grasp(frame: Frame, position: np.ndarray, target: GraspTarget, confidence: float) -> GraspPoint:

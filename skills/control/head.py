@@ -41,6 +41,13 @@ class HeadTuning(Quantities):
     max_aside: float = quantity(
         0.35, "rad", "of what it looks at, to keep that gap", "choice: well inside a picture that is 1.57 rad wide"
     )
+    max_turned: float = quantity(
+        0.6, "rad", "of what it looks at while an arm comes near, the same", "choice: still inside that picture"
+    )
+    step: float = quantity(
+        0.1, "rad", "by which it then turns at once", "choice: small, as it is asked for at each tick"
+    )
+    step_time: float = quantity(0.3, "s", "that this takes", "choice: a third of the head's speed")
     asides: int = quantity(5, "1", "angles that are tried to either side", "choice: 4 degrees between them")
 
 
@@ -52,12 +59,37 @@ def look_towards(skill: Skill, point_in_map: np.ndarray, *, tolerance: float = H
 
     Where an arm of the robot is near the head then, the point lies beside the middle.
     """
+    pan = _off_the_arms(skill, _bearing(skill, point_in_map))
+    yield from pan_head(skill, pan, tolerance=tolerance)
+
+
+def keep_off_the_arms(skill: Skill, point_in_map: np.ndarray, tuning: HeadTuning = HEAD) -> None:
+    """Start to turn the head away from an arm of the robot that comes near it, the point still in the picture.
+
+    Args:
+        skill: that looks; once in each of its ticks.
+        point_in_map: (2,) or (3,) that it looks at [m].
+        tuning: numbers of turning the head.
+    """
+    gap, seen, robot = arm_gaps(skill), skill.world.observe(), skill.world.robot
+    if (room := gap(seen, seen.head_pan)) >= tuning.arm_gap:
+        return
+    bearing, (low, high) = _bearing(skill, point_in_map), kinematics_of(robot).head_range
+    low, high = max(low, bearing - tuning.max_turned), min(high, bearing + tuning.max_turned)
+    turned = [float(np.clip(seen.head_pan + step, low, high)) for step in (-tuning.step, tuning.step)]
+    best = max(turned, key=lambda angle: gap(seen, angle))
+    if gap(seen, best) > room:
+        times, positions = np.array((0.0, tuning.step_time)), np.array(((seen.head_pan,), (best,)))
+        skill.world.send(JointTrajectory(joints=(robot.head_joint,), times=times, positions=positions))
+
+
+def _bearing(skill: Skill, point_in_map: np.ndarray) -> float:
+    """Angle of the head at which a point (2,) or (3,) is in the middle of the picture's width [rad]."""
     seen = skill.world.observe()
     x, y, yaw = seen.pose_base_in_map
     neck = planar_pose(seen.pose_base_in_map)[:3, :3] @ skill.world.robot.neck_in_base + (x, y, 0.0)
     wanted = np.arctan2(point_in_map[1] - neck[1], point_in_map[0] - neck[0]) - yaw
-    pan = _off_the_arms(skill, float((wanted + np.pi) % (2 * np.pi) - np.pi))
-    yield from pan_head(skill, pan, tolerance=tolerance)
+    return float((wanted + np.pi) % (2 * np.pi) - np.pi)
 
 
 def _off_the_arms(skill: Skill, wanted: float, tuning: HeadTuning = HEAD) -> float:

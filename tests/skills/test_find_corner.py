@@ -16,6 +16,7 @@ HOOK = np.array((2.7, 0.4, 1.55))
 NOTHING = PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
 DISTANCE = 1.0  # from the base to the hook [m]
 SECOND_VIEW = np.deg2rad(-30.0)  # about the hook [rad]
+BEHIND = {"rail_back": (2.7, 1.9, -np.pi / 2)}  # a waypoint
 VIEWS = 3  # from one side of the rail
 
 
@@ -33,8 +34,9 @@ def grasp(target, place=HOOK, confidence=0.9):
 class Room:
     """The robot before the rail; `shown` answers where a corner is seen, `hung` one that was seen before."""
 
-    def __init__(self, shown, hung=lambda side, near: NOTHING):
+    def __init__(self, shown, hung=lambda side, near: NOTHING, waypoints=()):
         self.world = ScriptedWorld(seed=1)
+        self.world.room.waypoints.update(waypoints)
         self.guard = GuardedWorld(self.world)
         self.asked = []
 
@@ -109,11 +111,12 @@ def test_one_whose_side_does_not_show_any_more_is_found_where_it_was():
 
 def test_one_that_shows_in_part_is_taken_where_none_shows_whole_from_behind():
     first, second = CORNER_OF["left"], CORNER_OF["right"]
-    room = Room(lambda n, side: grasp(first, confidence=0.15) if n in (2, 7) else NOTHING)
+    room = Room(lambda n, side: grasp(first, confidence=0.15) if n in (2, 7) else NOTHING, waypoints=BEHIND)
     found = room.run()
     assert (found.status, found.sleeve, len(room.asked)) == (Status.SUCCESS, "left", 2 * VIEWS + 1)
     assert ahead_of(room) @ ahead_at_start(room) > 0.0
-    room = Room(lambda n, side: grasp(first, confidence=0.15) if n == 2 else grasp(second) if n > 4 else NOTHING)
+    shown = {2: grasp(first, confidence=0.15), 5: grasp(second)}
+    room = Room(lambda n, side: shown.get(n, NOTHING), waypoints=BEHIND)
     found = room.run()
     assert (found.status, found.sleeve) == (Status.SUCCESS, "right")
     assert ahead_of(room) @ ahead_at_start(room) < 0.0

@@ -124,6 +124,21 @@ def test_a_corner_that_is_seen_at_an_angle_counts_less():
     hung.world.close()
 
 
+def test_a_second_strip_that_is_seen_edge_on_ends_above_its_armhole():
+    hung = Hung(141)
+    hung.world.clock.wait_until(8.0)
+    top = hook(hung.frame(hung.outside)[0]).position_in_map
+    _, ahead = hung.frame(hung.outside)
+    length = hung.raise_corner(0, ahead)
+    errors = []
+    for turn in VIEWS:
+        frame, _ = hung.frame(hung.outside, turn)
+        found = hung_corner(frame, "right", top, other_length=length)
+        errors.append(np.linalg.norm(found.position_in_map - hung.corner(1)))
+    assert max(errors) < 0.06
+    hung.world.close()
+
+
 def test_the_side_by_the_panel_below_the_hook():
     hung = Hung(6)  # its sleeves show more of the inside on the outside's side
     assert hung_side(hung.frame(hung.outside)[0]).outside

@@ -24,7 +24,7 @@ from ....skills.unhook import Unhook
 from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
-from ...nodes.decorators import Retry, Stage, timed_stage
+from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
 from .tuning import DRESSING
 
 LEVEL = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
@@ -36,7 +36,11 @@ def take_down(context: Context) -> Stage:
     outside = FlipSideCheck("outside to the front", rail, hung=True, min_confidence=0.0)
     free = fallback("free hands", Condition("nothing is held", hands_open), Retreat("let go of both ends", rail))
     off = TakeDown("lift it off the hook", rail)
-    by_both_ends = sequence("by both ends of the neckline", free, take_ends(rail), off)
+    by_both_ends = RecoverBy(
+        "from the side of its outside",
+        sequence("by both ends of the neckline", free, take_ends(rail), off),
+        {Reason.WRONG_SIDE: lambda: other_side(rail)},
+    )
     return timed_stage(
         "take down",
         Navigate("go there", rail, goal="rail"),
@@ -44,6 +48,16 @@ def take_down(context: Context) -> Stage:
         fallback("take it", Retry("the other end first", by_both_ends, attempts=2), from_one_hand(context)),
         seconds=DRESSING.take_down_timeout,
     )
+
+
+def other_side(rail: Scope) -> Behaviour:
+    """Let go, and go to the other side of the rail: what hung wrapped round itself showed its outside on both."""
+    again = Scope(rail, "other side")
+    behind = sequence(
+        "behind the rail", Condition("before the rail", before_rail), Navigate("go behind it", again, goal="rail_back")
+    )
+    there = fallback("to the other side", behind, Navigate("go before it", again, goal="rail"))
+    return sequence("the other side of the rail", Retreat("let go of it", again), there)
 
 
 def take_ends(rail: Scope) -> Behaviour:
@@ -123,6 +137,13 @@ def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> 
     )
     any_corner = once(" more", "take the best there is", min_confidence=0.0)
     return fallback(f"{scope.prefix}a corner", clear, any_corner)
+
+
+def before_rail(context: Context) -> bool:
+    """The robot stands nearer to the front of the rail than to its back, where a room has both."""
+    here, waypoints = context.world.observe().pose_base_in_map[:2], context.world.room.waypoints
+    places = {name: waypoints[name][:2] for name in ("rail", "rail_back") if name in waypoints}
+    return min(places, key=lambda name: float(np.linalg.norm(here - places[name])), default="rail") == "rail"
 
 
 def hands_open(context: Context) -> bool:

@@ -10,7 +10,7 @@ from caretree.trees.run.runner import run
 from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
-SEATED, LAID = "gown/sleeves/seat", "gown/collar/spread"
+SEATED, LAID, FLAT = "gown/sleeves/seat", "gown/collar/spread", "fold/draw flat"
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
 
@@ -33,13 +33,16 @@ class WornGown(ScriptedSenses):
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
-        if progress.status != "success" or progress.name not in (SEATED, LAID):
+        if progress.status != "success" or progress.name not in (SEATED, LAID, FLAT):
             return
         self.done.append(progress.name.rpartition("/")[2])
         if progress.name == SEATED:
             self.low = {side: low + DRAWN_UP for side, low in self.low.items()}
         if progress.name == LAID and not self.stays:
             self.off = (0.0, 0.0)
+        if progress.name == FLAT and not self.stays:
+            self.outside = 1.0
+            self.low = {side: low - DRAWN_UP for side, low in self.low.items()}
 
     def chest_cover(self, frame, *, shoulders_in_map):
         return replace(super().chest_cover(frame, shoulders_in_map=shoulders_in_map), outside=self.outside)
@@ -70,7 +73,8 @@ def rehearsed(reach, off=(0.0, 0.0), **gown):
         ((0.85, 0.50), "success", ["seat", "seat"]),
         ((0.50, 0.85), "success", ["seat", "seat"]),
         (0.35, "success", ["seat", "seat", "seat"]),
-        (0.20, "safe_stop", ["seat", "seat", "seat"]),
+        (0.05, "success", ["seat"] * 5),
+        (-0.10, "safe_stop", ["seat"] * 5),
     ],
 )
 def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach, ends, done):
@@ -91,15 +95,20 @@ def test_a_sleeve_a_little_too_low_to_be_claimed_is_left_as_it_is():
 
 
 def test_a_gown_of_which_a_part_is_folded_over_ends_the_task_without_a_claim():
-    outcome, _ = rehearsed(0.85, outside=0.8)
+    outcome, done = rehearsed(0.85, outside=0.8, stays=True)
     assert outcome == "safe_stop"
+    assert set(done) == {"draw flat"}
+
+
+def test_a_front_that_is_folded_over_is_drawn_flat_before_the_sleeves_that_come_down_by_that():
+    assert rehearsed(0.80, outside=0.8) == ("success", ["draw flat", "seat"])
 
 
 def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     outcome, done = rehearsed(0.85, (0.0, -0.25), stays=True)
     assert outcome == "safe_stop"
     assert set(done) == {"spread"}
-    assert len(done) <= 4
+    assert len(done) <= 5  # one in each round
 
 
 @pytest.mark.parametrize(
