@@ -46,6 +46,9 @@ class CarryAcrossTuning(Quantities):
     opening: float = quantity(
         0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
     )
+    reaching_speed: float = quantity(
+        0.15, "m/s", "of the hand to before the strap; half of it on the way in", "choice: the trunk may lie below it"
+    )
     height: float = quantity(0.25, "m", "of the way across, above where it begins and ends", "choice: over the person")
     speed: float = quantity(0.25, "m/s", "of the hand away from the person", "choice: the sleeve hardly swings")
     max_load: float = quantity(
@@ -97,7 +100,8 @@ class CarryAcross(Skill):
         hand, place = LIFTING[self.side], seen.position_in_map
         lane = np.array((-STANCES.lane * outwards(self.side)[0], place[1] + STANCES.ahead, STANCES.heading))
         yield from drive_to(self, lane)
-        yield from reach_in(self, hand, place, -UP, seen.closing_in_map, opening=self.tuning.opening)
+        grasp = {"opening": self.tuning.opening, "speed": self.tuning.reaching_speed}
+        yield from reach_in(self, hand, place, -UP, seen.closing_in_map, **grasp)
         yield from pinch_or_back_off(self, hand)
         yield from self._carry(hand)
         back = self.tuning.back_off_distance * np.append(HEADWARD[:2], 0.0)

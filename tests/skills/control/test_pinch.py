@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
@@ -57,6 +59,22 @@ def test_open_fingers_come_around_the_cloth_slower_in_the_end():
     assert openings[near].min() == pytest.approx(0.05, abs=1e-3)
     assert speed[near].max() < 0.17
     assert speed.max() > 0.2
+
+
+def test_a_hand_that_meets_somebody_on_its_way_in_goes_no_farther():
+    world, context = robot()
+    met, observe = CLOTH["right"][0] - 0.05, world.observe
+
+    def touching():
+        seen = observe()
+        wrench = np.array(seen.wrench_hand_in_map)
+        wrench[1, 0] -= 1000.0 * max(0.0, seen.pose_hand_in_map[1, 0, 3] - met)  # [N], as stiff as a body
+        return replace(seen, wrench_hand_in_map=wrench)
+
+    world.observe = touching
+    skill = carry_out(world, context, lambda skill: reach_in(skill, "right", CLOTH["right"], AHEAD, SIDEWAYS))
+    assert skill.failure is None
+    assert met < hand_now(skill, "right")[0, 3] < met + 0.03
 
 
 @pytest.mark.parametrize(
