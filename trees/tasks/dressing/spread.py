@@ -51,7 +51,7 @@ def spread(context: Context) -> Stage:
         arm_lies(context, "left"),
         arm_lies(context, "right"),
         *go_to_head(bed),
-        Retry("until it is neat", neaten(context, bed), attempts=DRESSING.neaten_attempts),
+        Retry("until it is neat", with_arms_in_view(context, bed), attempts=DRESSING.neaten_attempts),
         surely_middle(context, bed),
         *(node for side in SIDES for node in still_inside(context, side)),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
@@ -87,6 +87,17 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
         put_down("first", arm),
         back_off("leave", arm, DRESSING.back_off_distance),
     )
+
+
+def with_arms_in_view(context: Context, bed: Scope) -> Behaviour:
+    """Neaten the gown; arms that have not shown under it for too long are looked at from beside the bed meanwhile."""
+
+    def look_again() -> Behaviour:
+        arms = [arm_scope(context, f"{side} arm again", side) for side in SIDES]
+        beside = [node for side, arm in zip(SIDES, arms, strict=True) for node in go_beside(arm, side)]
+        return sequence("both arms again", *beside, *go_to_head(Scope(bed, "again")))
+
+    return RecoverBy("both arms in view", neaten(context, bed), {Reason.ARM_LOST: look_again})
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
