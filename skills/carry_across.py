@@ -100,8 +100,8 @@ class CarryAcross(Skill):
         hand, place = LIFTING[self.side], seen.position_in_map
         lane = np.array((-STANCES.lane * outwards(self.side)[0], place[1] + STANCES.ahead, STANCES.heading))
         yield from drive_to(self, lane)
-        grasp = {"opening": self.tuning.opening, "speed": self.tuning.reaching_speed}
-        yield from reach_in(self, hand, place, -UP, seen.closing_in_map, **grasp)
+        opening, speed = self.tuning.opening, self.tuning.reaching_speed
+        yield from reach_in(self, hand, place, -UP, seen.closing_in_map, opening=opening, speed=speed)
         yield from pinch_or_back_off(self, hand)
         yield from self._carry(hand)
         back = self.tuning.back_off_distance * np.append(HEADWARD[:2], 0.0)
