@@ -183,7 +183,7 @@ class Explorer:
         self.changed.update(self._nodes)
         self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
         self._resumes = all(_resumes(node) for node in self._inner)
-        self._read = frozenset(key for stub in self._options for key in stub.reads)  # what nobody reads changes nothing
+        self._read = {leaf: self._read_from(leaf) for leaf in self._options}  # what nobody reads changes nothing
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._numbers: dict[Any, int] = {}  # of every situation
         self._seen: set[int] = set()
@@ -340,7 +340,7 @@ class Explorer:
 
     def _situation(self, leaf: Stub) -> Any:
         """All that decides what can happen from here on."""
-        return leaf, self._read & self.board, self._moved, self._state(self._root, self._active[leaf])
+        return leaf, self._read[leaf] & self.board, self._moved, self._state(self._root, self._active[leaf])
 
     def _state(self, node: Behaviour, active: frozenset[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
@@ -358,6 +358,20 @@ class Explorer:
             child = kind.current_child
             return (*state, child, child and self._state(child, active))
         return (*state, *(self._state(child, active) for child in node.children))
+
+    @staticmethod
+    def _read_from(leaf: Stub) -> frozenset[str]:
+        """Keys that may be read from `leaf` on: by it, by what comes after it, and by all that is tried again."""
+        readers: list[Behaviour] = [leaf]
+        for above, child in _ancestors(leaf):
+            n = above.children.index(child)
+            if remembers(above) or type(above) is FailSafe:
+                readers += above.children[n + 1 :]
+            elif type(above) is Stage:  # the pre-condition stands after the body, and comes before it
+                readers += above.children[:n]
+            elif type(above) is not Timeout:
+                readers.append(above)
+        return frozenset(key for top in readers for node in top.iterate() if isinstance(node, Stub) for key in node.reads)
 
     def _outcomes(self, stub: Stub) -> list[Any]:
         """True, then one reason for each way of reacting above, then `never` under a timeout."""

@@ -316,6 +316,30 @@ def test_a_large_tree_with_recoveries_stays_affordable():
     assert report.executions < 500
 
 
+def test_what_only_a_finished_part_reads_does_not_multiply_the_ways():
+    def build(context):
+        def part(n):
+            key = Key(f"k{n}")
+            makes = sequence(f"s{n}", Make(f"m{n}", context, made=key), Use(f"u{n}", context, used=key))
+            return fallback(f"f{n}", makes, See(f"do without {n}", context))
+
+        return safe(context, sequence("s", *(part(n) for n in range(8))))
+
+    report = check(task_of(build))
+    assert report.ok, report.findings
+    assert report.situations == 8 * 3 + 1, "two of them at each part, once more without, and the safe branch"
+
+
+def test_what_is_read_two_leaves_farther_on_is_told_apart():
+
+    def build(context):
+        first = fallback("f", Make("make", context, made=K), See("do without", context))
+        body = sequence("s", first, Make("once more", context), Use("use", context, used=K))
+        return safe(context, Retry("twice", body, attempts=2))
+
+    assert any("use reads 'k'" in each for each in findings(build))
+
+
 def test_an_unexplored_rest_is_not_called_proof():
     def build(context):
         return safe(context, sequence("s", *(Make(f"m{n}", context) for n in range(10))))
