@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
+from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful
 from .control.compliant_hold import while_holding
@@ -20,7 +21,6 @@ from .core.skill import Skill
 from .geometry.arm_path import UP
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
-from .geometry.strap_grip import StrapGrip
 from .motion.errors import MotionError
 
 
@@ -60,7 +60,8 @@ class LaySleeve(Skill):
     draw back after opening is no failure; a person who moves is one.
     """
 
-    grip = Input(StrapGrip, doc="how the strap is held")
+    side = Input(Side, doc="arm of the person that the sleeve belongs to")
+    hand = Input(Side, doc="hand that holds its strap")
     hold = Input(Hold, doc="the hand that holds the arm, or None", default=None)
     tuning = Input(LaySleeveTuning, default=LaySleeveTuning(), doc="numbers of this skill")
     reasons = (
@@ -74,13 +75,13 @@ class LaySleeve(Skill):
 
     def steps(self) -> Iterator[None]:
         """Lay the sleeve down as long as the person does not move."""
-        self.note(f"lays the {self.grip.arm} sleeve down again")
+        self.note(f"lays the {self.side} sleeve down again")
         yield from while_person_rests(self, while_holding(self, self.hold, self._lay()))
 
     def _lay(self) -> Iterator[None]:
         """Out, down, open, back."""
         tuning = self.tuning
-        hand, out, bed = self.grip.hand, outwards(self.grip.arm), self.world.room.bed
+        hand, out, bed = self.hand, outwards(self.side), self.world.room.bed
         middle = np.array((*bed[:, :2].mean(axis=0), bed[1, 2]))
         laid = middle + tuning.laid_outwards * out - tuning.laid_feetward * HEADWARD + tuning.laid_height * UP
         above = laid + tuning.start_height * UP + tuning.start_outwards * out - tuning.start_feetward * HEADWARD

@@ -75,7 +75,7 @@ EXAMPLES = {
     GraspSleeve: lambda context: GraspSleeve("grasp sleeve", context, side="right", hand="right"),
     LayGown: lambda context: LayGown("lay gown", context, width=0.8),
     LayOnHand: lambda context: LayOnHand("lay on hand", context, side="right", hand="right"),
-    LaySleeve: lambda context: LaySleeve("lay sleeve", context, grip=GRIP),
+    LaySleeve: lambda context: LaySleeve("lay sleeve", context, side="right", hand="right"),
     LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),
     LookAtPerson: lambda context: LookAtPerson("look at person", context, side="right"),
     LookForSleeve: lambda context: LookForSleeve("look for the sleeve", context, side="right", hand="right"),

@@ -7,7 +7,7 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
 from caretree.skills.lay_sleeve import LaySleeve
 
-from .bench import ARM, CLOTH, GRIP, PATH, LeafBench, above_arm, beside_bed, on_arm, pulls
+from .bench import ARM, CLOTH, PATH, LeafBench, above_arm, beside_bed, on_arm, pulls
 
 MATTRESS = 0.60  # [m] above the floor, its middle at x = y = 0, its head towards -y, the right arm towards +x
 FINGERTIP = PATH.points[3]
@@ -19,7 +19,7 @@ def bench(*, hold=None, each_tick=lambda bench: None, stand=None):
     if hold is not None:
         hands[hold.hand], held[hold.hand] = on_arm(hold.coordinate), ARM
     return LeafBench(
-        lambda context: LaySleeve("lay", context, grip=GRIP, hold=hold),
+        lambda context: LaySleeve("lay", context, side="right", hand="right", hold=hold),
         beside_bed(stand=stand, hands=hands, held=held, load={"right": (0.0, 0.0, -1.4)}),
         each_tick=each_tick,
     )

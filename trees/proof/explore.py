@@ -371,7 +371,9 @@ class Explorer:
                 readers += above.children[:n]
             elif type(above) is not Timeout:
                 readers.append(above)
-        return frozenset(key for top in readers for node in top.iterate() if isinstance(node, Stub) for key in node.reads)
+        return frozenset(
+            key for top in readers for node in top.iterate() if isinstance(node, Stub) for key in node.reads
+        )
 
     def _outcomes(self, stub: Stub) -> list[Any]:
         """True, then one reason for each way of reacting above, then `never` under a timeout."""

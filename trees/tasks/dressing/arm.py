@@ -84,7 +84,8 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
     away = back_off("back off", arm, DRESSING.back_off_distance)
     inside = CheckSleeve("is inside", arm)
     once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, put_down("in the end", arm), inside)
-    return RecoverBy(f"dress the {side} arm", once, dict.fromkeys(MISSES, begin_again), attempts=DRESSING.arm_attempts)
+    again = dict.fromkeys(MISSES, begin_again) | {Reason.SLEEVE_FOLDED: lambda: lay_folded(arm)}
+    return RecoverBy(f"dress the {side} arm", once, again, attempts=DRESSING.arm_attempts)
 
 
 def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
@@ -95,7 +96,9 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         return GraspSleeve(name, held, hand=arm["pulling"])
 
     def lay() -> Behaviour:
-        return sequence("the sleeve is folded", LaySleeve("lay the sleeve down", held), grasp("grasp it again"))
+        return sequence(
+            "the sleeve is folded", LaySleeve("lay the sleeve down", held, hand=arm["pulling"]), grasp("grasp it again")
+        )
 
     def present(name: str, **ports: float) -> Behaviour:
         return PresentSleeve(name, held, max_load=sleeve.carry_load, **ports)
@@ -155,6 +158,19 @@ def put_down(name: str, arm: Scope) -> Behaviour:
     )
 
 
+def lay_folded(arm: Scope) -> Behaviour:
+    """A sleeve that would not open is laid back: let go of in the air, it took the gown off the bed (138)."""
+    folded = Scope(arm, "folded")
+    return sequence(
+        f"the {arm['side']} sleeve back on the bed",
+        let_down("held", folded, "lifting"),
+        fallback(
+            f"{folded.prefix}laid", LaySleeve("lay it back", folded, hand=arm["pulling"]), back_off("leave it", folded)
+        ),
+        back_off("clear of it", folded),
+    )
+
+
 def lay_out(arm: Scope) -> Behaviour:
     """Take the sleeve by its strap, wherever it is, and lay it beyond the hand: the gown comes along, off the arm."""
 
@@ -165,7 +181,7 @@ def lay_out(arm: Scope) -> Behaviour:
     return sequence(
         "lay the sleeve out",
         fallback("take the stray sleeve", take("lift"), take("shoulder")),
-        LaySleeve("lay it beyond the hand", arm),
+        LaySleeve("lay it beyond the hand", arm, hand=arm["pulling"]),
         back_off("leave the sleeve there", arm),
     )
 
