@@ -8,9 +8,10 @@ from functools import partial
 
 import numpy as np
 
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import SIDES, Side
+from ..sim.world import SIDES, Frame, Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.carry import Carry
@@ -46,10 +47,26 @@ class SeatSleevesTuning(Quantities):
     drawn_to: tuple[float, float] = quantity(
         (0.07, 0.14),
         "m",
-        "inwards and headward from each shoulder, where the end of its seam is drawn to: the armhole then goes round "
-        "the shoulder, not the arm",
+        "inwards and headward from each shoulder, where the end of the seam of a low armhole is drawn to: it then goes "
+        "round the shoulder, not the arm",
         "measured with ideal hands, the collar laid before: armholes at 0.44 to 0.76 came to rest at 0.70 to 0.84 "
         "(101, 103, 104); 0.06 and 0.11 m at 0.69 to 0.82, 0.04 and 0.08 m at 0.66 to 0.87; 0.17 m headward, no higher",
+    )
+    drawn_less: tuple[float, float] = quantity(
+        (0.05, 0.09),
+        "m",
+        "likewise, of an armhole that is almost up",
+        "measured: one at 0.62 came to 0.88, drawn all the way to 0.97, and the collar 0.14 m headward (106, 142); one "
+        "at 0.40 came to 0.52, drawn all the way to 0.79 (106)",
+    )
+    low_and_almost: tuple[float, float] = quantity(
+        (0.45, 0.60), "1", "of the upper arm, between which the way goes from all of it to less", "choice: as measured"
+    )
+    up_already: float = quantity(
+        0.80,
+        "1",
+        "of the upper arm, from which an armhole is left alone while the other one is lower",
+        "measured: drawn up with the other one, armholes came to 0.88 to 0.99 and the collar 0.12 m headward (106)",
     )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
@@ -73,8 +90,8 @@ class SeatSleeves(Skill):
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
-    which takes half of the time; one that is missed does not keep the other from being drawn.  The robot stands at the
-    head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed
+    which takes half of the time; one that is up already is left alone, and one that is missed does not keep the other from
+    being drawn.  The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed
     grasp too.
     """
 
@@ -98,18 +115,23 @@ class SeatSleeves(Skill):
         """Look at both, take one after the other, lift, draw, lay down, let go."""
         tuning = self.tuning
         shoulders = np.array([watch_arm(self, side).points_in_map[0] for side in SIDES])
-        seams = {}
+        seams, reach = {}, {}
         for n, side in enumerate(SIDES):  # before a hand comes in between
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
-            seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
+            reach[side] = self._reach(frame, side)
+            if reach[side] < tuning.up_already:
+                seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
+        if not seams:
+            self.note("both are up already")
+            return
         held = yield from take_each({side: partial(self._take, side, seam) for side, seam in seams.items()})
         self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
         above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
         yield from carry_each(self, above, tuning.carry, tuning.apart)
-        inward, headward = tuning.drawn_to
         over, laid = {}, {}
         for side in held:
+            inward, headward = self._drawn_to(reach[side])
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
@@ -118,6 +140,21 @@ class SeatSleeves(Skill):
         # at once, so that neither side gives way to the other
         yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
+
+    def _reach(self, frame: Frame, side: Side) -> float:
+        """How far up the upper arm an armhole is seen; one that does not show is low: somebody asked for this skill."""
+        arm = watch_arm(self, side).points_in_map
+        try:
+            return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach
+        except PerceptionFailure:
+            return 0.0
+
+    def _drawn_to(self, reach: float) -> tuple[float, float]:
+        """Inwards and headward from the shoulder [m], the less the higher the armhole is."""
+        tuning = self.tuning
+        both = zip(tuning.drawn_to, tuning.drawn_less, strict=True)
+        inward, headward = (float(np.interp(reach, tuning.low_and_almost, ends)) for ends in both)
+        return inward, headward
 
     def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
         """Grasp one seam, leaning outwards as far as the arm reaches it that way."""

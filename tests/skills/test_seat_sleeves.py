@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import Estimate, GraspPoint
+from caretree.perception.estimates import Estimate, GraspPoint, WornSleeve
 from caretree.sim.world import SIDES
 from caretree.skills.control.hands import gap_between_arms
 from caretree.skills.core.reasons import Reason
@@ -21,7 +21,15 @@ LEANS = SeatSleevesTuning().leans  # [rad]
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(*, cloth=HELD, hidden=(), leans=LEANS, each_tick=lambda bench: None):
+def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, each_tick=lambda bench: None):
+    reaches = dict.fromkeys(SIDES, 0.3) if reach is None else reach
+
+    def worn(frame, side, arm_in_map):
+        if reaches[side] is None:
+            raise HIDDEN
+        seen = {"armhole_at": 0.4, "cuff_at": 0.6, "reach": reaches[side], "round_arm": 0.6}
+        return WornSleeve(stamp=0.0, confidence=0.9, side=side, **seen)
+
     def seam(frame, side, shoulders_in_map):
         if side in hidden:
             raise HIDDEN
@@ -40,6 +48,7 @@ def bench(*, cloth=HELD, hidden=(), leans=LEANS, each_tick=lambda bench: None):
         beside_bed(
             stand=stance_at_head(),
             shoulder_seam=seam,
+            worn_sleeve=worn,
             gripped_cloth=cloth,
             arm=lambda frame, side, **_: lying_posture(side),
         ),
@@ -51,6 +60,11 @@ def drawn(run, side):
     """Positions (n, 3) of a hand while the fingers of both were closed [m]."""
     both = (run.openings("left") < 0.005) & (run.openings("right") < 0.005)
     return run.way(side)[both]
+
+
+def last_held(run, side):
+    """Position (3,) of a hand where it lets go [m]."""
+    return run.way(side)[run.openings(side) < 0.005][-1]
 
 
 def test_both_are_taken_outside_the_shoulders_drawn_over_them_and_laid_down_behind_them():
@@ -118,6 +132,30 @@ def test_where_one_is_missed_the_other_is_drawn_all_the_same(missed):
     assert (closed[-1] - SHOULDERS[other]) @ outwards(other) == pytest.approx(-0.07, abs=0.03)
     assert ((run.way(missed) - SHOULDERS[missed]) @ outwards(missed)).min() > 0.05, "that hand went nowhere else"
     assert run.openings(missed)[-1] > 0.08
+
+
+@pytest.mark.parametrize("low", SIDES)
+@pytest.mark.parametrize("seen", [0.4, None])
+def test_a_sleeve_that_is_up_is_left_alone(low, seen):
+    up = "right" if low == "left" else "left"
+    run = bench(reach={low: seen, up: 0.95})
+    assert run.ended() is None
+    assert (last_held(run, low) - SHOULDERS[low]) @ outwards(low) == pytest.approx(-0.07, abs=0.03)
+    assert np.ptp(run.way(up), axis=0) == pytest.approx(0.0, abs=0.02)  # [m]
+
+
+def test_the_lower_one_is_drawn_farther():
+    run = bench(reach={"left": 0.65, "right": 0.3})
+    assert run.ended() is None
+    left, right = ((last_held(run, side) - SHOULDERS[side]) @ HEADWARD for side in SIDES)
+    assert left == pytest.approx(0.09, abs=0.02)  # [m]
+    assert right == pytest.approx(0.14, abs=0.02)  # [m]
+
+
+def test_where_both_are_up_no_hand_moves():
+    run = bench(reach=dict.fromkeys(SIDES, 0.9))
+    assert run.ended() is None
+    assert all(np.ptp(run.way(side), axis=0) == pytest.approx(0.0, abs=1e-3) for side in SIDES)
 
 
 @pytest.mark.parametrize("hidden", SIDES)

@@ -33,7 +33,7 @@ MIDDLE = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
 WHOLE = CheckCollarTuning(min_shown=DRESSING.collar_whole)
-FROM_LEFT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside)
+FROM_A_SIDE = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
 NEAT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
@@ -123,15 +123,20 @@ def unfolded(context: Context) -> Behaviour:
 
 
 def surely_middle(context: Context, bed: Scope) -> Behaviour:
-    """See the whole collar, or see it from the left too: folds lie at the right, which is dressed first."""
-    left = arm_scope(context, "left of the collar", "left")
-    from_left = sequence(
-        "from the left",
-        Navigate("go round", left, goal="bed_left"),
-        LookAtPerson("look", left),
-        CheckCollar("it lies in the middle", left, tuning=FROM_LEFT),
-    )
-    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), from_left)
+    """See the whole collar, or see it from the left too: folds lie at the right, which is dressed first.
+
+    Where too little of it shows from there, it is seen from the right instead.
+    """
+
+    def beside(side: Side) -> Behaviour:
+        place = arm_scope(context, f"{side} of the collar", side)
+        go = Navigate("go round", place, goal=f"bed_{side}")
+        return sequence(f"from the {side}", go, LookAtPerson("look", place))
+
+    lies = CheckCollar("it lies in the middle", Scope(bed, "from a side"), tuning=FROM_A_SIDE)
+    shown = RecoverBy("it shows from a side", lies, {Reason.NOTHING_SEEN: lambda: beside("right")})
+    from_a_side = sequence("from a side", beside("left"), shown)
+    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), from_a_side)
 
 
 def over(bed: Scope) -> Behaviour:
@@ -148,7 +153,7 @@ def seated(context: Context, bed: Scope) -> Behaviour:
     def seat() -> Behaviour:
         return sequence("draw them up", over(bed), SeatSleeves("seat", gown), back_off("clear the view", gown))
 
-    looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_low)]
+    looks = [node for side in SIDES for node in sits(context, f"{side} armhole", side, DRESSING.armhole_sits)]
     up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
     return fallback("as far as they go", up, back_off("leave them", gown))
 

@@ -139,14 +139,8 @@ class DressingTuning(Quantities):
     armhole_sits: float = quantity(
         0.73,
         "1",
-        "of the upper arm, below which a sleeve counts as low in the end",
+        "of the upper arm, below which a sleeve is drawn up, and counts as low in the end",
         "design requirement: 0.7, and more than half a standard deviation of what is seen of it",
-    )
-    armhole_low: float = quantity(
-        0.70,
-        "1",
-        "of the upper arm, below which sleeves are drawn up (once more)",
-        "measured: seen at 0.70 to 0.73, three armholes were at 0.72 to 0.76 (101, 109, 114), which is up",
     )
     collar_shown: float = quantity(
         0.70,
