@@ -90,9 +90,10 @@ class SeatSleeves(Skill):
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
-    which takes half of the time; one that is up already is left alone, and one that is missed does not keep the other from
-    being drawn.  The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and drawn back, after a missed
-    grasp too.
+    which takes half of the time, each as far as it is low: drawn too far, one takes the collar headward and to the
+    other side.  One that is up already is left alone, and one that is missed does not keep the other from being drawn.
+    The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and
+    drawn back, after a missed grasp too.
     """
 
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
