@@ -41,6 +41,13 @@ class HeadTuning(Quantities):
     max_aside: float = quantity(
         0.35, "rad", "of what it looks at, to keep that gap", "choice: well inside a picture that is 1.57 rad wide"
     )
+    coming_gap: float = quantity(
+        0.08,
+        "m",
+        "from the head to an arm that moves, from which on it turns away",
+        "measured: from 0.04 m on the elbow came nearer faster than the head turned, to 0.02 m, where the guard let "
+        "the hand crawl (134)",
+    )
     max_turned: float = quantity(
         0.6, "rad", "of what it looks at while an arm comes near, the same", "choice: still inside that picture"
     )
@@ -72,7 +79,7 @@ def keep_off_the_arms(skill: Skill, point_in_map: np.ndarray, tuning: HeadTuning
         tuning: numbers of turning the head.
     """
     gap, seen, robot = arm_gaps(skill), skill.world.observe(), skill.world.robot
-    if (room := gap(seen, seen.head_pan)) >= tuning.arm_gap:
+    if (room := gap(seen, seen.head_pan)) >= tuning.coming_gap:
         return
     bearing, (low, high) = _bearing(skill, point_in_map), kinematics_of(robot).head_range
     low, high = max(low, bearing - tuning.max_turned), min(high, bearing + tuning.max_turned)
