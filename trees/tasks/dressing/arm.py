@@ -64,7 +64,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         laid_out = CheckLaidOut("bare, its sleeve at hand", arm)
         return sequence(
             f"begin the {side} arm again",
-            let_down("held", arm, "lifting"),
+            let_down("held", arm, "lifting", other="pulling"),
             back_off("free both hands", arm),
             fallback(
                 "arm and sleeve laid out",
@@ -132,10 +132,17 @@ def up_arm(arm: Scope, max_load: float) -> PullAlongArm:
     return PullAlongArm("pull up", arm, stand=stance(arm["side"], "shoulder"), max_load=max_load, **goal)
 
 
-def let_down(name: str, arm: Scope, hand: str) -> Behaviour:
-    """A hand that holds the arm lowers it; where the arm does not come down, it opens all the same."""
+def let_down(name: str, arm: Scope, hand: str, *, other: str | None = None) -> Behaviour:
+    """A hand that holds the arm lowers it, once more when the `other` one has let its sleeve go; in the end it opens.
+
+    A sleeve that was caught on the arm kept it 0.23 m up (134).
+    """
     held = Scope(arm, name, hand=arm[hand])
-    return fallback(held.prefix + "let down", ReleaseArm("lower", held, lower=True), ReleaseArm("open", held))
+    ways: list[Behaviour] = [ReleaseArm("lower", held, lower=True)]
+    if other is not None:
+        free = Retreat("let the sleeve go", held, hands=arm[other], ready="never")
+        ways.append(sequence(f"{held.prefix}without it", free, ReleaseArm("lower it then", held, lower=True)))
+    return fallback(f"{held.prefix}let down", *ways, ReleaseArm("open", held))
 
 
 def put_down(name: str, arm: Scope) -> Behaviour:
@@ -163,7 +170,7 @@ def lay_folded(arm: Scope) -> Behaviour:
     folded = Scope(arm, "folded")
     return sequence(
         f"the {arm['side']} sleeve back on the bed",
-        let_down("held", folded, "lifting"),
+        let_down("held", folded, "lifting", other="pulling"),
         fallback(
             f"{folded.prefix}laid", LaySleeve("lay it back", folded, hand=arm["pulling"]), back_off("leave it", folded)
         ),
