@@ -59,6 +59,12 @@ class SeatSleevesTuning(Quantities):
         "measured: one at 0.62 came to 0.88, drawn all the way to 0.97, and the collar 0.14 m headward (106, 142); one "
         "at 0.40 came to 0.52, drawn all the way to 0.79 (106)",
     )
+    farther_again: float = quantity(
+        0.5,
+        "1",
+        "of the difference between the two, by which one that is still low is drawn farther each time",
+        "measured: one at 0.66 came to 0.71, and went back to 0.68 as the collar was laid (143)",
+    )
     low_and_almost: tuple[float, float] = quantity(
         (0.45, 0.60), "1", "of the upper arm, between which the way goes from all of it to less", "choice: as measured"
     )
@@ -82,6 +88,13 @@ class SeatSleevesTuning(Quantities):
     # at 6.5 N, with 8.1 N for a moment, 1 % of the cloth's edges were 28 % longer, at 6 N and 7.5 N 23 and 25 % (101)
     carry: Carry = field(default_factory=lambda: Carry(max_load=5.5))
     withdrawal: float = quantity(0.12, "m", "by which the open hands are drawn back", "choice: clear of the sleeves")
+
+
+@dataclass
+class Drawn:
+    """How often each sleeve was drawn up in this run."""
+
+    times: dict[Side, int] = field(default_factory=lambda: dict.fromkeys(SIDES, 0))
 
 
 class SeatSleeves(Skill):
@@ -132,7 +145,7 @@ class SeatSleeves(Skill):
         yield from carry_each(self, above, tuning.carry, tuning.apart)
         over, laid = {}, {}
         for side in held:
-            inward, headward = self._drawn_to(reach[side])
+            inward, headward = self._drawn_to(side, reach[side])
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
@@ -150,12 +163,14 @@ class SeatSleeves(Skill):
         except PerceptionFailure:
             return 0.0
 
-    def _drawn_to(self, reach: float) -> tuple[float, float]:
-        """Inwards and headward from the shoulder [m], the less the higher the armhole is."""
-        tuning = self.tuning
-        both = zip(tuning.drawn_to, tuning.drawn_less, strict=True)
-        inward, headward = (float(np.interp(reach, tuning.low_and_almost, ends)) for ends in both)
-        return inward, headward
+    def _drawn_to(self, side: Side, reach: float) -> tuple[float, float]:
+        """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther at each try."""
+        tuning, drawn = self.tuning, self.context.memory.of(Drawn, Drawn).times
+        farther = float(np.interp(reach, tuning.low_and_almost, (1.0, 0.0))) + tuning.farther_again * drawn[side]
+        drawn[side] += 1
+        less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)
+        inward, headward = less + min(farther, 1.0) * (all_of_it - less)
+        return float(inward), float(headward)
 
     def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
         """Grasp one seam, leaning outwards as far as the arm reaches it that way."""

@@ -9,7 +9,7 @@ from caretree.skills.control.hands import gap_between_arms
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import HEADWARD, outwards, stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
-from caretree.skills.seat_sleeves import SeatSleeves, SeatSleevesTuning
+from caretree.skills.seat_sleeves import Drawn, SeatSleeves, SeatSleevesTuning
 
 from .bench import LeafBench, beside_bed, pulls
 
@@ -150,6 +150,17 @@ def test_the_lower_one_is_drawn_farther():
     left, right = ((last_held(run, side) - SHOULDERS[side]) @ HEADWARD for side in SIDES)
     assert left == pytest.approx(0.09, abs=0.02)  # [m]
     assert right == pytest.approx(0.14, abs=0.02)  # [m]
+
+
+def test_one_that_is_still_low_is_drawn_farther_the_next_time():
+    ends = []
+    for before in (0, 1, 2, 7):
+        run = bench(reach=dict.fromkeys(SIDES, 0.65))
+        run.context.memory.of(Drawn, Drawn).times["left"] = before
+        assert run.ended() is None
+        ends.append((last_held(run, "left") - SHOULDERS["left"]) @ HEADWARD)
+        assert run.context.memory.of(Drawn, Drawn).times == {"left": before + 1, "right": 1}
+    assert ends == pytest.approx([0.09, 0.115, 0.14, 0.14], abs=0.01)  # [m]
 
 
 def test_where_both_are_up_no_hand_moves():
