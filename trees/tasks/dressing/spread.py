@@ -123,19 +123,20 @@ def unfolded(context: Context) -> Behaviour:
 
 
 def surely_middle(context: Context, bed: Scope) -> Behaviour:
-    """See the whole collar, or see it from the left too: folds lie at the right, which is dressed first.
+    """See the whole collar, or see it in the middle from beside a shoulder too: two looks of three have to agree.
 
-    Where too little of it shows from there, it is seen from the right instead.
+    From the left first, as folds lie at the right, which is dressed first.  Where too little of it shows from there, or
+    it seems to lie aside, the right decides.  In 52 states of seeds 106, 142, 143 and 144 the first look or two of
+    three told 33 of 39 collars that lay in the middle, and 2 of 13 that did not, by 1 cm; without the right 30 and 2.
     """
 
     def beside(side: Side) -> Behaviour:
-        place = arm_scope(context, f"{side} of the collar", side)
-        go = Navigate("go round", place, goal=f"bed_{side}")
-        return sequence(f"from the {side}", go, LookAtPerson("look", place))
+        return sequence(f"from the {side}", *go_beside(arm_scope(context, f"{side} of the collar", side), side))
 
     lies = CheckCollar("it lies in the middle", Scope(bed, "from a side"), tuning=FROM_A_SIDE)
-    shown = RecoverBy("it shows from a side", lies, {Reason.NOTHING_SEEN: lambda: beside("right")})
-    from_a_side = sequence("from a side", beside("left"), shown)
+    unsure = (Reason.NOTHING_SEEN, Reason.COLLAR_ASIDE)
+    agree = RecoverBy("two of three agree", lies, dict.fromkeys(unsure, lambda: beside("right")))
+    from_a_side = sequence("from a side", beside("left"), agree)
     return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), from_a_side)
 
 

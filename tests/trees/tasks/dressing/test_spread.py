@@ -20,12 +20,12 @@ class WornGown(ScriptedSenses):
     Attributes:
         done: what was done to it, in turn.
         shown: how much of the neckline is seen.
-        from_left: where the collar is seen from the left of the bed, if that is another place.
+        beside: where the collar is seen from the left (-1) and the right (1) of the bed, if those are other places.
     """
 
-    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, from_left=None):
+    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, beside=None):
         super().__init__(world)
-        self.outside, self.shown, self.from_left = outside, shown, from_left
+        self.outside, self.shown, self.beside = outside, shown, beside or {}
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
@@ -49,8 +49,8 @@ class WornGown(ScriptedSenses):
 
     def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0)):
         seen = super().collar_middle(frame, near_in_map=near_in_map, away=away)
-        beside = self.from_left is not None and self._world.observe().pose_base_in_map[0] < -0.5
-        off = np.add(self.from_left if beside else self.off, away)
+        out = self._world.observe().pose_base_in_map[0]
+        off = np.add(self.beside.get(np.sign(out), self.off) if abs(out) > 0.5 else self.off, away)
         return replace(seen, confidence=self.shown, position_in_map=near_in_map + (*off, 0.13))
 
 
@@ -112,13 +112,17 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
 
 
 @pytest.mark.parametrize(
-    ("shown", "from_left", "ends"),
+    ("shown", "from_left", "from_right", "ends"),
     [
-        (0.95, (0.12, 0.0), "success"),
-        (0.80, (0.01, 0.0), "success"),
-        (0.80, (0.12, 0.0), "safe_stop"),
-        (0.60, (0.0, 0.0), "safe_stop"),
+        (0.95, (0.12, 0.0), (0.12, 0.0), "success"),
+        (0.80, (0.01, 0.0), (0.12, 0.0), "success"),
+        (0.80, (0.12, 0.0), (0.01, 0.0), "success"),
+        (0.80, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
+        (0.80, (0.12, 0.0), (-0.12, 0.0), "safe_stop"),
+        (0.60, (0.0, 0.0), (0.0, 0.0), "safe_stop"),
     ],
 )
-def test_a_collar_that_does_not_show_whole_is_seen_from_the_left_too_before_it_is_claimed(shown, from_left, ends):
-    assert rehearsed(0.85, shown=shown, from_left=from_left) == (ends, [])
+def test_a_collar_that_does_not_show_whole_is_claimed_where_two_of_three_looks_agree(
+    shown, from_left, from_right, ends
+):
+    assert rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}) == (ends, [])
