@@ -34,7 +34,7 @@ OTHERS = {"head": "#7b3fa0", "trunk": "#566573", "torso": "#566573", "legs": "#8
 STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "running": "#d9a53a"}
 FAULT = {"color": "#7b3fa0", "linewidth": 1.0, "linestyle": ":"}
 LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
-ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 40
+ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 70 to 110
 
 
 def _figure(rows: int, height: float) -> tuple[Figure, list[Axes]]:
@@ -61,6 +61,19 @@ def _png(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
+def telling_skills(spans: Sequence[Span], most: int = ROWS_MAX) -> tuple[list[str], int]:
+    """Names of the skills that are drawn, in order of their start, and how many are left out.
+
+    Of too many, those that failed come before those that took longest: what decided a run may be its last skill.
+    """
+    took: dict[str, tuple[bool, float]] = {}
+    for span in spans:
+        failed, seconds = took.get(span.name, (False, 0.0))
+        took[span.name] = failed or span.status == "FAILURE", seconds + span.t_end - span.t_start
+    drawn = set(sorted(took, key=took.__getitem__, reverse=True)[:most])
+    return [name for name in took if name in drawn], max(len(took) - most, 0)
+
+
 def timeline(
     stages: Sequence[Mapping[str, Any]],
     spans: Sequence[Span],
@@ -82,8 +95,8 @@ def timeline(
             stop = end if stop is None else float(stop)
             bars.append((str(stage.get("name")), [(float(stage["t_start"]), stop, str(stage.get("status")))]))
     first_skill = len(bars)
-    names = list(dict.fromkeys(span.name for span in spans))
-    for name in names[:ROWS_MAX]:
+    names, left_out = telling_skills(spans)
+    for name in names:
         bars.append((name, [(span.t_start, span.t_end, span.status.lower()) for span in spans if span.name == name]))
     above = 0.03 * max((len(which) for _, which in faults), default=0)  # [in] that the slanting names of faults rise
     figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)) + above)
@@ -98,7 +111,7 @@ def timeline(
                 color=STATUS.get(status, STATUS["running"]),
                 alpha=1.0 if row < first_skill else 0.75,
             )
-    rows = {name: first_skill + k for k, name in enumerate(names[:ROWS_MAX])}
+    rows = {name: first_skill + k for k, name in enumerate(names)}
     failed = [span for span in spans if span.status == "FAILURE" and span.name in rows]
     axis.plot(
         [span.t_end for span in failed],
@@ -118,8 +131,8 @@ def timeline(
     axis.set_ylim(len(bars) - 0.4, -0.6)
     axis.set_xlim(0, max(end, 1e-3))
     axis.set_xlabel("time [s]", fontsize=8)
-    if len(names) > ROWS_MAX:
-        axis.set_title(f"the first {ROWS_MAX} of {len(names)} skills", fontsize=8)
+    if left_out:
+        axis.set_title(f"skills that failed, and those that took longest; {left_out} more are left out", fontsize=8)
     return _png(figure)
 
 
