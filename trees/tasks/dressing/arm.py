@@ -10,6 +10,8 @@ inside?          back off, put the arm down and look; whatever went wrong until 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import SIDES, Side
@@ -33,8 +35,10 @@ from ....skills.pull_along_arm import PullAlongArm
 from ....skills.release_arm import ReleaseArm
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
+from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
 from .draw_flat import DrawFlat
+from .lay import holds_gown_with
 from .tuning import DRESSING, SleeveTuning
 
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
@@ -60,18 +64,17 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
             grasp_worn("grasp the worn sleeve", arm),
         )
 
-    def begin_again() -> Behaviour:
-        laid_out = CheckLaidOut("bare, its sleeve at hand", arm)
+    def begin_again(scope: Scope, free: Callable[[Scope], Behaviour]) -> Behaviour:
         return sequence(
-            f"begin the {side} arm again",
-            let_down("held", arm, "lifting", other="pulling"),
-            back_off("free both hands", arm),
+            f"{scope.prefix}begin again",
+            let_down("held", scope, "lifting", other="pulling"),
+            free(scope),
             fallback(
-                "arm and sleeve laid out",
-                laid_out,
-                lay_out(arm),
-                *([fetch_sleeve(arm, side)] if strays else []),
-                back_off("leave it as it lies", arm),
+                f"{scope.prefix}arm and sleeve laid out",
+                CheckLaidOut("bare, its sleeve at hand", scope),
+                lay_out(scope),
+                *([fetch_sleeve(scope, side)] if strays else []),
+                back_off("leave it as it lies", scope),
             ),
         )
 
@@ -84,7 +87,10 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
     away = back_off("back off", arm, DRESSING.back_off_distance)
     inside = CheckSleeve("is inside", arm)
     once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, put_down("in the end", arm), inside)
-    again = dict.fromkeys(MISSES, begin_again) | {Reason.SLEEVE_FOLDED: lambda: lay_folded(arm)}
+    again: dict[Reason, Callable[[], Behaviour]] = {
+        **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
+        Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
+    }
     return RecoverBy(f"dress the {side} arm", once, again, attempts=DRESSING.arm_attempts)
 
 
@@ -165,16 +171,19 @@ def put_down(name: str, arm: Scope) -> Behaviour:
     )
 
 
-def lay_folded(arm: Scope) -> Behaviour:
-    """A sleeve that would not open is laid back: let go of in the air, it took the gown off the bed (138)."""
-    folded = Scope(arm, "folded")
-    return sequence(
-        f"the {arm['side']} sleeve back on the bed",
-        let_down("held", folded, "lifting", other="pulling"),
-        fallback(
-            f"{folded.prefix}laid", LaySleeve("lay it back", folded, hand=arm["pulling"]), back_off("leave it", folded)
-        ),
-        back_off("clear of it", folded),
+def let_go(arm: Scope) -> Behaviour:
+    """Of all that is held, where it is."""
+    return back_off("free both hands", arm)
+
+
+def laid_back(arm: Scope) -> Behaviour:
+    """A sleeve that is still held is laid on the bed: let go of in the air, it took the gown to the floor (138)."""
+    held = Condition(f"{arm.prefix}still held", holds_gown_with, Reason.CLOTH_SLIPPED, hand=arm["pulling"])
+    laid = LaySleeve("lay it back", arm, hand=arm["pulling"])
+    return fallback(
+        f"{arm.prefix}the sleeve let go",
+        sequence(f"{arm.prefix}laid back", held, laid, let_go(Scope(arm, "laid"))),
+        let_go(arm),
     )
 
 
@@ -182,8 +191,8 @@ def lay_out(arm: Scope) -> Behaviour:
     """Take the sleeve by its strap, wherever it is, and lay it beyond the hand: the gown comes along, off the arm."""
 
     def take(stand: Stand) -> Behaviour:
-        go = Navigate(f"go to the {stand} stance", arm, goal=stance(arm["side"], stand))
-        return sequence(f"from the {stand} stance", go, grasp_worn(f"grasp from the {stand} stance", arm))
+        go = Navigate(f"go to {stand} stance", arm, goal=stance(arm["side"], stand))
+        return sequence(f"{arm.prefix}from {stand} stance", go, grasp_worn(f"grasp at {stand} stance", arm))
 
     return sequence(
         "lay the sleeve out",

@@ -44,15 +44,17 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
     free = [
         node
         for node in nodes
-        if isinstance(node, (PullAlongArm, LaySleeve)) and node.name.endswith(("pull up", "lay it beyond the hand"))
+        if isinstance(node, (PullAlongArm, LaySleeve))
+        and node.name.endswith(("pull up", "lay it beyond the hand", "lay it back"))
     ]
-    assert len(free) == 4  # up: both arms; laid out: both arms
+    assert len(free) == 8  # up, laid back: both arms; laid out: both, after the person has moved and after all else
     assert all(node.bindings["hold"] is None for node in free)
 
 
 def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_the_bed(nodes):
     carries = [node for node in nodes if isinstance(node, CarryAcross)]
-    assert len(carries) == 2  # the left sleeve after the right arm, and where it does not show
+    # the left sleeve after the right arm, and where it does not show after the person has moved and after all else
+    assert len(carries) == 3
     for carry in carries:
         steps = carry.parent.children
         assert isinstance(steps[steps.index(carry) + 1], Retreat)
@@ -104,6 +106,14 @@ def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
         first = again.recoveries[Reason.PERSON_MOVED].children[0]
         assert first.name == f"{side} arm/held/let down"
         assert first.children[0].lower
+
+
+def test_a_sleeve_that_is_still_held_is_laid_back_unless_the_person_has_moved(nodes):
+    for side in ("left", "right"):
+        again = next(node for node in nodes if isinstance(node, RecoverBy) and node.name == f"dress the {side} arm")
+        for reason, branch in again.recoveries.items():
+            laid = [node.name for node in branch.iterate() if node.name.endswith("lay it back")]
+            assert laid == ([] if reason is Reason.PERSON_MOVED else [f"{side} arm/again/lay it back"])
 
 
 @pytest.mark.parametrize("leaf", ["right arm/lift", "right arm/pull over the hand"])
