@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -138,3 +139,13 @@ def make_record() -> Callable[..., Path]:
         return directory
 
     return make
+
+
+@pytest.fixture(autouse=True, scope="session")
+def signals_of_a_terminal():
+    """In the background of a script, or under nohup, SIGINT or SIGHUP are ignored, by the product too.
+
+    A run that waits for one of them would never end.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)

@@ -33,14 +33,6 @@ TROUBLES = {
 }
 
 
-@pytest.fixture(autouse=True)
-def in_a_terminal():
-    """Under nohup SIGHUP is ignored, by the product too: a run that waits for it would never end."""
-    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    yield
-    signal.signal(signal.SIGHUP, before)
-
-
 class FullDisk:
     """A recorder on a disk that is full for some of what is recorded."""
 
