@@ -56,8 +56,8 @@ class SeatSleevesTuning(Quantities):
         (0.05, 0.09),
         "m",
         "likewise, of an armhole that is almost up",
-        "measured: one at 0.62 came to 0.88, drawn all the way to 0.97, and the collar 0.14 m headward (106, 142); one "
-        "at 0.40 came to 0.52, drawn all the way to 0.79 (106)",
+        "measured: left ones at 0.62 came to 0.92, drawn all the way to 0.96 and 1.00, with the collar 0.12 instead of "
+        "0.14 m headward (106, 142); a right one at 0.39 came to 0.68, drawn all the way to 0.79 (106)",
     )
     farther_again: float = quantity(
         0.5,
@@ -72,7 +72,7 @@ class SeatSleevesTuning(Quantities):
         0.80,
         "1",
         "of the upper arm, from which an armhole is left alone while the other one is lower",
-        "measured: drawn up with the other one, armholes came to 0.88 to 0.99 and the collar 0.12 m headward (106)",
+        "measured: drawn up with the other one, an armhole at 0.87 came to 1.00 and the collar 0.15 m headward (106)",
     )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
@@ -144,8 +144,10 @@ class SeatSleeves(Skill):
         above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
         yield from carry_each(self, above, tuning.carry, tuning.apart)
         over, laid = {}, {}
+        drawn = self.context.memory.of(Drawn, Drawn).times
         for side in held:
-            inward, headward = self._drawn_to(side, reach[side])
+            inward, headward = self._drawn_to(reach[side], drawn[side])
+            drawn[side] += 1
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
@@ -163,11 +165,10 @@ class SeatSleeves(Skill):
         except PerceptionFailure:
             return 0.0
 
-    def _drawn_to(self, side: Side, reach: float) -> tuple[float, float]:
-        """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther at each try."""
-        tuning, drawn = self.tuning, self.context.memory.of(Drawn, Drawn).times
-        farther = float(np.interp(reach, tuning.low_and_almost, (1.0, 0.0))) + tuning.farther_again * drawn[side]
-        drawn[side] += 1
+    def _drawn_to(self, reach: float, times: int) -> tuple[float, float]:
+        """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
+        tuning = self.tuning
+        farther = float(np.interp(reach, tuning.low_and_almost, (1.0, 0.0))) + tuning.farther_again * times
         less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)
         inward, headward = less + min(farther, 1.0) * (all_of_it - less)
         return float(inward), float(headward)
