@@ -15,6 +15,7 @@ from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
+from .belief.strap_turn import strap_turns
 from .control.compliant_hold import while_holding
 from .control.fingers import open_gripper
 from .control.hands import hand_now, move_hands
@@ -97,6 +98,7 @@ class GraspSleeve(Skill):
         yield from move_hands(self, {self.hand: way.inside}, speed=tuning.reach_in_speed, way="either")
         pose = hand_now(self, self.hand)
         yield from pinch_or_back_off(self, self.hand)
+        strap_turns(self)[self.hand] = 0.0
         self.grip = strap_grip(self.side, self.hand, strap, pose)
 
     def _look(self) -> Generator[None, None, SleeveOpening]:

@@ -14,6 +14,7 @@ from ..sim.quantity import Quantities, quantity
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.strap_grasp import STRAP_GRASP, presenting_position
+from .belief.strap_turn import strap_turns, turned_strap
 from .control.compliant_hold import while_holding
 from .control.hands import cloth_load, hand_now, move_hands, until_load
 from .control.head import look_towards
@@ -66,8 +67,18 @@ class PresentSleeveTuning(Quantities):
     second_load: float = quantity(
         1.2,
         "1",
-        "greatest load the second time, in times of `max_load`, for a sleeve that did not open",
+        "greatest load the next times, in times of `max_load`, for a sleeve that did not open",
         "choice: carried in from farther out, the cuff trails behind",
+    )
+    attempts: int = quantity(3, "1", "to bring it open before the hand", "choice: the strap is turned between them")
+    min_pointing: float = quantity(
+        0.06, "m", "level way from armhole to cuff that has a direction", "choice: a sleeve that hangs has none"
+    )
+    turn_shares: tuple[float, ...] = quantity(
+        (1.0, 0.6, 0.0),
+        "1",
+        "of the angle by which the sleeve points elsewhere that the strap is turned, tried one after the other",
+        "choice: as far as the wrist turns",
     )
     min_load: float = quantity(
         0.2, "N", "load below which no sleeve hangs from the hand", "choice: a sleeve in the air pulls harder"
@@ -83,11 +94,19 @@ class PresentSleeveTuning(Quantities):
     )
 
 
+@dataclass(frozen=True)
+class _Folded:
+    """A sleeve that does not open: why, and by which angle about the vertical it would have to be turned [rad]."""
+
+    failure: SkillFailure
+    angle: float
+
+
 class PresentSleeve(Skill):
     """Raises the sleeve, carries it to a place beyond the fingertips and turns it there, never over the arm.
 
     Held by its strap across the arm's direction, the armhole hangs open like a hoop for the hand.  A sleeve that does
-    not open is carried out once more, farther.
+    not open is carried out once more, farther, and its strap is turned by as much as the sleeve points elsewhere.
 
     It fails where the sleeve still does not open, where the gown is caught on something, where the strap or the arm
     slips out of the fingers, where a place is out of reach, and where the person moves.
@@ -136,15 +155,18 @@ class PresentSleeve(Skill):
         path = ArmPath.of(watch_arm(self, arm, hold=self.hold))
         yield from while_holding(self, self.hold, look_towards(self, path.point(self.tuning.look_coordinate)))
         yield from self._bring(path, self.max_load)
-        if (folded := (yield from self._folded(path))) is not None and np.isfinite(self.max_load):
+        folded = yield from self._folded(path)
+        for again in range(self.tuning.attempts - 1 if np.isfinite(self.max_load) else 0):
+            if folded is None or (again and not folded.angle):
+                break
             self.note(f"brings the {arm} sleeve from farther out")  # on its way back the cuff trails behind
             try:
-                yield from self._bring(path, self.tuning.second_load * self.max_load)
+                yield from self._bring_turned(path, folded.angle)
             except MotionError:
-                raise folded from None
+                break
             folded = yield from self._folded(path)
         if folded is not None:
-            raise folded
+            raise folded.failure
 
     def _raise(self) -> Iterator[None]:
         """Off the bed and aside; where that is out of reach, as far as is not."""
@@ -158,6 +180,17 @@ class PresentSleeve(Skill):
                 return
         raise tries.last
 
+    def _bring_turned(self, path: ArmPath, angle: float) -> Iterator[None]:
+        """Bring it from farther out, the strap turned by an angle [rad] about the vertical, or as far as can be."""
+        turns, hand, tries = strap_turns(self), self.grip.hand, Tries(MotionError)
+        before = turns[hand]
+        for share in self.tuning.turn_shares if angle else (0.0,):
+            turns[hand] = before + share * angle
+            with tries:
+                yield from self._bring(path, self.tuning.second_load * self.max_load)
+                return
+        raise tries.last
+
     def _bring(self, path: ArmPath, max_load: float) -> Iterator[None]:
         """Out beyond the fingertips, then back before them."""
         tuning, hand = self.tuning, self.grip.hand
@@ -168,7 +201,7 @@ class PresentSleeve(Skill):
         path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
         place = path.moved(3.0, tuning.before_fingertips)
         start = path.point(place) + tuning.clearance * path.frame(place)[:, 2]
-        goal = presenting(self.grip, path.direction(tuning.hand_coordinate), start)
+        goal = presenting(turned_strap(self, self.grip), path.direction(tuning.hand_coordinate), start)
         load = np.inf
         for _ in range(tuning.back_attempts):
             motion = move_hands(self, {hand: goal}, speed=careful(self, tuning.speed), way="either")
@@ -177,7 +210,7 @@ class PresentSleeve(Skill):
                 return
         raise SkillFailure(Reason.SLEEVE_CAUGHT, f"the gown pulls with {load:.1f} N")
 
-    def _folded(self, path: ArmPath) -> Generator[None, None, SkillFailure | None]:
+    def _folded(self, path: ArmPath) -> Generator[None, None, _Folded | None]:
         """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it.
 
         One that hides behind its panel cannot be centred on the hand either.
@@ -192,16 +225,19 @@ class PresentSleeve(Skill):
             try:
                 seen = self._heading()
             except PerceptionFailure as hidden:
-                return SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}")
+                return _Folded(SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}"), 0.0)
         heading = unit(path.direction(self.tuning.hand_coordinate) * (1.0, 1.0, 0.0))
         beyond = float(seen.cuff_from_armhole_in_map @ heading)
         if beyond >= self.min_cuff_distance:
             return None
-        return SkillFailure(
+        failure = SkillFailure(
             Reason.SLEEVE_FOLDED,
             f"the cuff is {beyond * 100:.0f} cm beyond the armhole, "
             f"{self.min_cuff_distance * 100:.0f} cm are asked for",
         )
+        aside = float(seen.cuff_from_armhole_in_map @ np.cross(UP, heading))
+        points = np.hypot(aside, beyond) > self.tuning.min_pointing
+        return _Folded(failure, -float(np.arctan2(aside, beyond)) if points else 0.0)
 
     def _heading(self) -> SleeveHeading:
         """Which way the sleeve points, as the head's camera sees it."""
@@ -215,8 +251,9 @@ class PresentSleeve(Skill):
     def _carry_out(self, path: ArmPath, max_load: float) -> Iterator[None]:
         """Carry the sleeve beyond the fingertips, as far as the arm reaches."""
         tuning, hand, tries = self.tuning, self.grip.hand, Tries(MotionError)
+        grip = turned_strap(self, self.grip)
         for beyond in STRAP_GRASP.presenting_distances:
-            goal = presenting(self.grip, path.direction(tuning.hand_coordinate), presenting_position(path, beyond))
+            goal = presenting(grip, path.direction(tuning.hand_coordinate), presenting_position(path, beyond))
             with tries:
                 motion = move_hands(self, {hand: goal}, speed=careful(self, tuning.speed), way="either")
                 yield from until_load(self, hand, max_load, motion)

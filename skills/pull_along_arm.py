@@ -13,6 +13,7 @@ from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
+from .belief.strap_turn import turned_strap
 from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now
 from .control.head import keep_off_the_arms, look_towards
@@ -180,7 +181,7 @@ class PullAlongArm(Skill):
             keep_off_the_arms(self, now.path.point(0.5 * (now.coordinate + self.grip_goal)))
             ease_hold(self, self.hold)
             linear = self._velocity(pull, now)
-            wanted = presenting(self.grip, now.path.direction(now.coordinate), now.hand[:3, 3])
+            wanted = presenting(turned_strap(self, self.grip), now.path.direction(now.coordinate), now.hand[:3, 3])
             twist = np.concatenate((linear, self.tuning.law.turn(wanted, now.hand)))
             self.world.send(HandTwist(side=self.grip.hand, twist_in_map=twist))
             self._drive(pull, now.seen)

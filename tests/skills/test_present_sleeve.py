@@ -13,8 +13,18 @@ WRIST, FINGERTIP = lying_arm("right")[2:]
 ALONG = (FINGERTIP - WRIST) * (1.0, 1.0, 0.0) / np.linalg.norm((FINGERTIP - WRIST)[:2])  # the right hand
 
 
-def heading(beyond):
-    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=beyond * ALONG)
+ASIDE = np.cross((0.0, 0.0, 1.0), ALONG)  # counter-clockwise from the hand's direction
+
+
+def heading(beyond, aside=0.0):
+    way = beyond * ALONG + aside * ASIDE
+    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=way)
+
+
+def turned(run):
+    """By how much the hand has turned the strap in the end, counter-clockwise from above [rad]."""
+    across = run.poses("right")[-1, :3, :3] @ GRIP.across_in_hand
+    return np.arctan2(-across @ ASIDE, -across @ ALONG)
 
 
 def ran(seen, load=1.0):
@@ -65,6 +75,24 @@ def test_one_that_hangs_no_more_has_slipped():
 )
 def test_it_is_brought_twice_at_most(seen, reason, asked):
     assert ran(seen)[1:] == (reason, asked)
+
+
+@pytest.mark.parametrize("degrees", [110.0, 60.0, -70.0])
+def test_one_that_points_elsewhere_is_turned_back_by_as_much(degrees):
+    angle = np.deg2rad(degrees)
+    run, reason, asked = ran([heading(0.09 * np.cos(angle), 0.09 * np.sin(angle)), heading(0.10)])
+    assert (reason, asked) == (None, 2)
+    assert turned(run) == pytest.approx(-angle, abs=0.45 * abs(angle))  # all of it, or as far as the wrist turns
+
+
+def test_one_that_still_points_elsewhere_is_turned_on():
+    run, reason, asked = ran([heading(0.0, 0.12), heading(0.02, -0.08), heading(0.09)])
+    assert (reason, asked) == (None, 3)
+    assert abs(turned(run)) < np.deg2rad(30.0)  # there and back
+
+
+def test_one_that_keeps_pointing_elsewhere_is_given_up():
+    assert ran([heading(0.0, 0.12)])[1:] == (Reason.SLEEVE_FOLDED, 3)
 
 
 @pytest.mark.parametrize("load", [5.0, 7.0])

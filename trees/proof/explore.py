@@ -23,12 +23,12 @@ from py_trees.common import Status
 from ...sim.scripted.clock import SteppedClock
 from ...sim.scripted.world import ScriptedWorld
 from ...skills.core.context import Context
-from ...skills.core.ports import Key
-from ...skills.core.reasons import Failure, Reason
+from ...skills.core.reasons import Reason
 from ...skills.core.skill import Skill
 from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
 from .quick_nodes import REMEMBERING, quickened, remembers
+from .stub import KeyMissing, Stub
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
 FROM_OUTSIDE = (Reason.FORCE_LIMIT, Reason.SPEED_LIMIT, Reason.SENSOR_LOST, Reason.SENSOR_STALE, Reason.EMERGENCY_STOP)
@@ -54,68 +54,6 @@ class _Known(Exception):  # noqa: N818 ends an execution, no defect
 
 class _Round(Exception):  # noqa: N818 a finding about the tree
     """The same situation twice in one execution."""
-
-
-class _Missing(Exception):  # noqa: N818 a finding about the tree
-    """A leaf reads what is not there."""
-
-
-class Stub(Behaviour):
-    """Stands in for a leaf: reads and writes its keys, and ends as the explorer says."""
-
-    def __init__(self, leaf: Behaviour, explorer: Explorer) -> None:
-        super().__init__(leaf.name)
-        self.leaf = leaf
-        self.parent = leaf.parent
-        self.commands = isinstance(leaf, Skill) and leaf.commands
-        asked = leaf.reads().values() if isinstance(leaf, Condition) else self._bound(leaf, "inputs")
-        self.reads = [key.name for key in asked]
-        self.writes = [k.name for k in self._bound(leaf, "outputs")]
-        self.failure: Failure | None = None
-        self._failures: dict[Reason, Failure] = {}  # by what was chosen: most of an exploration meets them again
-        self._explorer = explorer
-        self._change = partial(explorer.changed.add, self)
-        self.tick = self.tick_at_once  # type: ignore[assignment] whoever ticks it takes what it gives
-
-    @staticmethod
-    def _bound(leaf: Behaviour, which: str) -> list[Key]:
-        if not isinstance(leaf, Skill):
-            return []
-        return [bound for name, _ in getattr(leaf, which)() if isinstance(bound := leaf.bindings[name], Key)]
-
-    def tick_at_once(self) -> Iterable[Behaviour]:
-        """As any leaf of py_trees, without its log and at once: most of an exploration is ticks of stubs."""
-        self._change()
-        if self.status is not Status.RUNNING:
-            self.initialise()
-        self.status = self.update()
-        return (self,)
-
-    def stop(self, new_status: Status = Status.INVALID) -> None:
-        """Take the status; there is nothing to end."""
-        self._change()
-        self.status = new_status
-
-    def initialise(self) -> None:
-        """As a skill does: forget outputs."""
-        self.failure = None
-        self._explorer.board.difference_update(self.writes)
-
-    def update(self) -> Status:
-        """Read, be decided, write."""
-        missing = [key for key in self.reads if key not in self._explorer.board]
-        if missing:
-            raise _Missing(f"{self.name} reads {missing[0]!r}, which has not been written")
-        outcome = self._explorer.choose(self)
-        if outcome is None or outcome == "later":
-            return Status.RUNNING
-        if outcome is True:
-            self._explorer.board.update(self.writes)
-            return Status.SUCCESS
-        if outcome not in self._failures:
-            self._failures[outcome] = Failure(outcome, "", self.name)
-        self.failure = self._failures[outcome]
-        return Status.FAILURE
 
 
 class _Point(NamedTuple):
@@ -267,7 +205,7 @@ class Explorer:
             self._find("the tree does not end")
         except _Known:
             return
-        except (_Missing, _Round) as finding:
+        except (KeyMissing, _Round) as finding:
             self._find(str(finding))
 
     def _pass_time(self) -> None:

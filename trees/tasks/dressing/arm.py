@@ -114,7 +114,7 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
     return sequence(
         "over the hand",
         Navigate("come to it", arm, goal=stance(arm["side"], "lift")),
-        LookAtPerson("look", arm),
+        arm_in_view(arm),
         LookForSleeve("look for the sleeve", arm, hand=arm["pulling"]),
         FindStand("choose where to stand", arm, stand=stand),
         Navigate("stand there", arm, goal=stand),
@@ -126,6 +126,21 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         ),
         ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
     )
+
+
+def arm_in_view(arm: Scope) -> Behaviour:
+    """See the arm, from farther off where it is lost: near it, a hand beyond the cloth is out of the picture."""
+    far = Scope(arm, "far")
+
+    def farther_off() -> Behaviour:
+        return sequence(
+            f"{far.prefix}from farther off",
+            Navigate("go off", far, goal=f"bed_{arm['side']}"),
+            LookAtPerson("look", far),
+            Navigate("come back", far, goal=stance(arm["side"], "lift")),
+        )
+
+    return RecoverBy(f"{arm.prefix}in view", LookAtPerson("look", arm), {Reason.ARM_LOST: farther_off})
 
 
 def up_arm(arm: Scope, max_load: float) -> PullAlongArm:
