@@ -7,7 +7,7 @@ from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import MotionBlocked, Unreachable
 from caretree.skills.motion.ik import hand_pose
-from caretree.skills.motion.reach import plan_arms, plan_hand_line, plan_reach
+from caretree.skills.motion.reach import ReachTuning, plan_arms, plan_hand_line, plan_reach
 
 BASE = np.array((0.95, -0.2, np.pi))
 BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
@@ -67,6 +67,33 @@ def test_reaching_goes_round_what_is_in_the_way(kinematics):
     np.testing.assert_allclose(hand[:3, 3], beyond[:3, 3], atol=1e-3)
     again = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
     np.testing.assert_array_equal(again.positions, round_it.positions)
+
+
+def test_of_ways_round_it_that_take_long_the_quickest_is_gone(kinematics):
+    board = np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),))
+    checker = CollisionChecker(kinematics, board)
+    arms = model.READY.copy()
+    before, beyond = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (-0.70, -0.30))
+    arms[0] = plan_reach(kinematics, {"left": before}, arms, BASE, free="approach", checker=checker).positions[-1]
+
+    def taken(speed, ways):
+        """How long the way takes [s]."""
+        return plan_reach(
+            kinematics,
+            {"left": beyond},
+            arms,
+            BASE,
+            free="approach",
+            hand_speed=speed,
+            checker=checker,
+            tuning=ReachTuning(ways=ways),
+        ).times[-1]
+
+    slow = [taken(0.05, ways) for ways in (1, 2, 3, 4)]
+    assert slow[0] > ReachTuning().long_way
+    assert slow == sorted(slow, reverse=True)
+    assert slow[-1] < 0.9 * slow[0]
+    assert taken(1.0, 1) == taken(1.0, 4), "a quick one is gone at once"
 
 
 def test_an_arm_moves_while_the_other_one_touches_something(kinematics):
