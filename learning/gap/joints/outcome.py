@@ -47,7 +47,13 @@ SIGNIFICANT = 0.01  # level of the test on leftovers, all channels together
 
 
 def judge(
-    named: Named, logs: list[JointLog], heldout: list[JointLog], joints: tuple[str, ...], unit: str, worse: str = ""
+    named: Named,
+    logs: list[JointLog],
+    heldout: list[JointLog],
+    joints: tuple[str, ...],
+    unit: str,
+    worse: str = "",
+    model_error: np.ndarray | None = None,
 ) -> Outcome:
     """Look at what the named effects leave and decide.
 
@@ -58,7 +64,9 @@ def judge(
         joints: names, one per channel.
         unit: of the load.
         worse: what had been named before the held-out logs were seen to be worse with it, or "".
+        model_error: (C,) what the model leaves although nothing is missing, root mean square, or None.
     """
+    error2 = np.zeros(logs[0].residual.shape[1]) if model_error is None else model_error**2
     left = _unexplained(named, logs)
     broad = [log.wide() for log in logs]
     wide = _unexplained(named, broad)
@@ -67,9 +75,10 @@ def judge(
     remainders = tuple(leftover(logs, calm, calm_wide, c) for c in range(left[0].shape[1]))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
     rest = np.mean(np.concatenate(calm) ** 2, axis=0)
-    floor2 = _squared_floor(named, remainders, rest)
-    missing = _Missing(remainders=remainders, weight=1.0 / floor2, explained=np.maximum(total - rest, 0.0))
-    strange = bool(named.blocks) and _strange(named, heldout, left) > REMAINDER
+    floor2 = np.maximum(_squared_floor(named, remainders, rest), error2)
+    explains = np.maximum(total - rest, 0.0)
+    missing = _Missing(remainders=remainders, weight=1.0 / floor2, explained=explains, error2=error2)
+    strange = bool(named.blocks) and _strange(named, heldout, left, error2) > REMAINDER
     unknown = (bool(missing.energy.any()) and missing.share > REMAINDER) or strange
     text = ""
     unknown = unknown or bool(worse)
@@ -198,11 +207,13 @@ class _Missing:
         remainders: per channel.
         weight: (C,) one over the squared noise floor.
         explained: (C,) mean square the named effects and the bursts explain.
+        error2: (C,) mean square that the model leaves although nothing is missing.
     """
 
     remainders: tuple[Remainder, ...]
     weight: np.ndarray
     explained: np.ndarray
+    error2: np.ndarray
 
     @property
     def energy(self) -> np.ndarray:
@@ -210,10 +221,10 @@ class _Missing:
         channels = len(self.remainders)
         return np.array(
             [
-                r.energy
+                max(r.energy - e2, 0.0)
                 if r.p_value < SIGNIFICANT / channels and r.energy > REMAINDER_SIZE * (r.base - r.energy)
                 else 0.0
-                for r in self.remainders
+                for r, e2 in zip(self.remainders, self.error2, strict=True)
             ]
         )
 
@@ -238,7 +249,7 @@ class _Missing:
         return max(self._counted, key=lambda r: self.weight[r.channel] * r.energy)
 
 
-def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) -> float:
+def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray], error2: np.ndarray) -> float:
     """Part of the explainable held-out energy that is left there beyond what the fit left on the worst of its own logs.
 
     It counts where other numbers for the same effects would remove a good part of it, or where the state, the way or
@@ -248,13 +259,14 @@ def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray]) ->
         named: the effects.
         heldout: logs nothing was fitted to.
         fitted: (T, C) residual left on each log it was fitted to.
+        error2: (C,) mean square that the model leaves although nothing is missing.
     """
     blocks = list(named.blocks)
     before = [log.residual[log.inner] for log in heldout]
     after = _unexplained(named, heldout)
     given = np.mean(np.concatenate(before) ** 2, axis=0)
     left = np.mean(np.concatenate(after) ** 2, axis=0)
-    rest = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)
+    rest = np.maximum(np.max([np.mean(x**2, axis=0) for x in fitted], axis=0), error2)
     loud = np.flatnonzero(left > TRANSFER * rest)
     if not len(loud):
         return 0.0

@@ -13,6 +13,7 @@ from ..joints.noise import NoiseModel, estimate_noise
 from ..joints.search import Search
 from ..joints.workflow import Named, first_noise
 from .fitting import Fit, best_start, first_set, fit, rows_of, squares
+from .model_error import deviations, least_sure
 from .simulation import Simulation
 from .system import Effect
 from .working_point import WorkingPoint
@@ -62,6 +63,13 @@ def name_own(sim: Simulation) -> Found:
     sure = confident(named, point.logs)
     if len(sure.chosen) < len(named.chosen):
         now, point = _moved(sim, named.search, sure.chosen, noise, now)
+        named = _named(point, now, _noise(sim, point, now, first=False) if noise.source == "residual" else noise)
+    while named.chosen:
+        sd = deviations(named.blocks, named.search.weight, point.logs, sim.model_error)
+        if (doubtful := least_sure(named.blocks, named.theta, sd)) is None:
+            break
+        chosen = named.chosen[:doubtful] + named.chosen[doubtful + 1 :]
+        now, point = _moved(sim, named.search, chosen, noise, now)
         named = _named(point, now, _noise(sim, point, now, first=False) if noise.source == "residual" else noise)
     return Found(named=named, point=point, effects=now.effects)
 

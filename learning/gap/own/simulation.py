@@ -80,6 +80,11 @@ class Simulation:
         self.none: Values = dict.fromkeys(self.parameters, 0.0)
 
     @cached_property
+    def model_error(self) -> np.ndarray:
+        """(C,) what the model leaves although nothing is missing, in the channels' units."""
+        return np.array([self.system.model_error.get(channel, 0.0) for channel in self.system.channels])
+
+    @cached_property
     def scale(self) -> np.ndarray:
         """(C,) gap of the model as given: channels may differ in unit, and count alike until the noise is known."""
         left = np.concatenate([r.measured - self.raw(r, self.none) for r in self.recordings])

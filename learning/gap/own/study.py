@@ -22,6 +22,7 @@ from ..measurement import MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
 from .equals import equals, separating
+from .model_error import SURE, deviations
 from .naming import Found, name_own, none_of
 from .simulation import Recording, Simulation, recording
 from .system import System
@@ -89,7 +90,7 @@ class OwnStudy(Study):
         found, worse = self._searched
         channels = tuple(self.system.channels)
         units = ", ".join(dict.fromkeys(self.system.channels.values()))
-        out = judge(found.named, found.point.logs, self._heldout, channels, units, worse)
+        out = judge(found.named, found.point.logs, self._heldout, channels, units, worse, self.sim.model_error)
         if out.bursts and not worse:  # a contact is no effect of this class, so nothing here can be named for it
             b = out.bursts[0]
             text = (
@@ -108,8 +109,9 @@ class OwnStudy(Study):
     @cached_property
     def half_widths(self) -> np.ndarray:
         """Half-widths of the parameters' 95 % intervals, (k,)."""
-        n = self.found.named
-        return intervals(n.blocks, n.theta, n.search.weight, self.found.point.logs).linear
+        n, logs = self.found.named, self.found.point.logs
+        own = intervals(n.blocks, n.theta, n.search.weight, logs).linear
+        return np.hypot(own, SURE * deviations(n.blocks, n.search.weight, logs, self.sim.model_error))
 
     def find(self) -> tuple[float, str, tuple[Where, ...]]:
         """See `Study.find`."""

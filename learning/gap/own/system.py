@@ -72,6 +72,8 @@ class System(abc.ABC):
         channels: column that is predicted -> its unit, SI.
         inputs: column that was commanded -> its unit; `experiments` varies them.
         effects: what may be missing.
+        model_error: predicted channel -> what the model leaves of a recording although nothing is missing, root mean
+            square in the channel's unit: slow, and another in every recording.  Left out, it is none.
         start: numbers every recording has of its own, such as an offset of its first angle; they are fitted to each
             recording, held-out ones too, and are no finding.
     """
@@ -80,6 +82,7 @@ class System(abc.ABC):
     channels: ClassVar[dict[str, str]]
     inputs: ClassVar[dict[str, str]] = {}
     effects: ClassVar[tuple[Effect, ...]]
+    model_error: ClassVar[dict[str, float]] = {}
     start: ClassVar[tuple[Parameter, ...]] = ()
 
     @abc.abstractmethod
@@ -130,6 +133,10 @@ def check_system(system: System) -> System:
         given = getattr(system, attribute)
         if not isinstance(given, dict) or not all(isinstance(x, str) and x for x in (*given, *given.values())):
             raise GapError(f'{where}: {attribute} is {given!r}, it must be a dict such as {{"q": "rad"}}')
+    for channel, error in system.model_error.items():
+        if channel not in system.channels or not (math.isfinite(error) and error >= 0.0):
+            known = ", ".join(system.channels)
+            raise GapError(f"{where}: model_error {channel!r}: {error!r} must be a finite size of one of {known}")
     seen: dict[str, str] = {}
     for e in system.effects:
         _check_effect(where, e, seen)

@@ -1,0 +1,63 @@
+"""What a model leaves of recordings although nothing is missing, and which effects are no more than that.
+
+Solvers, contacts and what a recording cannot say of its first instant leave something of every recording: slow, and
+another each time.  Noise that is estimated from the residual does not know of it where few recordings were made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..joints.block import Block
+from ..joints.log import JointLog
+
+SHAPES = 3  # slowest cosines of a recording, which share the error
+SURE = 1.96  # standard deviations by which a number has to differ from none
+
+
+def deviations(blocks: Sequence[Block], weight: np.ndarray, logs: list[JointLog], rms: np.ndarray) -> np.ndarray:
+    """Standard deviations (k,) that the model's own error gives the linear parameters of a set.
+
+    Args:
+        blocks: the set.
+        weight: (C,) of the channels in the fit.
+        logs: what it was fitted to.
+        rms: (C,) of the error.
+    """
+    k = sum(len(b.parameters) for b in blocks)
+    if not k or not rms.any():
+        return np.zeros(k)
+    normal, spread = np.zeros((k, k)), np.zeros((k, k))
+    for log in logs:
+        X = np.zeros((len(log.t[log.inner]), len(weight), k))
+        at = 0
+        for b in blocks:
+            X[:, list(b.channels), at : at + len(b.parameters)] = b.build(log)
+            at += len(b.parameters)
+        normal += np.einsum("tcp,tcq,c->pq", X, X, weight)
+        share = (np.arange(len(X)) + 0.5) / len(X)
+        shapes = np.stack([np.cos(np.pi * n * share) * (np.sqrt(2.0) if n else 1.0) for n in range(SHAPES)])
+        moved = np.einsum("nt,tcp,c->ncp", shapes, X, weight * rms / np.sqrt(SHAPES))
+        spread += np.einsum("ncp,ncq->pq", moved, moved)
+    inverse = np.linalg.pinv(normal, hermitian=True)
+    return np.sqrt(np.maximum(np.diag(inverse @ spread @ inverse), 0.0))
+
+
+def least_sure(blocks: Sequence[Block], theta: np.ndarray, sd: np.ndarray) -> int | None:
+    """The effect that is least above the model's error, or None where all are well above.
+
+    Args:
+        blocks: the set.
+        theta: (k,) its parameters.
+        sd: (k,) of `deviations`.
+    """
+    ratios, at = [], 0
+    for b in blocks:
+        span = slice(at, at + len(b.parameters))
+        ratios.append(float(np.max(np.abs(theta[span]) / np.maximum(sd[span], 1e-300))))
+        at = span.stop
+    if not ratios or min(ratios) >= SURE:
+        return None
+    return int(np.argmin(ratios))

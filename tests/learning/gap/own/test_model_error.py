@@ -1,0 +1,98 @@
+"""An effect that is no larger than what the model leaves by itself is not named."""
+
+from types import SimpleNamespace
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from caretree.learning.gap.errors import GapError
+from caretree.learning.gap.notebook import run
+from caretree.learning.gap.own.model_error import deviations, least_sure
+from caretree.learning.gap.own.system import check_system
+
+from .slider import Plain, pushes
+
+COLUMNS = (lambda t: np.ones_like(t), lambda t: t / t[-1], lambda t: np.sin(40.0 * t))
+
+
+def block(*columns):
+    """An effect on one channel, one parameter a column."""
+    return SimpleNamespace(
+        channels=(0,), parameters=columns, build=lambda log: np.stack([c(log.t) for c in columns], axis=1)[:, None]
+    )
+
+
+def logs(count, samples=300):
+    t = np.linspace(0.0, 6.0, samples)
+    return [SimpleNamespace(t=t, inner=slice(None)) for _ in range(count)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 8])
+def test_it_is_as_large_as_slow_errors_make_it(count):
+    given, made, rng = logs(count), [], np.random.default_rng(0)
+    X = np.concatenate([np.stack([c(log.t) for c in COLUMNS], axis=1) for log in given])
+    share = (np.arange(300) + 0.5) / 300
+    shapes = np.stack([np.ones(300), *(np.sqrt(2.0) * np.cos(np.pi * n * share) for n in (1, 2))])
+    for _ in range(3000):
+        error = np.concatenate([0.4 / np.sqrt(3.0) * rng.standard_normal(3) @ shapes for _ in given])
+        made.append(np.linalg.lstsq(X, error, rcond=None)[0])
+    found = deviations([block(*COLUMNS[:2]), block(COLUMNS[2])], np.array((3.0,)), given, np.array((0.4,)))
+    assert found == pytest.approx(np.std(made, axis=0), rel=0.06)
+
+
+def test_a_model_without_error_of_its_own_leaves_none():
+    assert deviations([block(*COLUMNS)], np.ones(1), logs(2), np.zeros(1)).tolist() == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("theta", "doubtful"),
+    [((3.0, 0.1, 5.0), None), ((0.3, 0.1, 5.0), 0), ((3.0, 0.1, 1.0), 1), ((-3.0, 0.0, -2.5), None)],
+)
+def test_the_effect_that_is_least_above_it_goes_first(theta, doubtful):
+    blocks = [block(*COLUMNS[:2]), block(COLUMNS[2])]
+    assert least_sure(blocks, np.array(theta), np.ones(3)) == doubtful
+
+
+def test_nothing_is_doubtful_where_nothing_is_named():
+    assert least_sure([], np.zeros(0), np.zeros(0)) is None
+
+
+@pytest.mark.parametrize("error", [{"x": -0.1}, {"x": float("nan")}, {"speed": 0.1}])
+def test_an_error_that_is_no_size_of_a_channel_is_refused(error):
+    system = Plain()
+    system.model_error = error
+    with pytest.raises(GapError, match="model_error"):
+        check_system(system)
+
+
+class Drifting(Plain):
+    """A slider whose model leaves 3 cm, slow and another in every recording, and says so."""
+
+    name = "drifting"
+    model_error: ClassVar = {"x": 0.03}
+
+
+def drift(log, k):
+    share = (log["t"] - log["t"][0]) / 6.0
+    a, b = np.random.default_rng([7, k]).normal(size=2)
+    return 0.03 * (a + b * np.cos(np.pi * share))
+
+
+def asked(kind, hidden=None):
+    *fit, held = pushes(4, kind=kind, hidden=hidden, extra=drift)
+    return run(kind, fit=fit, heldout=[held]).verdict
+
+
+def test_what_the_model_leaves_by_itself_is_no_gap():
+    assert asked(Plain).verdict != "adequate"
+    found = asked(Drifting)
+    assert (found.verdict, found.effects, found.recalibration) == ("adequate", (), ())
+
+
+def test_what_is_well_above_it_is_named_with_an_interval_that_knows_of_it():
+    (found,) = asked(Drifting, {"size": 0.2}).effects
+    (value,) = found.parameters
+    assert found.name == "ripple"
+    assert value.low < 0.2 < value.high
+    (narrow,) = (f for f in asked(Plain, {"size": 0.2}).effects if f.name == "ripple")
+    assert value.high - value.low > narrow.parameters[0].high - narrow.parameters[0].low
