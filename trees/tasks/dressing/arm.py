@@ -124,7 +124,12 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         RecoverBy(
             "until the hand is inside", pull, {Reason.SLEEVE_MISSED: lambda: present("present it again")}, attempts=3
         ),
-        ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
+        RecoverBy(
+            f"{arm.prefix}until it lies",
+            ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
+            # met by the hand that lowers it, an arm whose sleeve is over the hand is lowered on, not begun again (5)
+            {Reason.FORCE_LIMIT: lambda: ReleaseArm("lower it on", arm, hand=arm["lifting"], lower=True)},
+        ),
     )
 
 

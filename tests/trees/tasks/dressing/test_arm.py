@@ -1,6 +1,7 @@
 """An arm that is lost where it is to be lifted is looked for from farther off, and only then given up."""
 
 import pytest
+from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
 from caretree.skills.lift_arm import LiftArm
@@ -41,3 +42,24 @@ def test_an_arm_that_is_lost_is_looked_for_from_farther_off(monkeypatch, side):
     assert said[first + 1][1] == f"bed_{side}"
     assert said[first + 3][1] == pytest.approx(stance(side, "lift"))
     assert f"{side} arm/lift" in names[first + 5 :]
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_an_arm_that_meets_the_hand_that_lowers_it_is_lowered_on_and_its_sleeve_pulled_up(side):
+    task = load_task("dressing")
+    inner, senses = task.scripted(1)
+    leaf = f"{side} arm/lower it and let go"
+    world = FaultyWorld(inner, [parse_fault(f"force_spike@{leaf}:step")])
+    ended = []
+    run = Run(
+        task,
+        world,
+        seed=1,
+        senses=senses,
+        params=task.parameters("dress"),
+        on_progress=lambda progress: ended.append((progress.name, progress.status)),
+    )
+    assert run.run().outcome == "success"
+    failed = ended.index((leaf, "failure"))
+    rest = [name for name, status in ended[failed + 1 :] if status == "success"]
+    assert rest[:3] == [f"{side} arm/lower it on", leaf, f"{side} arm/pull up"]
