@@ -198,7 +198,9 @@ def plan_arms(
     if segment_free(start, goal, free):
         return timed(np.stack((start, goal)))
     limits = [kinematics.limits[side] for side in moving]
-    lower, upper = (np.concatenate([getattr(limit, end) for limit in limits]) for end in ("lower", "upper"))
+    lower, upper = (
+        np.concatenate(ends) for ends in zip(*((limit.lower, limit.upper) for limit in limits), strict=True)
+    )
 
     def round_it(seed: int) -> JointTrajectory:
         corners = connect(start, goal, lower, upper, free, seed=seed)
