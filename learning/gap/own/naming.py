@@ -81,6 +81,15 @@ def none_of(found: Found, sim: Simulation) -> Found:
     return Found(named=_named(point, now, found.named.noise), point=point, effects=())
 
 
+def without(found: Found, sim: Simulation, k: int) -> Found:
+    """The set without its `k`-th effect, fitted by simulation again."""
+    chosen = found.named.chosen[:k] + found.named.chosen[k + 1 :]
+    before = Fit(effects=found.effects, values=found.point.values, rss=np.ones((1, 1)))
+    noise = found.named.noise
+    now, point = _moved(sim, found.named.search, chosen, noise, before)
+    return Found(named=_named(point, now, noise), point=point, effects=now.effects)
+
+
 def _moved(
     sim: Simulation, search: Search, chosen: tuple[int, ...], noise: NoiseModel, before: Fit
 ) -> tuple[Fit, WorkingPoint]:

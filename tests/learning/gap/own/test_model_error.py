@@ -96,3 +96,15 @@ def test_what_is_well_above_it_is_named_with_an_interval_that_knows_of_it():
     assert value.low < 0.2 < value.high
     (narrow,) = (f for f in asked(Plain, {"size": 0.2}).effects if f.name == "ripple")
     assert value.high - value.low > narrow.parameters[0].high - narrow.parameters[0].low
+
+
+def test_what_one_recording_alone_shows_and_those_held_out_do_not_is_given_up():
+    def once(log, k):
+        return (k < 3) * drift(log, k) + (k == 0) * 0.12 * np.sin(3.0 * log["push"])
+
+    named = []
+    for kind in (Plain, Drifting):
+        *fit, held = pushes(4, kind=kind, hidden={"rate": 0.4}, extra=once)
+        v = run(kind, fit=fit, heldout=[held]).verdict
+        named.append([f.name for f in v.effects])
+    assert named == [["viscous", "ripple"], ["viscous"]]
