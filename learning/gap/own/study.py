@@ -27,7 +27,7 @@ from .naming import Found, name_own, none_of, without
 from .simulation import Recording, Simulation, recording
 from .system import System
 
-GIVEN_UP = 0.2  # part of what a set leaves of the held-out recordings that is gone without an effect that is given up
+BORNE_OUT = 0.2  # part of what a set leaves held out that is left beside it without one of its effects, at least
 FLOORS = "noise floors"  # the unit of a gap over channels of several units
 
 
@@ -72,13 +72,13 @@ class OwnStudy(Study):
         """Those effects that the held-out recordings bear out, where the model errs by itself.
 
         Its error is now and then several times as large as usual, and few recordings to fit take one such for an
-        effect.
+        effect.  What none of those held out could show, such as a bias of a hand that they do not use, is given up too.
         """
         while found.effects:
             left = self._left_of_heldout(found)
             fewer = [without(found, self.sim, k) for k in range(len(found.effects))]
             best = min(fewer, key=self._left_of_heldout)
-            if self._left_of_heldout(best) > (1.0 - GIVEN_UP) * left:
+            if self._left_of_heldout(best) > (1.0 + BORNE_OUT) * left:
                 return found
             found = best
         return found
