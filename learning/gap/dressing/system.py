@@ -43,7 +43,7 @@ class DressingSystem(System):
 
     name = "dressing"
     channels = dict.fromkeys(CHANNELS, "N")
-    # [N]; of seven records of eight without any effect the replay left 0.1 to 0.4 N (docs/close-a-gap.md)
+    # [N]; of eight of twelve records without any effect the replay leaves 0.03 to 0.26 N (docs/close-a-gap.md)
     model_error = dict.fromkeys(CHANNELS, 0.25)
     effects: tuple[Effect, ...] = ()
 

@@ -66,9 +66,9 @@ class OwnStudy(Study):
         if found.named.blocks and farther(*self._before_and_after(found), found.named.noise.rms / self.sim.scale):
             worse = " and ".join(f"{b.name} on {b.target}" for b in found.named.blocks)
             return none_of(found, self.sim), worse
-        return (self._held(found) if self.sim.model_error.any() else found), ""
+        return (self._borne_out(found) if self.sim.model_error.any() else found), ""
 
-    def _held(self, found: Found) -> Found:
+    def _borne_out(self, found: Found) -> Found:
         """Those effects that the held-out recordings bear out, where the model errs by itself.
 
         Its error is now and then several times as large as usual, and few recordings to fit take one such for an

@@ -23,6 +23,15 @@ def hand_path(kinematics, trajectory, side):
     return np.array([kinematics.pose_hand_in_map(side, q[n : n + 7], BASE)[:3, 3] for q in trajectory.positions])
 
 
+def before_a_board(kinematics, before, beyond):
+    """A checker with a board, both arms, the left hand `before` it along y [m], and a pose `beyond` it."""
+    checker = CollisionChecker(kinematics, np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),)))
+    arms = model.READY.copy()
+    start, goal = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (before, beyond))
+    arms[0] = plan_reach(kinematics, {"left": start}, arms, BASE, free="approach", checker=checker).positions[-1]
+    return checker, arms, goal
+
+
 def test_a_line_is_straight_and_keeps_both_hands_together(kinematics):
     goals = {}
     for n, side in enumerate(SIDES):
@@ -54,11 +63,7 @@ def test_a_line_out_of_reach_or_through_the_bed_is_refused(kinematics):
 
 
 def test_reaching_goes_round_what_is_in_the_way(kinematics):
-    board = np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),))
-    checker = CollisionChecker(kinematics, board)
-    arms = model.READY.copy()
-    before, beyond = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (-0.75, -0.28))
-    arms[0] = plan_reach(kinematics, {"left": before}, arms, BASE, free="approach", checker=checker).positions[-1]
+    checker, arms, beyond = before_a_board(kinematics, -0.75, -0.28)
     straight = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach")
     assert not all(checker.free(BASE, np.stack((q, arms[1]))) for q in straight.positions)
     round_it = plan_reach(kinematics, {"left": beyond}, arms, BASE, free="approach", checker=checker)
@@ -70,11 +75,7 @@ def test_reaching_goes_round_what_is_in_the_way(kinematics):
 
 
 def test_of_ways_round_it_that_take_long_the_quickest_is_gone(kinematics):
-    board = np.array((((-0.1, -0.52, 0.6), (0.42, -0.48, 1.0)),))
-    checker = CollisionChecker(kinematics, board)
-    arms = model.READY.copy()
-    before, beyond = (hand_pose((0.25, y, 0.85), (-1, 0, -1)) for y in (-0.70, -0.30))
-    arms[0] = plan_reach(kinematics, {"left": before}, arms, BASE, free="approach", checker=checker).positions[-1]
+    checker, arms, beyond = before_a_board(kinematics, -0.70, -0.30)
 
     def taken(speed, ways):
         """How long the way takes [s]."""
