@@ -86,6 +86,11 @@ def _components(faces: np.ndarray) -> int:
     return len(groups)
 
 
+def held_vertices(grips: Iterable[Grip], cloth: ClothBody) -> set[int]:
+    """Vertices of a cloth that the hands hold."""
+    return {vertex for grip in grips if grip.kind == "cloth" and grip.cloth is cloth for vertex in grip.vertices}
+
+
 class Grip:
     """One gripper's hold.
 
@@ -218,6 +223,11 @@ class Grip:
             self.client.removeConstraint(self._constraint)
             self._constraint = None
         self.kind, self.layers, self.part, self.arm, self.thickness = "nothing", 0, None, -1, 0.0
+
+    @property
+    def vertices(self) -> tuple[int, ...]:
+        """Of the cloth that is held."""
+        return self._held if self.kind == "cloth" else ()
 
     @property
     def load(self) -> np.ndarray:

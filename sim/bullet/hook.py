@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -40,18 +41,26 @@ class Hook:
 
     def carries(self, vertices: np.ndarray) -> bool:
         """Whether the cloth, its vertices (V, 3) being there, still hangs where it was hung up."""
-        away = np.linalg.norm(vertices[self._held].mean(axis=0) - self._pose[:3, 3])
-        return self.holds and float(away) < NEAR
+        return self.holds and float(np.linalg.norm(vertices[self._held].mean(axis=0) - self._pose[:3, 3])) < NEAR
 
     def before_step(self) -> None:
         """Keep still."""
         if self.holds:
             self.handle.follow(self._pose)
 
-    def watch(self, duration: float, taken: bool, vertices: np.ndarray) -> None:
-        """Let go when a hand holds the gown (`taken`) and nothing has pulled down for a while; every `duration` [s]."""
+    def watch(self, duration: float, taken: Collection[int], vertices: np.ndarray) -> None:
+        """Let go of what a hand has `taken`, and of all of it once nothing has pulled down for a while.
+
+        What is pinned here and in a hand tears between the two, and its load is felt by neither (146).
+
+        Args:
+            duration: since the last time [s].
+            taken: vertices of the cloth that hands hold.
+            vertices: (V, 3) where they are [m].
+        """
         if not self.holds:
             return
+        self._give(taken)
         self._light = self._light + duration if taken and -self.load(vertices)[2] < FREE_LOAD else 0.0
         if self._light > FREE_TIME:
             self.release()
@@ -60,3 +69,11 @@ class Hook:
         """Take the gown off."""
         self.cloth.unpin(self._pins)
         self._pins = []
+
+    def _give(self, taken: Collection[int]) -> None:
+        """Unpin the vertices that hands hold by now."""
+        both = [(k, pin) for k, pin in zip(self._held, self._pins, strict=True) if k in taken]
+        self.cloth.unpin(pin for _, pin in both)
+        for vertex, pin in both:
+            self._held.remove(vertex)
+            self._pins.remove(pin)

@@ -7,7 +7,7 @@ between its fingers only (an assumption named in docs/assumptions.md).
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from ..world import SIDES
 from .cloth import ClothBody
 from .engines import ClothEngine, Room
+from .grip import Grip, held_vertices
 from .hook import Hook
 from .person import Person
 from .person_force import ForceBalance
@@ -199,17 +200,17 @@ class RoomObjects:
         for hook in self._hooks.values():
             hook.before_step()
 
-    def watch(self, duration: float, held: set[int]) -> None:
+    def watch(self, duration: float, grips: Sequence[Grip]) -> None:
         """Take sheets off hooks that no longer carry them, feel what touches the person; every `duration` [s].
 
         Args:
             duration: since the last time [s].
-            held: bodies of the sheets that a hand holds.
+            grips: what each hand holds.
         """
         for name, hook in self._hooks.items():
             cloth = self.cloths[name]
             if hook.holds:
-                hook.watch(duration, cloth.body in held, cloth.vertices())
+                hook.watch(duration, held_vertices(grips, cloth), cloth.vertices())
         if self._moving:
             now = np.linalg.norm(self._pressing(), axis=1)
             self.part_force += (1.0 - np.exp(-duration / SENSED)) * (now - self.part_force)

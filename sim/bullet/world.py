@@ -50,7 +50,7 @@ from .contact import Contact
 from .engines import BULLET, engine_named
 from .furniture import add_furniture
 from .gown_placement import HOLDING, HOLDING_AT, dress_by_hand, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
-from .grip import CLOSED, REOPENED, Grip
+from .grip import CLOSED, REOPENED, Grip, held_vertices
 from .handle import Handle
 from .hook import Hook
 from .objects import RoomObjects
@@ -390,8 +390,7 @@ class BulletWorld(World):
         if self._steps % CONTROL_STEPS == 0:
             self._update_grips(self._reading)  # of this instant: every control step begins with one of the robot
             if not self._asleep:
-                held = {grip.cloth.body for grip in self._grips if grip.kind == "cloth"}
-                self._objects.watch(CONTROL_STEPS * TIME_STEP, held)
+                self._objects.watch(CONTROL_STEPS * TIME_STEP, self._grips)
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -453,8 +452,7 @@ class BulletWorld(World):
             vertices = self._cloth.vertices()
             for grip, limit in zip(self._grips, self._force_limit, strict=True):
                 grip.watch(vertices if grip.cloth is self._cloth else grip.cloth.vertices(), float(limit))
-            held = {grip.cloth.body for grip in self._grips if grip.kind == "cloth"}
-            self._hook.watch(CONTROL_STEPS * TIME_STEP, self._cloth.body in held, vertices)
+            self._hook.watch(CONTROL_STEPS * TIME_STEP, held_vertices(self._grips, self._cloth), vertices)
         for n, grip in enumerate(self._grips):
             opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
             if grip.kind == "cloth" and opening > REOPENED:
