@@ -19,12 +19,12 @@ TILT = 0.4  # [rad] of a hand that comes from above and from the robot's side
 POINTS = np.array((-np.sin(TILT), 0.0, -np.cos(TILT)))  # down and towards the person
 
 
-def bench(*, deaf_to=(), **options):
-    """The left hand holds the arm, the right one a sleeve beyond the fingertips."""
+def bench(*, deaf_to=(), right=CLOTH, **options):
+    """The left hand holds the arm, the right one a sleeve beyond the fingertips, or what keeps them `right` apart."""
     hands = {"left": on_arm(1.0, 0.15), "right": hand_pose(np.array((0.40, -0.20, 0.85)), POINTS, HEADWARD)}
     return LeafBench(
         lambda context: Retreat("retreat", context, **options),
-        beside_bed(stand=STAND, hands=hands, held={"left": ARM, "right": CLOTH}, deaf_to=deaf_to),
+        beside_bed(stand=STAND, hands=hands, held={"left": ARM, "right": right}, deaf_to=deaf_to),
     )
 
 
@@ -43,6 +43,15 @@ def test_the_fingers_open_before_a_hand_draws_back_and_the_base_leaves_last():
     assert run.openings("right")[:leaves].max() < 0.04, "no wider beside the person than cloth needs"
     assert min(run.openings(side)[-1] for side in SIDES) > 0.08
     assert base[-1] == pytest.approx((1.45, -0.38, np.pi), abs=0.02)  # 0.4 m back, still facing the bed
+
+
+def test_fingers_that_are_open_do_not_open_farther_beside_the_person():
+    """They had come down to a leg, and pushed it as they opened (147)."""
+    run = bench(right=0.05, ready="never")  # as far as they are on their way to cloth
+    assert run.ended() is None
+    openings, leaves = run.openings("right"), begun(run.way("right")[:, 2], 0.05)
+    assert openings[:leaves] == pytest.approx(0.05, abs=0.005)
+    assert openings[-1] > 0.08
 
 
 def test_each_hand_draws_back_the_way_it_points():
