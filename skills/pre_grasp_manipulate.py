@@ -164,7 +164,7 @@ class PreGraspManipulate(Skill):
             )
             yield from self._take(hand, views, chosen)
         except (SkillFailure, MotionError) as miss:
-            missed = isinstance(miss, SkillFailure) and miss.reason == Reason.GRASP_MISSED
+            missed = isinstance(miss, SkillFailure) and miss.reason in TRY_NEXT
             failed.places += [place] if missed else [place, place]
             yield from open_gripper(self, hand)
             yield from back_off(self, hand)

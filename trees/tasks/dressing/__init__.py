@@ -30,10 +30,10 @@ from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the 
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
 from .dress import dress
-from .lay import holds_gown, holds_gown_with, lay
+from .lay import holds_gown, lay
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
-from .take_down import before_rail, both_ends, hands_open, take_down
+from .take_down import before_rail, both_ends, hands_open, holds_gown_with, take_down
 
 STAGES = {
     "take_down": TaskStage(take_down, begins="gown_on_hook"),

@@ -38,7 +38,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
 from .draw_flat import DrawFlat
-from .lay import holds_gown_with
+from .take_down import holds_gown_with
 from .tuning import DRESSING, SleeveTuning
 
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)

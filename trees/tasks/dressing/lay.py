@@ -20,7 +20,7 @@ from ....skills.stretch_neckline import StretchNeckline
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
-from .take_down import LEVEL, look_and_take
+from .take_down import LEVEL, holds_gown_with, look_and_take
 from .tuning import DRESSING
 
 
@@ -55,13 +55,6 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
         )
 
     return fallback("by both ends", stretch("stretch the neckline"), anew("right"))
-
-
-def holds_gown_with(context: Context, hand: Side) -> bool:
-    """The fingers of that hand are closed, and it carries some of the gown [N]."""
-    n, seen = SIDES.index(hand), context.world.observe()
-    closed = seen.gripper_opening[n] < DRESSING.empty_opening
-    return bool(closed and -seen.wrench_hand_in_map[n, 2] > DRESSING.end_weight)
 
 
 def holds_gown(context: Context) -> bool:

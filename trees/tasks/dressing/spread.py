@@ -19,10 +19,10 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
-from .arm import arm_scope, back_off, flat, put_down
+from .arm import arm_scope, back_off, flat, grasp_worn, put_down, up_arm
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
-from .tuning import DRESSING
+from .tuning import DRESSING, SECOND_SLEEVE
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 
@@ -85,8 +85,27 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
         f"the {side} arm lies",
         *go_beside(arm, side),
         put_down("first", arm),
+        not_slipped(arm),
         back_off("leave", arm, DRESSING.back_off_distance),
     )
+
+
+def not_slipped(arm: Scope) -> Behaviour:
+    """A sleeve that has slipped down the arm is pulled up by its strap again; where that fails, the rest may do."""
+
+    def pulled_up() -> Behaviour:
+        return sequence(
+            f"{arm.prefix}up again",
+            Navigate("go where it is", arm, goal=stance(arm["side"], "lift")),
+            grasp_worn("take it once more", arm),
+            up_arm(arm, SECOND_SLEEVE.pull_load),
+            back_off("let it go", arm, DRESSING.back_off_distance),
+            *go_beside(Scope(arm, "then"), arm["side"]),
+        )
+
+    up = CheckSleeve("up the arm", arm, min_reach=DRESSING.armhole_slipped, tuning=FROM_HEAD)
+    again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=3)
+    return fallback(f"{arm.prefix}as it may be", again, back_off("leave it so", arm))
 
 
 def with_arms_in_view(context: Context, bed: Scope) -> Behaviour:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
-from ....sim.world import Side
+from ....sim.world import SIDES, Side
 from ....skills.control.withdraw import WithdrawTuning
 from ....skills.core.context import Context
 from ....skills.core.ports import Key
@@ -100,15 +100,31 @@ def take_ends(rail: Scope) -> Behaviour:
 
 
 def from_one_hand(context: Context) -> Behaviour:
-    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
-    first = Scope(context, "one hand", keys=("views", "holder", "former"))
-    second = Scope(context, "other hand", keys=("views", "holder", "former"))
+    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner.
+
+    What was taken for the first corner may have been none; then it is looked for once more, from the hand that holds
+    the gown by now.
+    """
+    first, hold = Scope(context, "one hand"), Condition("the left hand has it", holds_gown_with, hand="left")
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", first),
         SegmentAndGrasp("take it near the hook", first, hand="right"),
         Unhook("lift it off", first, hand="right"),
-        look_and_take(first, "right", DRESSING.first_corner),
+        fallback(
+            "corner by corner",
+            corners_from(context, ("one hand", "other hand"), "right"),
+            sequence("from where it hangs now", hold, corners_from(context, ("again", "again the other"), "left")),
+        ),
+    )
+
+
+def corners_from(context: Context, names: tuple[str, str], hand: Side) -> Behaviour:
+    """Both corners of a gown that hangs from one `hand`: the other hand takes one, and then this one the other."""
+    first, second = (Scope(context, name, keys=("views", "holder", "former")) for name in names)
+    return sequence(
+        f"corners from the {hand} hand",
+        look_and_take(first, hand, DRESSING.first_corner),
         Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=LEVEL),
         look_and_take(second, first["holder"], DRESSING.second_corner),
     )
@@ -144,6 +160,13 @@ def before_rail(context: Context) -> bool:
     here, waypoints = context.world.observe().pose_base_in_map[:2], context.world.room.waypoints
     places = {name: waypoints[name][:2] for name in ("rail", "rail_back") if name in waypoints}
     return min(places, key=lambda name: float(np.linalg.norm(here - places[name])), default="rail") == "rail"
+
+
+def holds_gown_with(context: Context, hand: Side) -> bool:
+    """The fingers of that hand are closed, and it carries some of the gown [N]."""
+    n, seen = SIDES.index(hand), context.world.observe()
+    closed = seen.gripper_opening[n] < DRESSING.empty_opening
+    return bool(closed and -seen.wrench_hand_in_map[n, 2] > DRESSING.end_weight)
 
 
 def hands_open(context: Context) -> bool:

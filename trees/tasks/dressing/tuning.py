@@ -92,11 +92,12 @@ class DressingTuning(Quantities):
         "choice: half of a neckline; nearer than that the middle of the neckline was taken for its end (116)",
     )
     second_corner: tuple[float, float] = quantity(
-        (0.60, 1.00),
+        (0.50, 1.00),
         "m",
         "from a hand that holds one corner to the other one, at least and at most",
-        "measured: 0.78 to 0.94 m with both drawn apart; at 0.38 m hangs the neckline's middle, which was taken for an "
-        "end in three of three tries that reached cloth (116, 121, 123)",
+        "measured: 0.78 to 0.94 m with both drawn apart, 0.53 to 0.57 m as it hangs in folds, and seen well (146); at "
+        "0.38 m hangs the neckline's middle, taken for an end in three of three tries that reached cloth (116, 121, "
+        "123)",
     )
     # laying it on the person
     gown_weight: float = quantity(
@@ -141,6 +142,13 @@ class DressingTuning(Quantities):
         "1",
         "of the upper arm, below which a sleeve is drawn up, and counts as low in the end",
         "design requirement: 0.7, and more than half a standard deviation of what is seen of it",
+    )
+    armhole_slipped: float = quantity(
+        0.30,
+        "1",
+        "of the upper arm, below which a sleeve is pulled up by its strap again before the gown is put straight",
+        "choice: half way; the seam over the shoulder, by which it is drawn up later, is then on the arm. A right "
+        "sleeve was at the wrist when the left arm was dressed (147)",
     )
     collar_shown: float = quantity(
         0.70,

@@ -11,6 +11,7 @@ from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
 SEATED, LAID, FLAT = "gown/sleeves/seat", "gown/collar/spread", "fold/draw flat"
+PULLED = {f"{side} sleeve/pull up": side for side in SIDES}
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
 
@@ -21,10 +22,12 @@ class WornGown(ScriptedSenses):
         done: what was done to it, in turn.
         shown: how much of the neckline is seen.
         beside: where the collar is seen from the left (-1) and the right (1) of the bed, if those are other places.
+        pulled: how much farther up a sleeve is after it was pulled by its strap.
     """
 
-    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, beside=None):
+    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, beside=None, pulled=0.0):
         super().__init__(world)
+        self.pulled = pulled
         self.outside, self.shown, self.beside = outside, shown, beside or {}
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
@@ -33,6 +36,9 @@ class WornGown(ScriptedSenses):
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
+        if progress.status == "success" and progress.name in PULLED and self.pulled:
+            self.done.append(progress.name)
+            self.low[PULLED[progress.name]] += self.pulled
         if progress.status != "success" or progress.name not in (SEATED, LAID, FLAT):
             return
         self.done.append(progress.name.rpartition("/")[2])
@@ -79,6 +85,19 @@ def rehearsed(reach, off=(0.0, 0.0), **gown):
 )
 def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach, ends, done):
     assert rehearsed(reach) == (ends, done)
+
+
+@pytest.mark.parametrize(
+    ("reach", "done"),
+    [
+        ((0.85, 0.05), ["right sleeve/pull up"]),
+        ((0.05, 0.85), ["left sleeve/pull up"]),
+        ((-0.60, 0.85), ["left sleeve/pull up"] * 2),
+        ((0.35, 0.85), ["seat", "seat", "seat"]),
+    ],
+)
+def test_a_sleeve_that_has_slipped_down_the_arm_is_pulled_up_before_the_gown_is_put_straight(reach, done):
+    assert rehearsed(reach, pulled=0.70) == ("success", done)
 
 
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])

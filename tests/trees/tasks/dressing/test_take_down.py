@@ -1,0 +1,53 @@
+"""The stage `take_down`, rehearsed with a gown whose neckline's ends cannot be taken on the hook."""
+
+import pytest
+from caretree.skills.core.reasons import Reason, SkillFailure
+from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
+from caretree.skills.take_corner import TakeCorner
+from caretree.skills.unhook import Unhook
+from caretree.trees.run.runner import Run
+from caretree.trees.run.task import load_task
+
+FIRST = ["one hand/take a corner"]
+AGAIN = ["again/take a corner", "again the other/take a corner"]
+
+
+@pytest.mark.parametrize(
+    ("hidden", "took", "ends"),
+    [
+        ((), [*FIRST, "other hand/take a corner"], "success"),
+        (("other hand/",), [*FIRST, *AGAIN], "success"),
+        (("other hand/take a corner",), [*FIRST, "other hand/take the best there is"], "success"),
+        (("other hand/", "again the other/"), [*FIRST, AGAIN[0]], "safe_stop"),
+        (("one hand/",), [], "safe_stop"),
+    ],
+)
+def test_a_gown_of_which_the_second_corner_does_not_show_is_begun_anew_from_the_hand_that_has_it(
+    monkeypatch, hidden, took, ends
+):
+    take = PreGraspManipulate.steps
+
+    def unseen(self):
+        raise SkillFailure(Reason.NOTHING_SEEN, "")
+        yield
+
+    def hides(self):
+        yield from unseen(self) if self.name.startswith(hidden) else take(self)
+
+    def lifted(self):
+        self.load = 4.0  # [N]; what hangs on one hand is no whole gown on the scripted world
+        yield
+
+    monkeypatch.setattr(TakeCorner, "steps", unseen)
+    monkeypatch.setattr(Unhook, "steps", lifted)
+    monkeypatch.setattr(PreGraspManipulate, "steps", hides)
+    task, taken = load_task("dressing"), []
+
+    def told(progress):
+        if progress.status == "success" and "/take " in progress.name:
+            taken.append(progress.name)
+
+    world, senses = task.scripted(1)
+    run = Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}, on_progress=told)
+    assert run.run().outcome == ends
+    assert [name for name in taken if not name.endswith("near the hook")] == took
