@@ -29,7 +29,13 @@ from ....skills.geometry.stances import HEADWARD, outwards
 class DrawFlatTuning(Quantities):
     """Numbers of `DrawFlat`."""
 
-    outwards: float = quantity(0.20, "m", "of the hand from the midline, where it takes the front", "choice: the thigh")
+    outwards: float = quantity(
+        0.15,
+        "m",
+        "of the hand from the midline, where it takes the front",
+        "choice: the thigh, whose middle is 0.11 m out; at 0.20 m the hand came down beside it, and met it with 52 to "
+        "93 N in four of four tries (147)",
+    )
     footward: float = quantity(
         0.80,
         "m",
