@@ -34,6 +34,8 @@ def ran(seen, **options):
         (worn(cuff_at=0.03), None, Status.FAILURE, Reason.SLEEVE_MISSED),
         (worn(cuff_at=0.29), None, Status.SUCCESS, None),
         (worn(round_arm=0.2), None, Status.FAILURE, Reason.SLEEVE_MISSED),
+        (worn(round_arm=5 / 12), None, Status.FAILURE, Reason.SLEEVE_MISSED),
+        (worn(round_arm=6 / 12), None, Status.SUCCESS, None),
         (worn(cuff_at=0.9), None, Status.SUCCESS, None),
         (worn(reach=0.71), 0.70, Status.SUCCESS, None),
         (worn(reach=0.69), 0.70, Status.FAILURE, Reason.SLEEVE_LOW),
