@@ -28,10 +28,11 @@ class CheckSleeveTuning(Quantities):
         0.45,
         "1",
         "share of the way round the arm that the cuff shows at least",
-        "measured: recorded runs: 0.50 to 0.92, 0.17, 0.33 and twice 0.42 where the sleeve lay beside the arm (147, "
-        "149); drawn again from beside the shoulder, all of 161 views of sleeves that sit show half and more, 19 of 21 "
-        "of arms beside theirs a third at most; sleeves that have slipped to the wrist show less; two arms inside "
-        "showed 0.33: one whose posture was out of date (31), and one on seed 3, not looked into",
+        "measured: recorded runs: 0.50 to 0.92, 0.17, 0.33 and 0.42 where the sleeve lay beside the arm (149), 0.42 "
+        "where it was inside out on it (147); drawn again from beside the shoulder, all of 161 views of sleeves that "
+        "sit show half and more, 19 of 21 of arms beside theirs a third at most; sleeves that have slipped to the "
+        "wrist show less; two arms inside showed 0.33: one whose posture was out of date (31), and one on seed 3, not "
+        "looked into",
     )
 
 

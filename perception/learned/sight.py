@@ -18,7 +18,6 @@ from ..image.surfaces import GOWN_SURFACES, Surface
 from .onnx_record import read_properties
 
 FORMAT = "caretree-seeing-2"
-BEFORE = "caretree-seeing-1"  # of the weights that ship: places as numbers, key points as a yes or no in every cell
 PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"
 _OUTPUTS = ("surface", "sheet", "heat", "offset")
 _SOLID = (*GOWN_SURFACES, Surface.SKIN)  # what a key point can lie on
@@ -87,14 +86,14 @@ class SeeingNetwork:
         import cv2
 
         about = {name: json.loads(text) for name, text in read_properties(path).items()}
-        if about.get("format") not in (FORMAT, BEFORE):
+        if about.get("format") != FORMAT:
             raise CaretreeError(f"{path}: this is no seeing network in format {FORMAT}")
         if about["surfaces"] != [surface.name.lower() for surface in Surface]:
             raise CaretreeError(f"{path}: it sees {', '.join(about['surfaces'])}, which this version does not know")
         self.record: Mapping[str, Any] = about["record"]
         self._size: tuple[int, int] = (about["size"][0], about["size"][1])
         self._names: list[str] = about["key_points"]
-        self._sheet_nodes = [np.asarray(axis, np.float32) for axis in about.get("sheet_nodes", ())]  # none before
+        self._sheet_nodes = [np.asarray(axis, np.float32) for axis in about["sheet_nodes"]]
         self._calibration: dict[str, list[float]] = about.get("calibration", {})
         self._temperature = float(about.get("temperature", 1.0))
         self._net = cv2.dnn.readNetFromONNX(str(path))
@@ -112,7 +111,7 @@ class SeeingNetwork:
         chance /= chance.sum(axis=0)
         labels = chance.argmax(axis=0).astype(np.uint8)
         full = frame.depth.shape[::-1]
-        places = places_on_sheet(sheet, self._sheet_nodes) if self._sheet_nodes else sheet.transpose(1, 2, 0)
+        places = places_on_sheet(sheet, self._sheet_nodes)
         solid = np.isin(labels, _SOLID) & (image[3] > 0)
         return Sight(
             surfaces=cv2.resize(labels, full, interpolation=cv2.INTER_NEAREST),
@@ -154,7 +153,7 @@ class SeeingNetwork:
         row, column = divmod(int(heat.argmax()), heat.shape[1])
         rows, columns = _around(row, column, heat.shape, self._tuning.peak_cells)
         near = np.ix_(rows, columns)
-        chance, score = peak_of_all(heat, near) if self._sheet_nodes else peak_alone(heat)
+        chance, score = peak_of_all(heat, near)
         weight = chance[near]
         scale, shift = calibration or (1.0, 0.0)
         cell = np.array((weight.sum(axis=0) @ columns, weight.sum(axis=1) @ rows)) / weight.sum()
@@ -203,11 +202,6 @@ def peak_of_all(heat: np.ndarray, near: tuple[np.ndarray, ...]) -> tuple[np.ndar
     chance = np.exp(heat.astype(float) - top)
     here, all_ = float(chance[near].sum()), float(chance.sum() + np.exp(-top))
     return chance, float(np.log(here + 1e-9) - np.log(all_ - here + 1e-9))
-
-
-def peak_alone(heat: np.ndarray) -> tuple[np.ndarray, float]:
-    """Chances (h, w) where every cell is a yes or no of its own, and the best score."""
-    return 1.0 / (1.0 + np.exp(-heat.astype(float))), float(heat.max())
 
 
 def _around(row: int, column: int, shape: tuple[int, ...], by: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,5 @@
 """The packaged network, run by OpenCV alone, and how its maps are read."""
 
-import json
 import subprocess
 import sys
 
@@ -10,8 +9,7 @@ from caretree.learning.vision.dataset import seen
 from caretree.learning.vision.labels import KEY_POINTS, SURFACES
 from caretree.learning.vision.sheet_nodes import SHEET_NODES
 from caretree.perception.image.surfaces import Surface
-from caretree.perception.learned.onnx_record import read_properties
-from caretree.perception.learned.sight import BEFORE, PACKAGED, SeeingNetwork
+from caretree.perception.learned.sight import FORMAT, PACKAGED, SeeingNetwork
 from caretree.sim.errors import CaretreeError
 from caretree.sim.world import Frame
 
@@ -53,7 +51,6 @@ def network():
 def planted(network):
     surface = np.zeros((1, 7, 192, 256), np.float32)
     surface[:, Surface.OUTSIDE] = 4.0
-    network._sheet_nodes = [np.asarray(axis) for axis in SHEET_NODES]  # as the format has it that is trained now
     heat = np.full((1, 17, 48, 64), -9.0, np.float32)
     heat[0, KEY_POINTS.index("corner_left"), 24, 40] = 5.0
     offset = np.full((1, 17, 48, 64), 0.1, np.float32)
@@ -89,21 +86,23 @@ def test_a_peak_becomes_a_place_in_the_map(planted):
     assert point.confidence > planted.see(frame()).key_points["corner_right"].confidence
 
 
-def test_a_network_of_the_format_before_is_read_too(network):
-    assert json.loads(read_properties(PACKAGED)["format"]) == BEFORE
-    sheet = np.zeros((1, 3, 48, 64), np.float32)
-    sheet[0] += np.array((0.3, 0.0, -0.4), np.float32)[:, None, None]
-    heat = np.full((1, 17, 48, 64), -9.0, np.float32)
-    heat[0, KEY_POINTS.index("corner_left"), 24, 40] = 1.0
-    surface = np.zeros((1, 7, 192, 256), np.float32)
-    surface[:, Surface.OUTSIDE] = 4.0
-    network._net = Planted(surface=surface, sheet=sheet, heat=heat, offset=np.zeros((1, 17, 48, 64), np.float32))
-    network._calibration = {"corner": [0.7, -0.4]}
-    seen_there = network.see(frame())
-    assert np.allclose(seen_there.sheet, (0.3, 0.0, -0.4))
-    point = seen_there.key_points["corner_left"]
-    assert abs(point.confidence - 1 / (1 + np.exp(-(0.7 * 1.0 - 0.4)))) < 1e-6
-    assert np.allclose(point.pixel, ((40 + 0.5) * 4 * 400 / 256 - 0.5, (24 + 0.5) * 4 * 300 / 192 - 0.5), atol=0.5)
+def test_a_place_on_the_sheet_is_the_mean_of_the_best_node_and_its_neighbours(planted):
+    scores = planted._net.maps["sheet"]
+    first, wanted = 0, []
+    for axis in SHEET_NODES:
+        best = len(axis) // 2
+        scores[0, first + best], scores[0, first + best + 1] = 9.0, 9.0
+        wanted.append((axis[best] + axis[best + 1]) / 2)
+        first += len(axis)
+    assert np.allclose(planted.see(frame()).sheet, wanted, atol=1e-3)
+
+
+def test_another_format_is_refused_in_one_sentence(tmp_path):
+    changed = PACKAGED.read_bytes().replace(FORMAT.encode(), FORMAT[:-1].encode() + b"1")
+    other = tmp_path / "seeing.onnx"
+    other.write_bytes(changed)
+    with pytest.raises(CaretreeError, match=f"no seeing network in format {FORMAT}"):
+        SeeingNetwork(other)
 
 
 def test_confidence_is_what_the_calibration_was_fitted_to(planted):
