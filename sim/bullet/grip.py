@@ -86,9 +86,13 @@ def _components(faces: np.ndarray) -> int:
     return len(groups)
 
 
-def held_vertices(grips: Iterable[Grip], cloth: ClothBody) -> set[int]:
-    """Vertices of a cloth that the hands hold."""
-    return {vertex for grip in grips if grip.kind == "cloth" and grip.cloth is cloth for vertex in grip.vertices}
+def held_vertices(grips: Iterable[Grip]) -> dict[int, set[int]]:
+    """Body of each cloth that hands hold -> its vertices in them."""
+    held: dict[int, set[int]] = {}
+    for grip in grips:
+        if grip.kind == "cloth":
+            held.setdefault(grip.cloth.body, set()).update(grip.vertices)
+    return held
 
 
 class Grip:

@@ -7,7 +7,7 @@ between its fingers only (an assumption named in docs/assumptions.md).
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,6 @@ from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from ..world import SIDES
 from .cloth import ClothBody
 from .engines import ClothEngine, Room
-from .grip import Grip, held_vertices
 from .hook import Hook
 from .person import Person
 from .person_force import ForceBalance
@@ -200,17 +199,17 @@ class RoomObjects:
         for hook in self._hooks.values():
             hook.before_step()
 
-    def watch(self, duration: float, grips: Sequence[Grip]) -> None:
+    def watch(self, duration: float, held: Mapping[int, Collection[int]]) -> None:
         """Take sheets off hooks that no longer carry them, feel what touches the person; every `duration` [s].
 
         Args:
             duration: since the last time [s].
-            grips: what each hand holds.
+            held: body of each sheet that hands hold -> its vertices in them.
         """
         for name, hook in self._hooks.items():
             cloth = self.cloths[name]
             if hook.holds:
-                hook.watch(duration, held_vertices(grips, cloth), cloth.vertices())
+                hook.watch(duration, held.get(cloth.body, ()), cloth.vertices())
         if self._moving:
             now = np.linalg.norm(self._pressing(), axis=1)
             self.part_force += (1.0 - np.exp(-duration / SENSED)) * (now - self.part_force)

@@ -390,7 +390,7 @@ class BulletWorld(World):
         if self._steps % CONTROL_STEPS == 0:
             self._update_grips(self._reading)  # of this instant: every control step begins with one of the robot
             if not self._asleep:
-                self._objects.watch(CONTROL_STEPS * TIME_STEP, self._grips)
+                self._objects.watch(CONTROL_STEPS * TIME_STEP, held_vertices(self._grips))
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -452,7 +452,8 @@ class BulletWorld(World):
             vertices = self._cloth.vertices()
             for grip, limit in zip(self._grips, self._force_limit, strict=True):
                 grip.watch(vertices if grip.cloth is self._cloth else grip.cloth.vertices(), float(limit))
-            self._hook.watch(CONTROL_STEPS * TIME_STEP, held_vertices(self._grips, self._cloth), vertices)
+            held = held_vertices(self._grips).get(self._cloth.body, ())
+            self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)
         for n, grip in enumerate(self._grips):
             opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
             if grip.kind == "cloth" and opening > REOPENED:
