@@ -44,7 +44,7 @@ class DrawFlatTuning(Quantities):
         "measured with ideal hands: three layers on 20 % of the chest become none; 0.20 m footward: 1 % (109)",
     )
     stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
-    # twice as fast, the hand, which may come down beside the leg, met it with 52 to 93 N in four of four tries (147)
+    # twice as fast, the hand, which may come down beside the leg, met it with 113 N, not 88 N (147)
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.1))
     lift: float = quantity(0.08, "m", "of the cloth before it is drawn", "choice: along the body it would slip back")
     laid_height: float = quantity(0.02, "m", "of the hand over where it took it", "choice: clear of the leg")

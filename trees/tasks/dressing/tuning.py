@@ -147,7 +147,7 @@ class DressingTuning(Quantities):
         0.30,
         "1",
         "of the upper arm, below which a sleeve is pulled up by its strap again before the gown is put straight",
-        "choice: half way; the seam over the shoulder, by which it is drawn up later, is then on the arm. A right "
+        "choice: below it the seam over the shoulder, by which it is drawn up later, lies down the arm. A right "
         "sleeve was at the wrist when the left arm was dressed (147)",
     )
     collar_shown: float = quantity(
