@@ -40,7 +40,7 @@ class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
     It fails where the cuff is in a heap or beside the arm, and where the armhole is too far down the arm; a sleeve
-    of which too little shows is let pass.
+    of which too little shows is let pass, unless it `must_show`.
     """
 
     commands = False
@@ -51,16 +51,19 @@ class CheckSleeve(Skill):
         default=0.0,
         doc="how far up the upper arm the armhole of a sleeve that sits well is at least: 0 elbow, 1 shoulder",
     )
+    must_show = Input(bool, default=False, doc="whether one of which too little shows fails, as before a claim")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
-    reasons = (Reason.SLEEVE_MISSED, Reason.SLEEVE_LOW, Reason.ARM_LOST)
+    reasons = (Reason.SLEEVE_MISSED, Reason.SLEEVE_LOW, Reason.NOTHING_SEEN, Reason.ARM_LOST)
 
     def steps(self) -> Iterator[None]:
         """One look."""
         arm = watch_arm(self, self.side).points_in_map
         try:
             seen = self.context.senses.worn_sleeve(self.world.look("head"), side=self.side, arm_in_map=arm)
-        except PerceptionFailure:
+        except PerceptionFailure as hidden:
             self.note(f"cannot see the {self.side} sleeve's bindings")
+            if self.must_show:
+                raise SkillFailure(Reason.NOTHING_SEEN, f"{hidden}") from None
             return
         self.note(
             f"{self.side} armhole {seen.reach:.2f} up the upper arm, cuff at {seen.cuff_at:.2f}, "

@@ -48,3 +48,10 @@ def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_an_armhole_far_d
     skill = ran(seen, **({} if min_reach is None else {"min_reach": min_reach}))
     assert skill.status == status
     assert (skill.failure and skill.failure.reason) == reason
+
+
+def test_one_that_must_show_is_not_let_pass_unseen():
+    hidden = PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
+    skill = ran(hidden, min_reach=0.70, must_show=True)
+    assert (skill.status, skill.failure.reason) == (Status.FAILURE, Reason.NOTHING_SEEN)
+    assert ran(worn(), min_reach=0.70, must_show=True).status == Status.SUCCESS

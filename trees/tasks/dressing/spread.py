@@ -127,7 +127,12 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
     collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
     """
-    looks = [node for side in SIDES for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits)]
+    # what does not show is not claimed: an armhole at 0.697 was (149)
+    looks = [
+        node
+        for side in SIDES
+        for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits, must_show=True)
+    ]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
     return sequence("neaten", unfolded(context), seated(context, bed), straight(bed), *looks, middle, flat_now)
@@ -197,10 +202,11 @@ def straight(bed: Scope) -> Behaviour:
     return fallback("as straight as it gets", laid, back_off("leave it", gown))
 
 
-def sits(context: Context, name: str, side: Side, reach: float) -> list[Behaviour]:
+def sits(context: Context, name: str, side: Side, reach: float, *, must_show: bool = False) -> list[Behaviour]:
     """Look from the head of the bed whether a sleeve is up far enough."""
     sleeve = arm_scope(context, name, side)
-    return [LookAtPerson("look", sleeve), CheckSleeve("sits", sleeve, min_reach=reach, tuning=FROM_HEAD)]
+    look = CheckSleeve("sits", sleeve, min_reach=reach, must_show=must_show, tuning=FROM_HEAD)
+    return [LookAtPerson("look", sleeve), look]
 
 
 def still_inside(context: Context, side: Side) -> list[Behaviour]:

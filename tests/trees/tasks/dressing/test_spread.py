@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.world import SIDES
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.run.runner import run
@@ -23,15 +24,18 @@ class WornGown(ScriptedSenses):
         shown: how much of the neckline is seen.
         beside: where the collar is seen from the left (-1) and the right (1) of the bed, if those are other places.
         pulled: how much farther up a sleeve is after it was pulled by its strap.
+        hidden: side of the sleeve that does not show.
     """
 
-    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, beside=None, pulled=0.0):
+    def __init__(self, world, reach, off, *, stays=False, outside=1.0, shown=1.0, beside=None, pulled=0.0, hidden=None):
         super().__init__(world)
-        self.pulled = pulled
+        self.pulled, self.hidden = pulled, hidden
         self.outside, self.shown, self.beside = outside, shown, beside or {}
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
+        if side == self.hidden:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
         return replace(super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map), reach=self.low[side])
 
     def drawn(self, progress):
@@ -98,6 +102,11 @@ def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach,
 )
 def test_a_sleeve_that_has_slipped_down_the_arm_is_pulled_up_before_the_gown_is_put_straight(reach, done):
     assert rehearsed(reach, pulled=0.70) == ("success", done)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_sleeve_that_does_not_show_is_not_claimed(side):
+    assert rehearsed(0.85, hidden=side)[0] == "safe_stop"
 
 
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
