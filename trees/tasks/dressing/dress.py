@@ -8,7 +8,7 @@ from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback
 from ...nodes.decorators import Stage, timed_stage
-from .arm import arm_scope, back_off, carried_across, dress_arm, flat
+from .arm import arm_scope, back_off, carried_across, dress_arm, flat, not_slipped
 from .tuning import DRESSING, FIRST_SLEEVE, SECOND_SLEEVE
 
 
@@ -25,6 +25,8 @@ def dress(context: Context) -> Stage:
             carried_across("the left sleeve", bed, "left"),
             back_off("leave the left sleeve", bed),
         ),
+        # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
+        not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up),
         Navigate("go round to the left side", bed, goal="bed_left"),
         dress_arm(context, "left", SECOND_SLEEVE, strays=True),
         flat(arm_scope(context, "front", "left")),

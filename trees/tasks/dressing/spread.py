@@ -7,11 +7,11 @@ from py_trees.behaviour import Behaviour
 
 from ....perception.estimates import ChestCover
 from ....sim.world import SIDES, Side
-from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
+from ....skills.check_sleeve import CheckSleeve
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
-from ....skills.geometry.stances import stance, stance_at_head
+from ....skills.geometry.stances import stance_at_head
 from ....skills.look_at_person import LookAtPerson
 from ....skills.navigate import Navigate
 from ....skills.seat_sleeves import SeatSleeves
@@ -19,16 +19,13 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
-from .arm import arm_scope, back_off, flat, grasp_worn, put_down, up_arm
+from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
-from .tuning import DRESSING, SECOND_SLEEVE
+from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 
-# Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
-# is inside is looked at from beside it.
-FROM_HEAD = CheckSleeveTuning(min_share_round=0.1)
 MIDDLE = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
@@ -69,15 +66,6 @@ def go_to_head(scope: Scope) -> list[Behaviour]:
     ]
 
 
-def go_beside(sleeve: Scope, side: Side) -> list[Behaviour]:
-    """To beside a shoulder, the arm in view."""
-    return [
-        Navigate("go round to its side", sleeve, goal=f"bed_{side}"),
-        Navigate("go up to it", sleeve, goal=stance(side, "shoulder")),
-        LookAtPerson("go up and look", sleeve),
-    ]
-
-
 def arm_lies(context: Context, side: Side) -> Behaviour:
     """From beside it, see that an arm lies: lowered later, it would draw its sleeve down again."""
     arm = arm_scope(context, f"{side} sleeve", side)
@@ -85,27 +73,9 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
         f"the {side} arm lies",
         *go_beside(arm, side),
         put_down("first", arm),
-        not_slipped(arm),
+        not_slipped(arm, DRESSING.armhole_slipped),
         back_off("leave", arm, DRESSING.back_off_distance),
     )
-
-
-def not_slipped(arm: Scope) -> Behaviour:
-    """A sleeve that has slipped down the arm is pulled up by its strap again; where that fails, the rest may do."""
-
-    def pulled_up() -> Behaviour:
-        return sequence(
-            f"{arm.prefix}up again",
-            Navigate("go where it is", arm, goal=stance(arm["side"], "lift")),
-            grasp_worn("take it once more", arm),
-            up_arm(arm, SECOND_SLEEVE.pull_load),
-            back_off("let it go", arm, DRESSING.back_off_distance),
-            *go_beside(Scope(arm, "then"), arm["side"]),
-        )
-
-    up = CheckSleeve("up the arm", arm, min_reach=DRESSING.armhole_slipped, tuning=FROM_HEAD)
-    again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=3)
-    return fallback(f"{arm.prefix}as it may be", again, back_off("leave it so", arm))
 
 
 def with_arms_in_view(context: Context, bed: Scope) -> Behaviour:

@@ -1,7 +1,8 @@
-"""An arm that is lost where it is to be lifted is looked for from farther off, and only then given up."""
+"""What is tried again at an arm before it is given up, and before the other one is dressed."""
 
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
+from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
 from caretree.skills.lift_arm import LiftArm
@@ -63,3 +64,34 @@ def test_an_arm_that_meets_the_hand_that_lowers_it_is_lowered_on_and_its_sleeve_
     failed = ended.index((leaf, "failure"))
     rest = [name for name, status in ended[failed + 1 :] if status == "success"]
     assert rest[:3] == [f"{side} arm/lower it on", leaf, f"{side} arm/pull up"]
+
+
+@pytest.mark.parametrize(
+    ("lows", "pulls"),
+    [(0, 0), (1, 1), (5, 2)],  # a sleeve that stays low is left so after two more pulls: the rest may do
+)
+def test_a_first_sleeve_that_is_low_is_pulled_up_again_before_the_other_arm_is_lifted(monkeypatch, lows, pulls):
+    look, looked = CheckSleeve.steps, []
+
+    def low_at_first(self):
+        if self.name == "first sleeve/up the arm":
+            looked.append(self.min_reach)
+            if len(looked) <= lows:
+                raise SkillFailure(Reason.SLEEVE_LOW, "")
+        yield from look(self)
+
+    monkeypatch.setattr(CheckSleeve, "steps", low_at_first)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    done = []
+    run = Run(
+        task,
+        world,
+        seed=1,
+        senses=senses,
+        params=task.parameters("dress"),
+        on_progress=lambda progress: done.append(progress.name) if progress.status == "success" else None,
+    )
+    assert run.run().outcome == "success"
+    assert done[: done.index("left arm/lift")].count("first sleeve/pull up") == pulls
+    assert 0.0 < looked[0] < 0.7
