@@ -139,6 +139,13 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         choices=("own", "scripted"),
         help="what sees: the task's own senses, or made up ones, to rehearse on a robot with nothing to see",
     )
+    run.add_argument(
+        "--perception",
+        default="classical",
+        choices=("classical", "learned"),
+        help="what tells surfaces in a picture: rules on colours, or the network, for any gown and skin (default: "
+        "classical)",
+    )
     run.add_argument("--video", default="on", choices=("on", "off"), help="whether the record has one (default: on)")
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")

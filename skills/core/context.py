@@ -176,10 +176,10 @@ class Context:
         if self._senses is None:
             self._senses = senses
 
-    def watch_senses(self, watch: Callable[[Senses], Senses]) -> None:
-        """Have what the senses answer told to those who look on: `watch` gives senses that answer the same."""
+    def wrap_senses(self, wrap: Callable[[Senses], Senses]) -> None:
+        """Put something in front of the senses, such as those who look on, or another eye."""
         if self._senses is not None:
-            self._senses = watch(self._senses)
+            self._senses = wrap(self._senses)
 
     def notify(self, name: str, phase: Phase) -> None:
         """Tell the observers which phase a skill enters."""

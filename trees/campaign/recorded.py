@@ -22,7 +22,8 @@ class Recorded:
         seed: of the run.
         world: name.
         world_args: what a world that the package does not bring was given, name -> value.
-        robot, gown, person, model, stage: as on the command line; None where nothing was given.
+        robot, gown, person, model, stage, look, engine, perception: as on the command line; None where nothing was
+            given.
         world_kind: name.
         rate_hz: ticks a second.
         log_rate: measurements a second that its log asked for, between ticks too; None for those of the tree alone.
@@ -43,6 +44,7 @@ class Recorded:
     stage: str | None = None
     look: str | None = None
     engine: str | None = None
+    perception: str | None = None
     start: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
@@ -63,7 +65,7 @@ def recorded(directory: Path) -> Recorded:
     run = read_finished_run(directory)
     file = directory / RUN_FILE
     given = _value(file, run, "parameters", dict, _is_mapping, {})
-    names = ("robot", "gown", "person", "model", "stage", "look", "engine")
+    names = ("robot", "gown", "person", "model", "stage", "look", "engine", "perception")
     optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(
         task=_value(file, run, "task", str, _is_text),

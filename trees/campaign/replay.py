@@ -12,6 +12,7 @@ from ...sim.log.logged_world import logged
 from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
+from ..run.perceptions import CLASSICAL, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
 from ..run.task import load_task
@@ -70,6 +71,7 @@ def replay(directory: Path) -> Replay:
             params=loaded.values(given.build) | loaded.parameters(given.stage),
             settings=Settings(given.tuning),
         )
+        see_with(run.context, given.perception or CLASSICAL)
         if given.start is None:
             prepare_stage(inner, loaded, given.stage)
         else:

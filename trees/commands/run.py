@@ -29,6 +29,7 @@ from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
 from ..run.judging import judge_and_keep
+from ..run.perceptions import CLASSICAL, see_with
 from ..run.progress import Progress
 from ..run.recorded_start import read_start, take_room
 from ..run.runner import Run
@@ -79,6 +80,7 @@ def main(options: argparse.Namespace) -> int:
         "world_args": arguments,
         "robot": options.robot,
         "senses": None if options.senses == "own" else options.senses,
+        "perception": None if options.perception == CLASSICAL else options.perception,
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
@@ -178,7 +180,8 @@ def _run(
         on_sample=events.sample,
     )
     witness = Witness(events.arm)
-    run.context.watch_senses(witness.watch)
+    see_with(run.context, options.perception, scripted=senses is not None)
+    run.context.wrap_senses(witness.watch)
     directory = claim.directory
     recorder = Recorder(
         claim,
