@@ -48,9 +48,18 @@ class SpreadTuning(Quantities):
     brought_to: tuple[float, float] = quantity(
         (0.01, 0.05),
         "m",
-        "aside of the midline, and off the line of the shoulders towards the other side, to which it is brought",
+        "aside of the midline, and, of one that lies far off, off the line of the shoulders towards the other side, to "
+        "which it is brought",
         "measured: held 0.04 m footward of that line, let go of it went 0.13 m headward (0, 101); where it lay right "
         "along the body and was brought 0.06 m footward all the same, both sleeves came down by 0.14 on average (107)",
+    )
+    a_little_off: tuple[float, float] = quantity(
+        (0.07, 0.11),
+        "m",
+        "off the line of the shoulders, from which it is brought less and less short of the other side of that line",
+        "measured: from 0.07 m headward brought to the line it came to lie 0.01 to 0.05 m headward, and no sleeve went "
+        "below 0.71; brought beyond, a fold of three layers covered 16 % of the trunk (150).  From 0.11 m, brought to "
+        "the line, it went back to 0.10 m (0)",
     )
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.2))
     lift: float = quantity(
@@ -127,7 +136,9 @@ class Spread(Skill):
         if lies_well and lies_along:
             yield
             return
-        aside_to, ahead_to = np.copysign(tuning.brought_to, (aside, -ahead))
+        aside_to, beyond_line = tuning.brought_to
+        beyond_line = float(np.interp(abs(ahead), tuning.a_little_off, (0.0, beyond_line)))
+        aside_to, ahead_to = np.copysign((aside_to, beyond_line), (aside, -ahead))
         tries = Tries(MotionError, PerceptionFailure)
         places = self._places(middle, aside, tries)
         hand = yield from self._take(SIDES if aside < 0.0 else SIDES[::-1], places, tries)

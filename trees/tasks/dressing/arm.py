@@ -220,8 +220,8 @@ def go_beside(sleeve: Scope, side: Side) -> list[Behaviour]:
     ]
 
 
-def not_slipped(arm: Scope, least: float) -> Behaviour:
-    """A sleeve below `least` of the upper arm is pulled up by its strap again; where that fails, the rest may do."""
+def not_slipped(arm: Scope, least: float, *, pulls: int = 2) -> Behaviour:
+    """A sleeve below `least` of the upper arm is pulled up by its strap again, `pulls` times; then the rest may do."""
 
     def pulled_up() -> Behaviour:
         return sequence(
@@ -238,7 +238,7 @@ def not_slipped(arm: Scope, least: float) -> Behaviour:
         LookAtPerson("look along it", arm),
         CheckSleeve("up the arm", arm, min_reach=least, tuning=FROM_HEAD),
     )
-    again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=3)
+    again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=1 + pulls)
     return fallback(f"{arm.prefix}as it may be", again, back_off("leave it so", arm))
 
 

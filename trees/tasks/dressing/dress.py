@@ -26,7 +26,7 @@ def dress(context: Context) -> Stage:
             back_off("leave the left sleeve", bed),
         ),
         # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
-        not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up),
+        not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
         dress_arm(context, "left", SECOND_SLEEVE, strays=True),
         flat(arm_scope(context, "front", "left")),
