@@ -8,50 +8,14 @@ as far as the network sees them.  Surfaces of the gown keep their colours: of it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from ...sim.world import Frame
 from ..image.surfaces import DEFAULT as SURFACES
 from ..image.surfaces import Surface, surfaces
-from ..senses import Senses
-from .sight import packaged_network
-
-KEPT = 4  # repainted pictures: as many cameras may be asked of in one tick, several times each
-
-
-def seen_by_network(
-    senses: Senses, surfaces_in: Callable[[Frame], np.ndarray] = lambda frame: packaged_network().see(frame).surfaces
-) -> Senses:
-    """Senses that answer as `senses` do of the repainted pictures.
-
-    Args:
-        senses: that read colours.
-        surfaces_in: gives the (H, W) `Surface` of each pixel of a frame; the packaged network if omitted.
-    """
-    painted: list[tuple[Frame, Frame]] = []
-
-    def paint(frame: Frame) -> Frame:
-        for before, after in painted:
-            if before is frame:
-                return after
-        painted.append((frame, repainted(frame, surfaces_in(frame))))
-        del painted[:-KEPT]
-        return painted[-1][1]
-
-    def passed_on(name: str) -> Callable[..., object]:
-        def ask(self: object, frame: Any, *args: Any, **options: Any) -> object:
-            shown = [paint(each) for each in frame] if isinstance(frame, Sequence) else paint(frame)
-            return getattr(senses, name)(shown, *args, **options)
-
-        return ask
-
-    methods: dict[str, Any] = {name: passed_on(name) for name in Senses.__abstractmethods__}
-    return type("SensesOfNetwork", (Senses,), methods)()
 
 
 def repainted(frame: Frame, seen: np.ndarray) -> Frame:

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...perception.learned.relabelled import repainted
+from ...perception.learned.sight import packaged_network
+from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
+from ...sim.world import Frame
 from ...skills.core.context import Context
 
 CLASSICAL, LEARNED = "classical", "learned"
 PERCEPTIONS = (CLASSICAL, LEARNED)
+KEPT = 4  # repainted pictures: as many cameras may be asked of in one tick, several times each
 
 
 def see_with(context: Context, perception: str, *, scripted: bool = False) -> None:
@@ -26,6 +36,34 @@ def see_with(context: Context, perception: str, *, scripted: bool = False) -> No
         return
     if scripted:
         raise CaretreeError("--perception learned looks at pictures, and scripted senses see none")
-    from ...perception.learned.relabelled import seen_by_network
-
     context.wrap_senses(seen_by_network)
+
+
+def seen_by_network(
+    senses: Senses, surfaces_in: Callable[[Frame], np.ndarray] = lambda frame: packaged_network().see(frame).surfaces
+) -> Senses:
+    """Senses that answer as `senses` do of the repainted pictures.
+
+    Args:
+        senses: that read colours.
+        surfaces_in: gives the (H, W) `Surface` of each pixel of a frame; the packaged network if omitted.
+    """
+    painted: list[tuple[Frame, Frame]] = []
+
+    def paint(frame: Frame) -> Frame:
+        for before, after in painted:
+            if before is frame:
+                return after
+        painted.append((frame, repainted(frame, surfaces_in(frame))))
+        del painted[:-KEPT]
+        return painted[-1][1]
+
+    def passed_on(name: str) -> Callable[..., object]:
+        def ask(self: object, frame: Any, *args: Any, **options: Any) -> object:
+            shown = [paint(each) for each in frame] if isinstance(frame, Sequence) else paint(frame)
+            return getattr(senses, name)(shown, *args, **options)
+
+        return ask
+
+    methods: dict[str, Any] = {name: passed_on(name) for name in Senses.__abstractmethods__}
+    return type("SensesOfNetwork", (Senses,), methods)()

@@ -1,9 +1,8 @@
 """Pictures repainted in the colours that the rules read, and senses that look at those."""
 
 import numpy as np
-from caretree.perception.classical import ClassicalSenses
 from caretree.perception.image.surfaces import Surface, surfaces
-from caretree.perception.learned.relabelled import repainted, seen_by_network
+from caretree.perception.learned.relabelled import repainted
 from caretree.sim.world import Frame, RoomMap
 
 BED = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
@@ -36,19 +35,3 @@ def test_the_colours_of_a_gown_stay():
     navy = np.full((16, 16, 3), (20, 30, 90))
     shown = repainted(frame(navy), np.full((16, 16), Surface.OUTSIDE, np.uint8)).rgb
     assert (shown == navy).all()
-
-
-def test_senses_are_asked_of_the_repainted_picture_which_is_seen_once():
-    asked = []
-
-    def network(seen):
-        asked.append(seen)
-        return np.full((16, 16), Surface.SKIN, np.uint8)
-
-    black, senses = frame(np.zeros((16, 16, 3))), ClassicalSenses(ROOM, 0)
-    hand = np.array([(0.0, y, 1.0) for y in (0.0, 0.01, 0.02, 0.03)])
-    through = seen_by_network(senses, network)
-    assert senses.hand_cover(black, points_in_map=hand).share == 1.0
-    assert through.hand_cover(black, points_in_map=hand).share == 0.0
-    assert through.hand_cover(black, points_in_map=hand).share == 0.0
-    assert asked == [black]

@@ -1,10 +1,14 @@
 """Which eyes a run has."""
 
+import numpy as np
 import pytest
-from caretree.perception.learned import relabelled
+from caretree.perception.classical import ClassicalSenses
+from caretree.perception.image.surfaces import Surface
 from caretree.sim.errors import CaretreeError
+from caretree.sim.world import Frame, RoomMap
 from caretree.trees.cli import main
-from caretree.trees.run.perceptions import PERCEPTIONS, see_with
+from caretree.trees.run import perceptions
+from caretree.trees.run.perceptions import PERCEPTIONS, see_with, seen_by_network
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
@@ -24,7 +28,7 @@ def test_the_rules_look_at_the_picture_itself(context):
 
 def test_the_network_is_put_before_the_rules(context, monkeypatch):
     wrapped = []
-    monkeypatch.setattr(relabelled, "seen_by_network", lambda senses: wrapped.append(senses) or senses)
+    monkeypatch.setattr(perceptions, "seen_by_network", lambda senses: wrapped.append(senses) or senses)
     see_with(context, "learned")
     assert wrapped == [context.senses]
 
@@ -39,3 +43,33 @@ def test_scripted_senses_have_no_pictures_for_a_network(capsys, tmp_path):
     command = ["run", "dressing", "--world", "scripted", "--perception", "learned", "--out", str(tmp_path / "run")]
     assert main(command) == 2
     assert "scripted senses see none" in capsys.readouterr().err
+
+
+def frame():
+    """A black picture, 1 m away."""
+    return Frame(
+        camera="head",
+        stamp=0.0,
+        rgb=np.zeros((16, 16, 3), np.uint8),
+        depth=np.ones((16, 16), np.float32),
+        intrinsics=(100.0, 100.0, 8.0, 8.0),
+        pose_camera_in_map=np.eye(4),
+    )
+
+
+def test_senses_are_asked_of_the_repainted_picture_which_is_seen_once():
+    asked = []
+
+    def network(seen):
+        asked.append(seen)
+        return np.full((16, 16), Surface.SKIN, np.uint8)
+
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    black, senses = frame(), ClassicalSenses(room, 0)
+    hand = np.array([(0.0, y, 1.0) for y in (0.0, 0.01, 0.02, 0.03)])
+    through = seen_by_network(senses, network)
+    assert senses.hand_cover(black, points_in_map=hand).share == 1.0
+    assert through.hand_cover(black, points_in_map=hand).share == 0.0
+    assert through.hand_cover(black, points_in_map=hand).share == 0.0
+    assert asked == [black]
