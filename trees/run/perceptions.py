@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...perception.learned.relabelled import repainted
+from ...perception.learned.repainted import repainted
 from ...perception.learned.sight import packaged_network
 from ...perception.senses import Senses
 from ...sim.errors import CaretreeError

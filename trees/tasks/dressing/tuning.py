@@ -127,8 +127,8 @@ class DressingTuning(Quantities):
         0.50,
         "1",
         "of the upper arm, below which the first sleeve is pulled up again before the other arm is dressed",
-        "measured: with 0.59 to 0.75 the second sleeve reached its hand on seven of seven seeds, with 0.10 and 0.43 it "
-        "was caught before it, with 4.5 to 5.2 N (147, 146)",
+        "measured: seen at 0.59 to 0.75, the second sleeve reached its hand on six of six seeds, on 149 at the second "
+        "try; at 0.10 and 0.43 it was caught before it, with 4.5 to 5.2 N (147, 146)",
     )
     past_wrist: float = quantity(
         1.8,

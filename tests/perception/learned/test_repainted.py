@@ -2,7 +2,7 @@
 
 import numpy as np
 from caretree.perception.image.surfaces import Surface, surfaces
-from caretree.perception.learned.relabelled import repainted
+from caretree.perception.learned.repainted import repainted
 from caretree.sim.world import Frame, RoomMap
 
 BED = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
