@@ -14,6 +14,7 @@ from ..sim.mechanics.kinematics import kinematics_of
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Side
 from .belief.person_tracking import watch_arm
+from .belief.refused_stands import refused_stands
 from .belief.sleeve_search import find_sleeve, strap_position, strap_views
 from .control.arm_grip import over_arm
 from .control.hands import collision_checker
@@ -46,13 +47,20 @@ class FindStandTuning(Quantities):
     ik_seeds: int = quantity(
         6, "1", "postures from which the solution is looked for", "choice: more take longer, for each of many stances"
     )
+    elsewhere: float = quantity(
+        0.06,
+        "m",
+        "from where the sleeve was out of reach before, at least",
+        "measured: from one stand the strap had no free posture six times of six (153)",
+    )
     lift: LiftGoal = field(default_factory=LiftGoal)
 
 
 class FindStand(Skill):
     """The usual stance where that will do, else the nearest one from which both hands reach what they are for.
 
-    Where the sleeve is not seen, it is the usual stance; it fails where the arm is not known.
+    One from which the sleeve turned out to be out of reach will not do again.  Where the sleeve is not seen, it is the
+    usual stance; it fails where the arm is not known.
     """
 
     commands = False
@@ -78,10 +86,16 @@ class FindStand(Skill):
         ]
         for step in sorted(steps, key=lambda step: float(np.linalg.norm(step))):
             base = usual + (step[0], step[1], 0.0)
-            if is_free(self.world.room, base[:2]) and self._reaches(base, posture, sleeve):
+            if self._was_refused(base) or not is_free(self.world.room, base[:2]):
+                continue
+            if self._reaches(base, posture, sleeve):
                 self.stand = base
                 return
             yield
+
+    def _was_refused(self, base: np.ndarray) -> bool:
+        refused = refused_stands(self, self.side)
+        return any(np.linalg.norm(base[:2] - there[:2]) < self.tuning.elsewhere for there in refused)
 
     def _reaches(self, base: np.ndarray, posture: ArmPosture, sleeve: SleeveOpening) -> bool:
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""

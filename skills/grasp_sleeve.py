@@ -13,6 +13,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
+from .belief.refused_stands import refused_stands
 from .belief.sleeve_search import SLEEVE_SEARCH, look_for_sleeve, seen_well, strap_views
 from .belief.strap_grasp import way_in
 from .belief.strap_turn import strap_turns
@@ -91,7 +92,12 @@ class GraspSleeve(Skill):
         strap = yield from self._look()
         self.note(f"takes the {self.side} sleeve")
         path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
-        way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
+        try:
+            way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
+        except MotionError:
+            if not self.worn:
+                refused_stands(self, self.side).append(self.world.observe().pose_base_in_map)
+            raise
         yield from move_hands(self, {self.hand: way.before}, speed=careful(self, tuning.approach_speed), way="either")
         yield from open_gripper(self, self.hand, tuning.opening)
         seen_well(self).pop(self.side, None)

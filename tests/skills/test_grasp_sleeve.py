@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate
+from caretree.skills.belief.refused_stands import refused_stands
 from caretree.skills.belief.sleeve_search import SleeveMemory
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
@@ -132,3 +133,11 @@ def test_it_ends_when_the_other_hand_loses_the_arm():
 
     run = bench(hold=Hold("left", 1.0), each_tick=slips)
     assert run.ended() == Reason.ARM_SLIPPED
+
+
+def test_from_where_no_posture_takes_the_strap_is_told_to_who_chooses_the_next_stand():
+    beyond = moved(-1.3, 0.0, 0.0)  # [m], across the bed: seen, and out of reach
+    run = bench(near=beyond)
+    assert run.ended() is Reason.UNREACHABLE
+    (stand,) = refused_stands(run.skill, "right")
+    np.testing.assert_allclose(stand, run.world.observe().pose_base_in_map, atol=0.01)

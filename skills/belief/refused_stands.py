@@ -1,0 +1,22 @@
+"""Where the robot stood in vain: a strap that it gets to from no posture there is tried from elsewhere next time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...sim.world import Side
+from ..core.skill import Skill
+
+
+@dataclass
+class RefusedStands:
+    """Base poses (3,) in the map from which a sleeve was out of reach, by the person's side."""
+
+    poses: dict[Side, list[np.ndarray]] = field(default_factory=dict)
+
+
+def refused_stands(skill: Skill, side: Side) -> list[np.ndarray]:
+    """The run's memory of base poses (3,) from which that side's sleeve was out of reach [m, m, rad]."""
+    return skill.context.memory.of(RefusedStands, RefusedStands).poses.setdefault(side, [])
