@@ -136,7 +136,7 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     outcome, done = rehearsed(0.85, (0.0, -0.25), stays=True)
     assert outcome == "safe_stop"
     assert set(done) == {"spread"}
-    assert len(done) <= 5  # one in each round
+    assert len(done) <= 10  # two in each of five rounds
 
 
 @pytest.mark.parametrize(
