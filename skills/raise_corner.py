@@ -62,7 +62,7 @@ class RaiseCorner(Skill):
 
     A gown on one hook rolls itself up, its corners before it.  So the corner goes sideways first, which unrolls it, and
     then behind the rail: straight there it would turn its half of the gown round the sleeve, whose back panel would
-    lie below the front when the gown is laid (docs/results.md).
+    lie below the front when the gown is laid (docs/dressing-findings.md).
     The hand stops early where it carries so much that the hook might lose the gown.  It fails where the corner weighs
     too much below the hook (folds behind it were taken too) or too little in the end (the corner was lost).
     """

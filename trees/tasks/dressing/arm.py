@@ -156,7 +156,7 @@ def up_arm(arm: Scope, max_load: float) -> PullAlongArm:
     """To the shoulder, drawn as hard as `max_load` [N]; let go of as it is.
 
     Drawn farther towards the head, tucked behind the shoulder or slackened before it was let go of, the strap took the
-    collar off the middle or the armhole down the arm (docs/results.md).
+    collar off the middle or the armhole down the arm (docs/dressing-findings.md).
     """
     goal = {"grip_goal": DRESSING.grip_goal, "armhole_goal": DRESSING.armhole_goal}
     return PullAlongArm("pull up", arm, stand=stance(arm["side"], "shoulder"), max_load=max_load, **goal)
