@@ -124,7 +124,7 @@ class ReplayWorld(BulletWorld):
         self._contact.watch(time, reading)
         self._hands = np.stack([self._led.pose_hand_in_map(side, reading) for side in SIDES])
 
-    def _update_grips(self, reading: JointReading) -> None:
+    def _update_fingers(self, reading: JointReading) -> None:
         """Let the fingers close and open when they did."""
         held, t, now = self._stretch.held, self._stretch.robot.t, self.time.time
         row, soon = (max(0, int(np.searchsorted(t, x + TIME_STEP / 2)) - 1) for x in (now, now + EARLY))
@@ -136,7 +136,7 @@ class ReplayWorld(BulletWorld):
                 grip.on_command(0.0, max(widest, float(reading.gripper_opening[n])))
             elif grip.kind != "nothing" and not any(holds):
                 grip.release()
-        super()._update_grips(reading)
+        super()._update_fingers(reading)
 
     def _catches(self, grip: Grip, hand: np.ndarray, opening: float, force: float) -> bool:
         """The part of an arm that was held, as the hand may be over a joint between two."""

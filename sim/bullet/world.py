@@ -48,9 +48,10 @@ from .cameras import Cameras, Exposure
 from .cloth import ClothBody, load_gown
 from .contact import Contact
 from .engines import BULLET, engine_named
+from .fingers import Fingers
 from .furniture import add_furniture
 from .gown_placement import HOLDING, HOLDING_AT, dress_by_hand, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
-from .grip import CLOSED, REOPENED, Grip, held_vertices
+from .grip import Grip
 from .handle import Handle
 from .hook import Hook
 from .objects import RoomObjects
@@ -138,10 +139,10 @@ class BulletWorld(World):
         self._reading = self._robot.read()
         self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
         self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
-        self._grips = [
-            Grip(self._client, side, self._handles[n], self._cloth, self._person) for n, side in enumerate(SIDES)
-        ]
-        self._force_limit = np.full(2, 30.0)
+        self._fingers = Fingers(
+            [Grip(self._client, side, self._handles[n], self._cloth, self._person) for n, side in enumerate(SIDES)]
+        )
+        self._grips = self._fingers.grips
         self._backdrop = Backdrop(self.scene, appearance, self._person, self.kinematics)
         self._cameras = Cameras(self._expose, self._backdrop, self.kinematics, self._errors, self._noise)
         self._truth = self._truth_source()
@@ -304,9 +305,6 @@ class BulletWorld(World):
         wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
         wrench = self._errors.wrench(wrench, self._hands, hands)
         force = np.maximum(reading.gripper_force, self._contact.squeeze(self._hands))
-        for n, grip in enumerate(self._grips):
-            if grip.kind in ("arm", "object"):
-                force[n] = self._force_limit[n]
         return Observation(
             time=now,
             arm_positions=reading.arm_positions,
@@ -316,7 +314,7 @@ class BulletWorld(World):
             pose_base_in_map=reading.pose_base_in_map,
             twist_base=reading.twist_base,
             gripper_opening=reading.gripper_opening.copy(),
-            gripper_force=force,
+            gripper_force=self._fingers.felt(force),
             wrench_hand_in_map=wrench,
             pose_hand_in_map=hands,
         )
@@ -341,13 +339,7 @@ class BulletWorld(World):
         if not isinstance(command, GripperOpening):
             now = self.clock.now()
             return self._errors.told(self._robot.command(self._errors.executed(command, now)), now)
-        n = SIDES.index(command.side)
-        grip = self._grips[n]
-        self._force_limit[n] = command.force_limit
-        grip.on_command(command.opening, float(self._robot.read().gripper_opening[n]))
-        if grip.kind in ("arm", "object") and command.opening > grip.thickness + 0.004:
-            grip.release()
-        return self._robot.command(self._blocked(command, grip))
+        return self._fingers.obey(command, self._robot)
 
     def send_joint_velocities(self, side: Side, velocities: np.ndarray, duration: float) -> None:
         """Move an arm joint by joint (7,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
@@ -363,11 +355,6 @@ class BulletWorld(World):
         for client in (self._client, self._robot_client):
             if client.isConnected():
                 client.disconnect()
-
-    def _blocked(self, command: GripperOpening, grip: Grip) -> GripperOpening:
-        if grip.kind not in ("arm", "object") or command.opening >= grip.thickness:
-            return command
-        return GripperOpening(side=command.side, opening=grip.thickness, force_limit=command.force_limit)
 
     # -- time ----------------------------------------------------------------------------------------------
 
@@ -388,9 +375,9 @@ class BulletWorld(World):
         elif not self._asleep:
             self._meet()
         if self._steps % CONTROL_STEPS == 0:
-            self._update_grips(self._reading)  # of this instant: every control step begins with one of the robot
+            self._update_fingers(self._reading)  # of this instant: every control step begins with one of the robot
             if not self._asleep:
-                self._objects.watch(CONTROL_STEPS * TIME_STEP, held_vertices(self._grips))
+                self._objects.watch(CONTROL_STEPS * TIME_STEP, self._fingers.held())
             self._rest()
             if not self._asleep:
                 self._person.resist()
@@ -419,7 +406,7 @@ class BulletWorld(World):
             self._wake()
 
     def _step_room(self) -> None:
-        held = [n for n, grip in enumerate(self._grips) if grip.kind != "nothing"]
+        held = self._fingers.holding()
         for n in held:
             self._handles[n].follow(self._hands[n])
         self._hook.before_step()
@@ -445,28 +432,16 @@ class BulletWorld(World):
                 holding[0].release()
                 self._patch.release_t = None
 
-    def _update_grips(self, reading: JointReading) -> None:
+    def _update_fingers(self, reading: JointReading) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
         squeeze = self._contact.squeeze(self._hands)
-        if any(grip.kind != "nothing" for grip in self._grips):
+        if self._fingers.holding():
             vertices = self._cloth.vertices()
-            for grip, limit in zip(self._grips, self._force_limit, strict=True):
-                grip.watch(vertices if grip.cloth is self._cloth else grip.cloth.vertices(), float(limit))
-            held = held_vertices(self._grips).get(self._cloth.body, ())
+            self._fingers.watch(self._cloth, vertices)
+            held = self._fingers.held().get(self._cloth.body, ())
             self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)
-        for n, grip in enumerate(self._grips):
-            opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
-            if grip.kind == "cloth" and opening > REOPENED:
-                grip.release()
-            elif grip.kind == "nothing" and self._catches(grip, self._hands[n], opening, force):
-                self._robot.command(GripperOpening(side=SIDES[n], opening=grip.thickness, force_limit=force))
-                self._wake()
-            elif squeeze[n] > force and self._robot.servo.gripper_opening[n] < opening:  # the fingers stall
-                self._robot.command(GripperOpening(side=SIDES[n], opening=opening, force_limit=force))
-            elif grip.kind == "nothing" and opening < CLOSED:
-                grip.take_any_cloth(self._cloths, self._hands[n])
-                if grip.kind == "cloth":
-                    self._wake()
+        if self._fingers.meet(self._robot, reading, self._hands, squeeze, self._cloths, self._catches):
+            self._wake()
 
     def _catches(self, grip: Grip, hand: np.ndarray, opening: float, force: float) -> bool:
         """Whether closing fingers now meet an arm or an object."""
@@ -484,7 +459,7 @@ class BulletWorld(World):
         moved = max(float(np.abs(arms - self._arms).max()), self._objects.moved())
         moved = max(moved, float(np.abs(vertices - self._vertices).max(initial=0.0)))
         self._vertices, self._arms = vertices, arms
-        busy = self._moving_person or self._contact.on_arms or any(grip.kind != "nothing" for grip in self._grips)
+        busy = self._moving_person or self._contact.on_arms or self._fingers.holding()
         self._asleep = not busy and moved < SLEEP_MOVE and self._steps > 0
 
     def _wake(self) -> None:
