@@ -39,13 +39,15 @@ def export(network: SeeingNetwork, path: str | Path, record: dict[str, object], 
         import onnx  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
         raise CaretreeError("writing the network needs onnx: pip install 'caretree[learn]'") from error
-    network = network.eval().to(memory_format=torch.contiguous_format)
+    network = network.eval().to(memory_format=torch.contiguous_format)  # pyright: ignore[reportCallIssue] - its stubs lack it
     with torch.no_grad():
         for weights in network.parameters():
             weights.copy_(weights.half().float())
     buffer = io.BytesIO()
     torch.onnx.export(
-        network, (torch.zeros(1, 5, SIZE[1], SIZE[0]),), buffer, dynamo=False, input_names=["image"],
+        network, (torch.zeros(1, 5, SIZE[1], SIZE[0]),),
+        buffer,  # pyright: ignore[reportArgumentType] - the exporter without dynamo writes to a buffer too
+        dynamo=False, input_names=["image"],
         output_names=list(OUTPUTS),
     )  # fmt: skip
     model = onnx.load_from_string(buffer.getvalue())

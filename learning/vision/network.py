@@ -60,9 +60,11 @@ class SeeingNetwork(nn.Module):
         for name, layer in self.named_modules():
             if isinstance(layer, nn.Conv2d) and not name.endswith("second"):  # torch's own scale fades layer by layer
                 nn.init.kaiming_normal_(layer.weight, nonlinearity="relu")
+                assert layer.bias is not None
                 nn.init.zeros_(layer.bias)
         for head in (self.surface, self.nodes, self.peaks):
             nn.init.normal_(head.weight, std=0.02)
+        assert self.peaks.bias is not None
         nn.init.constant_(self.peaks.bias[: len(KEY_POINTS)], NOWHERE)
 
     def forward(self, image: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:

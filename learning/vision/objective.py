@@ -32,7 +32,8 @@ class Seeing(Objective):
 
     def __init__(self, data: dict[str, np.ndarray], seed: int) -> None:
         torch.manual_seed(seed)
-        self.network = SeeingNetwork().to(memory_format=torch.channels_last)
+        network = SeeingNetwork()
+        self.network = network.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stubs lack it
         self._data = data
 
     def batch(self, rng: np.random.Generator) -> dict[str, torch.Tensor]:

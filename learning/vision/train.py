@@ -66,16 +66,18 @@ def train(
         kept = {key: array[KEPT - 1 :: KEPT] for key, array in data.items()}
         mine = {key: array[[i for i in range(count) if i % KEPT != KEPT - 1]] for key, array in data.items()}
     objective = Seeing(mine, seed)
+    network = objective.network
+    assert isinstance(network, SeeingNetwork)
     about: dict[str, object] = {"method": "seeing", "data": digest, "pictures": len(mine["surface"])}
     if apart is not None:
         kept, about["apart"] = load_dataset(apart)
     if start is not None:
-        about["start"] = _begin_with(objective.network, start)
+        about["start"] = _begin_with(network, start)
     budget = Budget(steps=steps, learning_rate=learning_rate, save_every=min(100, steps))
     record = fit(objective, budget, seed=seed, folder=out, about=about, say=say)
     say(f"calibrating on {len(kept['surface'])} pictures that were not trained on")
     made = time.strftime("%Y-%m-%d", time.gmtime())
-    return export(objective.network, out / "seeing.onnx", {**record, "made": made}, calibrate(objective.network, kept))
+    return export(network, out / "seeing.onnx", {**record, "made": made}, calibrate(network, kept))
 
 
 def _begin_with(network: SeeingNetwork, start: Path) -> str:
