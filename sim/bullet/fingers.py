@@ -36,10 +36,11 @@ class Fingers:
 
     def felt(self, force: np.ndarray) -> np.ndarray:
         """What the fingers' sensors say (2,) [N]: round an arm or an object they press as hard as they were told."""
+        felt = force.copy()
         for n, grip in enumerate(self.grips):
             if grip.kind in ("arm", "object"):
-                force[n] = self._force_limit[n]
-        return force
+                felt[n] = self._force_limit[n]
+        return felt
 
     def obey(self, command: GripperOpening, robot: RobotBody) -> Command:
         """Open or close a hand's fingers, no farther than what is between them lets them; returns what was sent."""
