@@ -53,6 +53,10 @@ class Cluster:
         """Leave it; calls in flight are interrupted."""
         self._ray.shutdown()
 
+    def share(self, value: Any) -> Any:
+        """Send a value there once; what comes back stands for it among the arguments of calls."""
+        return self._ray.put(value)
+
     def each(
         self, function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], *, retries: int = 0
     ) -> Iterator[tuple[tuple[Any, ...], Any]]:

@@ -35,6 +35,9 @@ class FakeRay:
     def cluster_resources(self):
         return {"CPU": float(self.cores)}
 
+    def put(self, value):
+        return value
+
     def remote(self, **options):
         def bind(function):
             def start(*call):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...sim.command_line import CommandParser, seed
 from ...sim.errors import CaretreeError
+from ..shards import add_cluster_options
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,8 +39,7 @@ def parser() -> argparse.ArgumentParser:
         help="clips of each class, or in all (default: paper 60, uniform 6000, mixed 24000, cuts 4000, others 300)",
     )
     data.add_argument("--seed", type=seed, default=0, metavar="N")
-    data.add_argument("--jobs", type=int, default=1, metavar="N", help="shards at once; more than 1 needs Ray")
-    data.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
+    add_cluster_options(data)
 
     clip = sub.add_parser("clip", help="render the clip of one falling gown and write it")
     clip.add_argument("file", metavar="FILE", help="the .npz to write")
@@ -94,8 +94,6 @@ def main(argv: list[str]) -> int:
         from .clips.dataset import DatasetSpec
         from .clips.generate import generate, say_to_stderr
 
-        if options.jobs < 1:
-            raise CaretreeError(f"--jobs is {options.jobs}, at least 1 is asked for")
         classes, per_class = SIZES[options.kind]
         spec = DatasetSpec(
             kind=options.kind,

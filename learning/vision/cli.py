@@ -12,6 +12,7 @@ from typing import Any
 from ...sim.command_line import CommandParser, seed, whole_number
 from ...sim.errors import CaretreeError
 from ...sim.scene.gown import HELD_OUT_GOWNS
+from ..shards import add_cluster_options
 
 KEPT_SEEDS = 9000  # from here on no seed is for training or trying
 
@@ -53,6 +54,7 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("--states", required=True, metavar="DIR", help="folder of `states`")
     data.add_argument("--pictures", type=whole_number, default=3000, metavar="N", help="default 3000")
     data.add_argument("--seed", type=seed, default=100, metavar="N", help="default 100")
+    add_cluster_options(data)
     train = sub.add_parser("train", help="train the network and write it as ONNX")
     train.add_argument("data", nargs="+", type=Path, metavar="DATA", help="one folder of `data` or more")
     train.add_argument("--out", required=True, metavar="DIR", help="checkpoint, record and seeing.onnx")
@@ -92,7 +94,7 @@ def main(argv: list[str], seers: Callable[[Path | None], Mapping[str, Any]] | No
 
         states, digest = read_states(options.states)
         spec = DatasetSpec(part="train", pictures=options.pictures, seed=options.seed)
-        print(make_dataset(options.folder, states, digest, spec, _say))
+        print(make_dataset(options.folder, states, digest, spec, _say, jobs=options.jobs, address=options.address))
     elif options.command == "train":
         _train(options)
     else:

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
+from ..shards import each_shard
 from .pictures import PARTS, Picture, chosen_states, draw_picture
 from .states import RoomState
 
@@ -111,11 +112,24 @@ def make_dataset(
     states_hash: str,
     spec: DatasetSpec,
     say: Callable[[str], None] = lambda text: None,
+    *,
+    jobs: int | None = None,
+    address: str | None = None,
 ) -> Path:
     """Make a dataset, or what is missing of it.
 
+    Args:
+        folder: made when it is not there.
+        states: of `read_states`.
+        states_hash: theirs.
+        spec: what the dataset shall hold.
+        say: takes lines of progress.
+        jobs: shards made at once; more than one needs Ray.  None: one here, on a cluster as many as it has cores.
+        address: of a Ray cluster; its machines need this package, not this folder.
+
     Raises:
-        CaretreeError: the folder holds another dataset, or no state is of this part.
+        CaretreeError: the folder holds another dataset, no state is of this part, Ray is asked for and not there, or
+            shards were lost with their workers.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -126,24 +140,49 @@ def make_dataset(
     mine = chosen_states(states, spec.part)
     if not mine:
         raise CaretreeError(f"no state is for the part '{spec.part}'")
-    shards: list[dict[str, Any]] = [
-        s for s in old["shards"] if s["pictures"] == SHARD and (folder / s["file"]).is_file()
-    ]
-    for number in range(len(shards), -(-spec.pictures // SHARD)):
-        start = time.process_time()
-        ids = range(number * SHARD, min((number + 1) * SHARD, spec.pictures))
-        rows = [example(draw_picture(mine, spec.part, spec.seed, i)) for i in ids]
-        buffer = io.BytesIO()
-        arrays: dict[str, Any] = {key: np.stack([row[key] for row in rows]) for key in rows[0]}
-        np.savez(buffer, **arrays)  # noise does not compress
-        data = buffer.getvalue()
-        name = f"shard_{number:04d}.npz"
-        _replace(folder / name, data)
-        shards.append({"file": name, "pictures": len(ids), "sha256": hashlib.sha256(data).hexdigest()})
+    whole = {s["file"]: s for s in old["shards"] if s["pictures"] == SHARD and (folder / s["file"]).is_file()}
+    missing = [n for n in range(-(-spec.pictures // SHARD)) if shard_name(n) not in whole]
+    for number, shard in each_shard(make_shard, missing, mine, spec, jobs=jobs, address=address):
+        _replace(folder / shard_name(number), shard.pop("bytes"))
+        spent = shard.pop("seconds")
+        whole[shard_name(number)] = shard
+        shards = [whole[name] for name in sorted(whole)]
         _replace(folder / INDEX, (json.dumps({**about, "shards": shards}, indent=1) + "\n").encode())
-        spent = time.process_time() - start
-        say(f"{spec.part}: {ids.stop} of {spec.pictures} pictures, {spent:.1f} s for the last {len(ids)}")
+        made = sum(s["pictures"] for s in shards)
+        say(f"{spec.part}: {made} of {spec.pictures} pictures, {spent:.1f} s for the last {shard['pictures']}")
     return folder
+
+
+def make_shard(number: int, states: Sequence[RoomState], spec: DatasetSpec) -> dict[str, Any]:
+    """Draw the pictures of one shard.
+
+    Args:
+        number: of the shard.
+        states: those of `chosen_states`.
+        spec: of the dataset.
+
+    Returns:
+        `file`, `pictures`, `sha256`, `seconds` (processor time), and `bytes` of the file.
+    """
+    start = time.process_time()
+    ids = range(number * SHARD, min((number + 1) * SHARD, spec.pictures))
+    rows = [example(draw_picture(states, spec.part, spec.seed, i)) for i in ids]
+    buffer = io.BytesIO()
+    arrays: dict[str, Any] = {key: np.stack([row[key] for row in rows]) for key in rows[0]}
+    np.savez(buffer, **arrays)  # noise does not compress
+    data = buffer.getvalue()
+    return {
+        "file": shard_name(number),
+        "pictures": len(ids),
+        "sha256": hashlib.sha256(data).hexdigest(),
+        "seconds": time.process_time() - start,
+        "bytes": data,
+    }
+
+
+def shard_name(number: int) -> str:
+    """File name of a shard."""
+    return f"shard_{number:04d}.npz"
 
 
 def read_index(folder: str | Path) -> dict[str, Any]:

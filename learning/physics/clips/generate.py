@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from ....sim.errors import CaretreeError
+from ...shards import each_shard
 from .camera import misplacement, standard_camera
 from .clip import packed
 from .dataset import INDEX, SHARD, DatasetSpec, read_index, read_shard, write_index
@@ -27,16 +28,15 @@ from .depth_noise import disturb
 from .parameters import to_spec
 
 
-def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> dict[str, Any]:
+def make_shard(number: int, spec: DatasetSpec) -> dict[str, Any]:
     """Make the clips of one shard.
 
     Args:
-        spec: of the dataset.
         number: of the shard.
-        folder: write the shard here; when omitted its bytes are returned as `bytes`.
+        spec: of the dataset.
 
     Returns:
-        `file`, `clips`, `sha256`, `seconds` (processor time), and `bytes` when nothing was written.
+        `file`, `clips`, `sha256`, `seconds` (processor time), and `bytes` of the file.
     """
     started = time.process_time()
     ids = range(number * SHARD, min((number + 1) * SHARD, spec.clips))
@@ -51,16 +51,13 @@ def make_shard(spec: DatasetSpec, number: int, folder: Path | None = None) -> di
         split=np.array([spec.split_of(i) for i in ids]),
     )
     data = buffer.getvalue()
-    shard: dict[str, Any] = {
+    return {
         "file": shard_name(number),
         "clips": len(ids),
         "sha256": hashlib.sha256(data).hexdigest(),
         "seconds": round(time.process_time() - started, 2),
+        "bytes": data,
     }
-    if folder is None:
-        return {**shard, "bytes": data}
-    _write(folder / shard["file"], data)
-    return shard
 
 
 def _depths(spec: DatasetSpec, ids: range) -> Iterator[np.ndarray]:
@@ -97,7 +94,7 @@ def _write(path: Path, data: bytes) -> None:
 def generate(
     folder: str | Path,
     spec: DatasetSpec,
-    jobs: int = 1,
+    jobs: int | None = None,
     address: str | None = None,
     say: Callable[[str], None] = lambda text: None,
 ) -> Path:
@@ -106,7 +103,7 @@ def generate(
     Args:
         folder: of the dataset; made when it is not there.
         spec: what it shall hold.
-        jobs: shards made at once; more than one needs Ray.
+        jobs: shards made at once; more than one needs Ray.  None: one here, on a cluster as many as it has cores.
         address: of a Ray cluster; its machines need this package, not this folder.
         say: takes lines of progress.
 
@@ -114,7 +111,8 @@ def generate(
         The folder.
 
     Raises:
-        CaretreeError: the folder holds another dataset, or Ray is asked for and not installed or not reached.
+        CaretreeError: the folder holds another dataset, Ray is asked for and not installed or not reached, or shards
+            were lost with their workers: the others are kept.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -138,7 +136,8 @@ def generate(
     if missing:
         say(f"{spec.kind}: {len(shards)} of {count} shards are there, {len(missing)} to make")
     keep()
-    for number, shard in _made(folder, spec, missing, jobs, address):
+    for number, shard in each_shard(make_shard, missing, spec, jobs=jobs, address=address):
+        _write(folder / shard["file"], shard.pop("bytes"))
         shards[number] = shard
         keep()
         fresh += shard["clips"]
@@ -147,45 +146,6 @@ def generate(
         say(f"{spec.kind}: shard {number}, {len(shards)} of {count}, {speed:.1f} clips/s, {left / 60:.1f} min left")
     say(f"{folder}: {spec.clips} clips")
     return folder
-
-
-def _made(
-    folder: Path, spec: DatasetSpec, missing: list[int], jobs: int, address: str | None
-) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Shards as they get ready."""
-    if address is None and jobs < 2:
-        for number in missing:
-            yield number, make_shard(spec, number, folder)
-        return
-    try:
-        import ray  # type: ignore[import-not-found]  # pyright: ignore[reportMissingImports] - in the extra `learn`
-    except ImportError as error:
-        raise CaretreeError("more than one job needs Ray: pip install 'caretree[learn]'") from error
-    try:
-        if address is None:  # this machine alone: its loopback, whatever its network looks like
-            ray.init(num_cpus=jobs, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1")
-        else:
-            ray.init(address=address)
-    except Exception as error:  # Ray raises bare ones
-        why = (str(error).splitlines() or [type(error).__name__])[0]
-        raise CaretreeError(
-            f"Ray does not start here: {why}" if address is None else f"no Ray cluster answers at {address}: {why}"
-        ) from error
-    try:
-        remote = ray.remote(num_cpus=1, max_retries=3)(make_shard)
-        waiting = list(missing)
-        flying: dict[Any, int] = {}
-        while waiting or flying:
-            while waiting and len(flying) < max(jobs, 1):
-                number = waiting.pop(0)
-                flying[remote.remote(spec, number)] = number
-            ready, _ = ray.wait(list(flying), num_returns=1)
-            shard = ray.get(ready[0])
-            number = flying.pop(ready[0])
-            _write(folder / shard["file"], shard.pop("bytes"))
-            yield number, shard
-    finally:
-        ray.shutdown()
 
 
 def _finished(folder: Path, spec: DatasetSpec) -> dict[int, dict[str, Any]]:

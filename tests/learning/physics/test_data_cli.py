@@ -85,7 +85,7 @@ def test_sensitivity_prints_its_table(tmp_path, capsys):
         (["physics", "data"], "the following arguments are required: DIR"),
         (["physics", "data", "x", "--kind", "blender"], "invalid choice: 'blender'"),
         (["physics", "data", "x", "--kind", "uniform", "--classes", "4"], "has no classes, 4 were asked for"),
-        (["physics", "data", "x", "--jobs", "0"], "--jobs is 0, at least 1"),
+        (["physics", "data", "x", "--jobs", "0"], "argument --jobs: '0', but a whole number of at least 1"),
         (["physics", "data", "x", "--per-class", "0"], "counts start at 1"),
         (["physics", "clip", "x.npz", "--gown", "silk"], "unknown gown 'silk'"),
         (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),

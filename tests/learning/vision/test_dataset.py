@@ -1,13 +1,15 @@
 """A dataset: resumable, the same bytes again, and what the network is given at run time is what it was trained on."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
-from caretree.learning.vision.dataset import INDEX, DatasetSpec, example, load_dataset, make_dataset, seen
+from caretree.learning.vision.dataset import INDEX, DatasetSpec, example, load_dataset, make_dataset, read_index, seen
 from caretree.learning.vision.pictures import draw_picture
 from caretree.sim.errors import CaretreeError
 
+from ...fake_ray import FakeRay
 from .still_room import still_state
 
 
@@ -31,6 +33,20 @@ def test_an_interrupted_dataset_goes_on_and_has_the_same_bytes(tmp_path, states)
     data, digest = load_dataset(tmp_path / "a")
     assert data["rgb"].shape == (4, 3, 192, 256)
     assert digest == load_dataset(tmp_path / "b")[1]
+
+
+def test_on_a_cluster_the_bytes_are_the_same(tmp_path, states, monkeypatch):
+    fake = FakeRay(cores=2)
+    fake.killed = {0}
+    monkeypatch.setitem(sys.modules, "ray", fake)
+    spec = DatasetSpec(part="train", pictures=5, seed=3)
+    make_dataset(tmp_path / "here", states, "s", spec)
+    with pytest.raises(CaretreeError, match="1 shards were lost"):
+        make_dataset(tmp_path / "there", states, "s", spec, address="ray://head:10001")
+    assert fake.most_in_flight == 2
+    assert [s["file"] for s in read_index(tmp_path / "there")["shards"]] == ["shard_0001.npz", "shard_0002.npz"]
+    make_dataset(tmp_path / "there", states, "s", spec, jobs=1)
+    assert (tmp_path / "there" / INDEX).read_bytes() == (tmp_path / "here" / INDEX).read_bytes()
 
 
 def test_another_dataset_is_refused(tmp_path, states):

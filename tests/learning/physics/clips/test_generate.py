@@ -1,11 +1,12 @@
 import sys
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 from caretree.learning.physics.clips import generate
 from caretree.learning.physics.clips.dataset import Dataset, DatasetSpec
 from caretree.sim.errors import CaretreeError
+
+from ....fake_ray import FakeRay
 
 PAPER = DatasetSpec(kind="paper", classes=3, per_class=5)
 pytestmark = pytest.mark.usefixtures("quick")
@@ -15,12 +16,12 @@ def test_the_same_seed_gives_the_same_bytes_however_often_it_was_interrupted(tmp
     generate.generate(tmp_path / "once", PAPER)
     real, made = generate.make_shard, []
 
-    def killed(spec, number, folder=None):
+    def killed(number, spec):
         if len(made) == 2:
             (tmp_path / "twice" / "shard_0002.npz.part").write_bytes(b"half")
             raise KeyboardInterrupt
         made.append(number)
-        return real(spec, number, folder)
+        return real(number, spec)
 
     monkeypatch.setattr(generate, "make_shard", killed)
     with pytest.raises(KeyboardInterrupt):
@@ -28,7 +29,7 @@ def test_the_same_seed_gives_the_same_bytes_however_often_it_was_interrupted(tmp
     with pytest.raises(CaretreeError, match="8 of 15 clips are made"):
         Dataset.load(tmp_path / "twice")
     assert len(Dataset.load(tmp_path / "twice", partial=True)) == 8
-    monkeypatch.setattr(generate, "make_shard", lambda *a: made.append(a[1]) or real(*a))
+    monkeypatch.setattr(generate, "make_shard", lambda *a: made.append(a[0]) or real(*a))
     generate.generate(tmp_path / "twice", PAPER)
     assert made == [0, 1, 2, 3]
     assert Dataset.load(tmp_path / "once").hash == Dataset.load(tmp_path / "twice").hash
@@ -52,51 +53,43 @@ def test_damage_is_seen_and_repaired(tmp_path):
         Dataset.load(tmp_path)
 
 
-class FakeRay:
-    """As much of Ray as `generate` uses, in this process and in reverse order."""
-
-    def __init__(self):
-        self.asked, self.flying = None, 0
+class LastFirst(FakeRay):
+    """The shard that was asked for last is ready first."""
 
     def init(self, **asked):
-        self.asked = asked
-        if asked.get("address") == "ray://nobody":
-            raise ConnectionError("ray client connection timeout\nand more")
         if asked.get("num_cpus") == 3:
             raise Exception("The current node timed out during startup.")
+        super().init(**asked)
 
-    def remote(self, **_):
-        def wrap(function):
-            def call(*arguments):
-                self.flying += 1
-                return lambda: function(*arguments)
-
-            return SimpleNamespace(remote=call)
-
-        return wrap
-
-    def wait(self, refs, num_returns):
-        assert len(refs) <= 2
-        return refs[-1:], refs[:-1]
-
-    def get(self, ref):
-        return ref()
-
-    def shutdown(self):
-        self.asked = None
+    def wait(self, references, num_returns):
+        return references[-num_returns:], references[:-num_returns]
 
 
 def test_with_ray_the_bytes_are_the_same(tmp_path, monkeypatch):
-    fake = FakeRay()
+    fake = LastFirst(cores=3)
     monkeypatch.setitem(sys.modules, "ray", fake)
     generate.generate(tmp_path / "one", PAPER)
-    generate.generate(tmp_path / "many", PAPER, jobs=2)
-    assert fake.flying == 4
-    assert Dataset.load(tmp_path / "one").hash == Dataset.load(tmp_path / "many").hash
-    with pytest.raises(CaretreeError, match=r"no Ray cluster answers at ray://nobody: ray client connection timeout$"):
+    generate.generate(tmp_path / "two", PAPER, jobs=2)
+    assert fake.most_in_flight == 2
+    generate.generate(tmp_path / "many", PAPER, address="ray://head:10001")
+    assert fake.most_in_flight == 3  # as many as the cluster has cores
+    hashes = {Dataset.load(tmp_path / name).hash for name in ("one", "two", "many")}
+    assert len(hashes) == 1
+    with pytest.raises(CaretreeError, match=r"no Ray cluster answers at ray://nobody: timeout$"):
         generate.generate(tmp_path / "far", PAPER, address="ray://nobody")
     with pytest.raises(CaretreeError, match="Ray does not start here: The current node timed out"):
         generate.generate(tmp_path / "far", PAPER, jobs=3)
+
+
+def test_a_lost_worker_loses_its_own_shard_only(tmp_path, monkeypatch):
+    fake = LastFirst(cores=2)
+    fake.killed = {1}
+    monkeypatch.setitem(sys.modules, "ray", fake)
+    with pytest.raises(CaretreeError, match="1 shards were lost"):
+        generate.generate(tmp_path, PAPER, address="ray://head:10001")
+    assert sorted(path.name for path in tmp_path.glob("*.npz")) == [f"shard_000{n}.npz" for n in (0, 2, 3)]
+    generate.generate(tmp_path, PAPER)
+    assert len(Dataset.load(tmp_path)) == PAPER.clips
 
 
 def test_without_ray_several_jobs_are_refused(tmp_path, monkeypatch):
