@@ -142,6 +142,8 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     ("shown", "from_left", "from_right", "ends"),
     [
         (0.95, (0.12, 0.0), (0.12, 0.0), "success"),
+        (0.92, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
+        (0.92, (0.01, 0.0), (0.12, 0.0), "success"),
         (0.80, (0.01, 0.0), (0.12, 0.0), "success"),
         (0.80, (0.12, 0.0), (0.01, 0.0), "success"),
         (0.80, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
