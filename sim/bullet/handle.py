@@ -7,13 +7,13 @@ read in the cloth itself (`Cloth.load`).
 
 from __future__ import annotations
 
-import math
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .handle_turn import motor_targets
 from .soft_world import GRAVITY
 from .units import ROOM
 
@@ -29,7 +29,6 @@ _AXES = (
 )
 _LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
 _CARRIED = MASS + LINK_MASS * np.array((5.0, 4.0, 3.0))  # what the motors along x, y and z move [kg]
-_ROUND = 2 * math.pi  # [rad]
 _JOINTS = tuple(range(6))
 _POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
 _FORCES = (ROOM.force(300.0),) * 3 + (ROOM.force(20.0),) * 3  # of the motors, 300 N and 20 N m
@@ -74,8 +73,7 @@ class Handle:
 
     def follow(self, pose_in_map: np.ndarray) -> None:
         """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
-        angles = _nearest(_turns(pose_in_map[:3, :3] @ self._turn_at_reset.T), self._target[3:])
-        self._target = np.array((*pose_in_map[:3, 3], *angles))
+        self._target = motor_targets(pose_in_map, self._turn_at_reset, self._target)
         self.client.setJointMotorControlArray(
             self.body,
             _JOINTS,
@@ -110,29 +108,6 @@ class Handle:
     def position(self) -> np.ndarray:
         """(3,) where it really is [m]."""
         return np.array(self.client.getLinkState(self.body, self.link)[4])
-
-
-def _turns(matrix: np.ndarray) -> tuple[float, float, float]:
-    """Angles about z, then the new y, then the new x of a rotation (3, 3) [rad]; scipy takes ten times as long."""
-    (a, _, _), (b, _, _), (c, d, e) = matrix.tolist()
-    return math.atan2(b, a), math.asin(min(1.0, max(-1.0, -c))), math.atan2(d, e)
-
-
-def _nearest(angles: tuple[float, float, float], last: np.ndarray) -> tuple[float, ...]:
-    """The turn of `angles` (3,) about z, y, x without a jump from `last`: the motors would spin the cloth round."""
-    z, y, x = angles
-    was_z, was_y, was_x = last.tolist()
-    if max(abs(z - was_z), abs(y - was_y), abs(x - was_x)) < math.pi / 2:
-        return angles  # at almost every step: any other way to the same turn is further off
-    best, least = angles, math.inf
-    for way in (angles, (z + math.pi, math.pi - y, x + math.pi)):
-        whole = tuple(
-            angle + _ROUND * round((before - angle) / _ROUND) for angle, before in zip(way, last, strict=True)
-        )
-        apart = max(abs(angle - before) for angle, before in zip(whole, last, strict=True))
-        if apart < least:
-            best, least = whole, apart
-    return best
 
 
 def _urdf() -> str:
