@@ -201,7 +201,7 @@ class _Places:
         return JointReading(
             arm_positions=q,
             arm_velocities=nothing,
-            arm_efforts=nothing,
+            motor_torques=nothing,
             head_pan=float(x[-4]),
             pose_base_in_map=x[-3:],
             twist_base=np.zeros(3),

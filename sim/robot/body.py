@@ -37,7 +37,7 @@ class JointReading:
     Attributes:
         arm_positions: (2, 7) [rad].
         arm_velocities: (2, 7) [rad/s].
-        arm_efforts: (2, 7) motor torque, gravity included [N m].
+        motor_torques: (2, 7) of the arms, beside what carries them (`RobotBody.efforts`) [N m].
         head_pan: [rad].
         pose_base_in_map: (3,) [m, m, rad], yaw within -pi and pi.
         twist_base: (3,) in the base frame [m/s, m/s, rad/s].
@@ -47,7 +47,7 @@ class JointReading:
 
     arm_positions: np.ndarray
     arm_velocities: np.ndarray
-    arm_efforts: np.ndarray
+    motor_torques: np.ndarray
     head_pan: float
     pose_base_in_map: np.ndarray
     twist_base: np.ndarray
@@ -156,7 +156,7 @@ class RobotBody:
             self._drive()
 
     def read(self) -> JointReading:
-        """Joint positions, velocities and efforts as the sensors see them."""
+        """Joint positions, velocities and torques as the sensors see them."""
         states = self._client.getJointStates(self.body, self._joints)
         columns = tuple(zip(*states, strict=True))  # called at every step of the robot
         q, dq, torque = np.array(columns[0]), np.array(columns[1]), np.array(columns[3])
@@ -168,18 +168,25 @@ class RobotBody:
         # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
         closed = (opening < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
         squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
-        arms = q[3:17].reshape(2, 7)
-        carried = self.kinematics.gravity_torque(self.kinematics.configuration(q[:3], arms, float(q[17]), opening))
         return JointReading(
-            arm_positions=arms,
+            arm_positions=q[3:17].reshape(2, 7),
             arm_velocities=dq[3:17].reshape(2, 7),
-            arm_efforts=torque[3:17].reshape(2, 7) + carried,
+            motor_torques=torque[3:17].reshape(2, 7),
             head_pan=float(q[17]),
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
             gripper_opening=opening,
             gripper_force=squeeze,
         )
+
+    def efforts(self, reading: JointReading) -> np.ndarray:
+        """(2, 7) torque of the arms' motors, gravity included, where the joints are as in `reading` [N m]."""
+        return reading.motor_torques + self.kinematics.gravity_torque(self.configuration(reading))
+
+    def poses_hands_in_map(self, reading: JointReading | None = None) -> np.ndarray:
+        """Poses (2, 4, 4) of both hands by forward kinematics of the measured joints."""
+        reading = reading or self.read()
+        return self.kinematics.poses_hands_in_map(reading.arm_positions, reading.pose_base_in_map)
 
     def pose_hand_in_map(self, side: Side, reading: JointReading | None = None) -> np.ndarray:
         """Pose (4, 4) of a hand by forward kinematics of the measured joints."""
