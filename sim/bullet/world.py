@@ -437,7 +437,8 @@ class BulletWorld(World):
         """Let closed fingers take, opened fingers release, loads be felt."""
         squeeze = self._contact.squeeze(self._hands)
         if self._fingers.holding():
-            vertices = self._cloth.vertices()
+            cloth = self._hook.holds or any(grip.kind == "cloth" for grip in self._grips)
+            vertices = self._cloth.vertices() if cloth else self._vertices
             self._fingers.watch(self._cloth, vertices)
             held = self._fingers.held().get(self._cloth.body, ())
             self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)
