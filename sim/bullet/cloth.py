@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -71,6 +72,15 @@ class ClothBody(ABC):
         """(3,) force that the cloth, whose vertices are given, exerts on whatever holds the vertices `held` [N]."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class _Cut:
+    """The n springs that hold some vertices: their held ends, their free ends (n,) int, rest lengths (n,) [m]."""
+
+    inner: np.ndarray
+    outer: np.ndarray
+    rest: np.ndarray
+
+
 class Cloth(ClothBody):
     """One gown, or another cloth, in a soft world.
 
@@ -100,6 +110,7 @@ class Cloth(ClothBody):
             options=options,
         )
         self.edges = np.array(list(edge_counts(mesh.sewn)))
+        self._cuts: dict[tuple[int, ...], _Cut] = {}
         self.rest_lengths = np.linalg.norm(mesh.vertices[self.edges[:, 0]] - mesh.vertices[self.edges[:, 1]], axis=1)
         self.place(vertices)
 
@@ -134,17 +145,27 @@ class Cloth(ClothBody):
         held vertices' own weight.  Motor forces behind an anchored link are no load cell as soon as that link
         can turn: known weights were read 8 to 30 % wrong (`tests/sim/bullet/test_handle.py` checks this one).
         """
-        mine = np.zeros(len(vertices), dtype=bool)
-        mine[list(held)] = True
-        cut = mine[self.edges[:, 0]] != mine[self.edges[:, 1]]
-        inner, outer = self.edges[cut].T
-        swap = mine[outer]
-        inner, outer = np.where(swap, outer, inner), np.where(swap, inner, outer)
-        along = vertices[outer] - vertices[inner]
-        length = np.linalg.norm(along, axis=1)
-        tension = self.mesh.spec.elastic * (length - self.rest_lengths[cut])
+        cut = self._cut(tuple(held))
+        along = vertices[cut.outer] - vertices[cut.inner]
+        length = np.sqrt(np.add.reduce(along * along, axis=1))
+        tension = self.mesh.spec.elastic * (length - cut.rest)
         weight = self.mesh.spec.mass * len(held) / len(vertices) * GRAVITY
-        return (along * (tension / length)[:, None]).sum(axis=0) - (0.0, 0.0, weight)
+        return np.add.reduce(along * (tension / length)[:, None], axis=0) - (0.0, 0.0, weight)
+
+    def _cut(self, held: tuple[int, ...]) -> _Cut:
+        """The springs between held and free vertices, kept while the same are held: every control step asks."""
+        if held not in self._cuts:
+            if len(self._cuts) > 20:
+                self._cuts.clear()
+            mine = np.zeros(len(self.mesh.vertices), dtype=bool)
+            mine[list(held)] = True
+            cut = mine[self.edges[:, 0]] != mine[self.edges[:, 1]]
+            inner, outer = self.edges[cut].T
+            swap = mine[outer]
+            self._cuts[held] = _Cut(
+                inner=np.where(swap, outer, inner), outer=np.where(swap, inner, outer), rest=self.rest_lengths[cut]
+            )
+        return self._cuts[held]
 
 
 def load_gown(

@@ -55,7 +55,7 @@ class Fingers:
         return robot.command(command)
 
     def watch(self, cloth: ClothBody, vertices: np.ndarray) -> None:
-        """Feel the loads, and lose what is pulled out; `vertices` (V, 3) of `cloth` are known already [m]."""
+        """Feel the loads, and lose what is pulled out; `vertices` (V, 3) of `cloth` count where a hand holds it."""
         for grip, limit in zip(self.grips, self._force_limit, strict=True):
             grip.watch(vertices if grip.cloth is cloth else grip.cloth.vertices(), float(limit))
 

@@ -28,10 +28,15 @@ _AXES = (
     ("revolute", "1 0 0"),
 )
 _LIFTED = MASS + 3 * LINK_MASS  # what the z motor carries: its own link and the turning ones [kg]
-_CARRIED = MASS + LINK_MASS * np.array((5.0, 4.0, 3.0))  # what the motors along x, y and z move [kg]
+_CARRIED = (
+    MASS + 5 * LINK_MASS,
+    MASS + 4 * LINK_MASS,
+    MASS + 3 * LINK_MASS,
+)  # what the motors along x, y and z move [kg]
 _JOINTS = tuple(range(6))
 _POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
 _FORCES = (ROOM.force(300.0),) * 3 + (ROOM.force(20.0),) * 3  # of the motors, 300 N and 20 N m
+_FORCE, _RATE = ROOM.force(1.0), ROOM.rate(1.0)
 _SMOOTHING = 0.05  # share of a new reading: about 40 ms at a 2 ms step
 
 
@@ -59,7 +64,7 @@ class Handle:
                 angularDamping=0.0,
                 jointDamping=0.0,
             )
-        self._load, self._speed = np.zeros(3), np.zeros(3)
+        self._load, self._speed = [0.0] * 3, [0.0] * 3
         self._turn_at_reset = np.eye(3)
         self.reset(pose_in_map)
 
@@ -69,7 +74,7 @@ class Handle:
         self._target = np.concatenate([pose_in_map[:3, 3], np.zeros(3)])
         for joint, value in enumerate(self._target):
             self.client.resetJointState(self.body, joint, float(value))
-        self._load, self._speed = np.zeros(3), np.zeros(3)
+        self._load, self._speed = [0.0] * 3, [0.0] * 3
 
     def follow(self, pose_in_map: np.ndarray) -> None:
         """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
@@ -91,19 +96,20 @@ class Handle:
             duration: of the step [s]; what speeds the handle itself up is then not felt.  It weighs more than a thing
                 that is carried through the room; an arm is moved slowly.
         """
-        states = self.client.getJointStates(self.body, (0, 1, 2))
-        motor = np.array([state[3] for state in states]) / ROOM.force(1.0)
-        motor[2] -= _LIFTED * GRAVITY
-        if duration is not None:
-            speed = np.array([state[1] for state in states]) / ROOM.rate(1.0)
-            motor -= _CARRIED * (speed - self._speed) / duration
-            self._speed = speed
-        self._load += _SMOOTHING * (-motor - self._load)
+        for k, state in enumerate(self.client.getJointStates(self.body, (0, 1, 2))):  # in numbers: it is asked so often
+            motor = state[3] / _FORCE
+            if k == 2:
+                motor -= _LIFTED * GRAVITY
+            if duration is not None:
+                speed = state[1] / _RATE
+                motor -= _CARRIED[k] * (speed - self._speed[k]) / duration
+                self._speed[k] = speed
+            self._load[k] += _SMOOTHING * (-motor - self._load[k])
 
     @property
     def load(self) -> np.ndarray:
         """(3,) force that an arm held by a constraint exerts on the hand, map frame, own weight removed [N]."""
-        return self._load.copy()
+        return np.array(self._load)
 
     def position(self) -> np.ndarray:
         """(3,) where it really is [m]."""

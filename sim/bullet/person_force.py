@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiled import njit
 from ..scene.person_spec import ARM_SEGMENTS, PERSON_PARTS, arm_part, part_of
 from .person import Person
 from .soft_world import GRAVITY
@@ -28,6 +29,13 @@ class ForceBalance:
     def __init__(self, person: Person, mass: float, bed_top: float) -> None:
         self.person, self.mass, self.bed_top = person, mass, bed_top
         self._centres: list[tuple[float, np.ndarray]] = []  # time, centre of mass
+        trunk, count = person.trunk, len(ARM_SEGMENTS)
+        arms = [arm_part(arm, segment) for arm in range(2) for segment in range(count)]
+        self._parts = np.array([*(part_of(name) for name in trunk), *arms])
+        self._reach = np.array([*(radius for *_, radius in trunk.values()), *person.radii().ravel()]) + TOUCH
+        self._still = len(trunk)  # capsules that do not move; those of the arms come after them
+        self._ends = np.zeros((len(self._parts), 2, 3))
+        self._ends[: self._still] = [(a, b) for a, b, _ in trunk.values()]
 
     def parts(
         self, time: float, vertices: np.ndarray, held: np.ndarray, arm_loads: dict[int, np.ndarray]
@@ -64,19 +72,25 @@ class ForceBalance:
 
     def _touching(self, vertices: np.ndarray) -> tuple[np.ndarray, int]:
         """How many vertices touch each part, and how many the bed."""
+        joints = self.person.arms()
+        self._ends[self._still :, 0] = joints[:, :-1].reshape(-1, 3)
+        self._ends[self._still :, 1] = joints[:, 1:].reshape(-1, 3)
         counts = np.zeros(len(PERSON_PARTS))
-        for name, (a, b, radius) in self.person.trunk.items():
-            counts[part_of(name)] += (_gap(vertices, a, b) < radius + TOUCH).sum()
-        arms, radii = self.person.arms(), self.person.radii()
-        for arm in range(2):
-            for k in range(len(ARM_SEGMENTS)):
-                counts[arm_part(arm, k)] = (
-                    _gap(vertices, arms[arm, k], arms[arm, k + 1]) < radii[arm, k] + TOUCH
-                ).sum()
+        np.add.at(counts, self._parts, count_touching(vertices, self._ends, self._reach))
         return counts, int((vertices[:, 2] < self.bed_top + TOUCH).sum())
 
 
-def _gap(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    d = b - a
-    f = np.clip((points - a) @ d / (d @ d), 0.0, 1.0)
-    return np.linalg.norm(points - (a + f[:, None] * d), axis=1)
+@njit()
+def count_touching(points: np.ndarray, ends: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """How many points (n, 3) are nearer to each axis, ends (k, 2, 3), than `reach` (k,) [m]."""
+    counts = np.zeros(len(ends), np.int64)
+    for k in range(len(ends)):
+        ax, ay, az = ends[k, 0]
+        dx, dy, dz = ends[k, 1, 0] - ax, ends[k, 1, 1] - ay, ends[k, 1, 2] - az
+        square = dx * dx + dy * dy + dz * dz
+        for n in range(len(points)):
+            x, y, z = points[n, 0] - ax, points[n, 1] - ay, points[n, 2] - az
+            share = min(max((x * dx + y * dy + z * dz) / square, 0.0), 1.0)
+            x, y, z = x - share * dx, y - share * dy, z - share * dz
+            counts[k] += x * x + y * y + z * z < reach[k] * reach[k]
+    return counts

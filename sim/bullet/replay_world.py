@@ -23,7 +23,7 @@ from ..record.measured import Measured
 from ..record.recorded_stretch import Stretch
 from ..robot.body import JointReading
 from ..robot.model import READY
-from ..world import SIDES, Command, Side
+from ..world import SIDES, Command
 from .gown_placement import put_arms
 from .grip import Grip
 from .world import CONTROL_STEPS, ROBOT_STEPS, SETTLE_RECORDED, SLEEP_TIME, TIME_STEP, BulletWorld
@@ -122,7 +122,7 @@ class ReplayWorld(BulletWorld):
         time = self.time.time + ROBOT_STEPS * TIME_STEP
         self._led.reading = self._reading = reading = self._places.at(time)
         self._contact.watch(time, reading)
-        self._hands = np.stack([self._led.pose_hand_in_map(side, reading) for side in SIDES])
+        self._hands = self._led.poses_hands_in_map(reading)
 
     def _update_fingers(self, reading: JointReading) -> None:
         """Let the fingers close and open when they did."""
@@ -161,11 +161,10 @@ class _LedRobot:
         """The joints."""
         return self.reading
 
-    def pose_hand_in_map(self, side: Side, reading: JointReading | None = None) -> np.ndarray:
-        """Pose (4, 4) of a hand."""
+    def poses_hands_in_map(self, reading: JointReading | None = None) -> np.ndarray:
+        """Poses (2, 4, 4) of both hands."""
         reading = reading or self.reading
-        q = reading.arm_positions[SIDES.index(side)]
-        return self._kinematics.pose_hand_in_map(side, q, reading.pose_base_in_map)
+        return self._kinematics.poses_hands_in_map(reading.arm_positions, reading.pose_base_in_map)
 
     def command(self, command: Command) -> Command:
         """It is led, whatever it is told."""
@@ -201,7 +200,7 @@ class _Places:
         return JointReading(
             arm_positions=q,
             arm_velocities=nothing,
-            arm_efforts=nothing,
+            motor_torques=nothing,
             head_pan=float(x[-4]),
             pose_base_in_map=x[-3:],
             twist_base=np.zeros(3),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -119,8 +120,8 @@ class SoftWorld:
 
     def vertices(self, cloth: int) -> np.ndarray:
         """(V, 3) where the vertices of a cloth are now [m]."""
-        _, data = self.client.getMeshData(cloth, -1, flags=self.client.MESH_DATA_SIMULATION_MESH)
-        return np.array(data)
+        count, data = self.client.getMeshData(cloth, -1, flags=self.client.MESH_DATA_SIMULATION_MESH)
+        return np.fromiter(chain.from_iterable(data), float, 3 * count).reshape(count, 3)  # half the time of np.array
 
     def step(self) -> None:
         """Pass one time step."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..mechanics.capsules import RobotCapsules
+from ..mechanics.quaternion import places
 from ..record.truth import TruthFrame, TruthStatic
 from ..robot.body import RobotBody
 from ..scene.person_spec import PERSON_PARTS, face
 from ..scene.scene import BED_TOP, Scene
-from ..world import SIDES
 from .contact import Contact
 from .grip import Grip
 from .hook import Hook
@@ -90,7 +89,7 @@ class TruthSource:
             vertices=vertices,
             arms=self._person.arms(),
             torso_front=self._person.torso_front(),
-            gripper_pose=np.stack([_pose7(robot.pose_hand_in_map(side, reading)) for side in SIDES]),
+            gripper_pose=places(robot.poses_hands_in_map(reading)),
             gripper_closed=closed,
             gripper_load=loads,
             person_force=force + self._contact.part_peak,
@@ -114,8 +113,3 @@ class TruthSource:
             if grip.kind == "cloth":
                 found[grip.cloth.body] = found.get(grip.cloth.body, np.zeros(3)) + load
         return found
-
-
-def _pose7(pose: np.ndarray) -> np.ndarray:
-    """(7,) position and quaternion x, y, z, w of a pose (4, 4)."""
-    return np.concatenate([pose[:3, 3], Rotation.from_matrix(pose[:3, :3]).as_quat()])

@@ -137,7 +137,7 @@ class BulletWorld(World):
         self._robot_client: Any = direct_client()
         self._robot = self._stand(self.room.waypoints["start"])
         self._reading = self._robot.read()
-        self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._hands = self._robot.poses_hands_in_map()
         self._handles = [Handle(self._client, self._hands[n]) for n in range(2)]
         self._fingers = Fingers(
             [Grip(self._client, side, self._handles[n], self._cloth, self._person) for n, side in enumerate(SIDES)]
@@ -235,7 +235,7 @@ class BulletWorld(World):
         self._take_off_hook()
         if state == InitialState.GOWN_IN_HANDS:
             self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
-            self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+            self._hands = self._robot.poses_hands_in_map()
             hold_in_hands(self._cloth, self._grips, self._hands, self._soft.step, TIME_STEP)
         else:
             if state == InitialState.GOWN_ON_PERSON:
@@ -283,7 +283,7 @@ class BulletWorld(World):
     def _stand_ready(self, pose_base_in_map: tuple[float, float, float]) -> None:
         """Put the robot somewhere, arms ready and hands empty."""
         self._robot = self._stand(pose_base_in_map)
-        self._hands = np.stack([self._robot.pose_hand_in_map(side) for side in SIDES])
+        self._hands = self._robot.poses_hands_in_map()
 
     def _tell_where_it_lies(self) -> None:
         """Let sleep, proxy bodies and whatever else remembers it know where the gown has been put."""
@@ -296,8 +296,9 @@ class BulletWorld(World):
     def observe(self) -> Observation:
         """Joint sensors exact but for `SensorErrors`, wrist wrenches with noise."""
         now = self.clock.now()
-        reading = self._errors.joints(self._robot.read(), now)
-        hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+        stands = self._robot.read()
+        reading = self._errors.joints(stands, now)
+        hands = self._robot.poses_hands_in_map(reading)
         wrench = np.zeros((2, 6))
         for n in range(2):
             wrench[n, :3] = self._grips[n].load
@@ -309,7 +310,7 @@ class BulletWorld(World):
             time=now,
             arm_positions=reading.arm_positions,
             arm_velocities=reading.arm_velocities,
-            arm_efforts=reading.arm_efforts,
+            arm_efforts=self._robot.efforts(stands),
             head_pan=reading.head_pan,
             pose_base_in_map=reading.pose_base_in_map,
             twist_base=reading.twist_base,
@@ -397,7 +398,7 @@ class BulletWorld(World):
             self._robot_client.stepSimulation()
         self._reading = reading = self._robot.read()
         self._contact.watch(self.time.time + ROBOT_STEPS * TIME_STEP, reading)
-        self._hands = np.stack([self._robot.pose_hand_in_map(side, reading) for side in SIDES])
+        self._hands = self._robot.poses_hands_in_map(reading)
 
     def _meet(self) -> None:
         """Let robot and person feel each other where they touch."""
@@ -436,7 +437,8 @@ class BulletWorld(World):
         """Let closed fingers take, opened fingers release, loads be felt."""
         squeeze = self._contact.squeeze(self._hands)
         if self._fingers.holding():
-            vertices = self._cloth.vertices()
+            cloth = self._hook.holds or any(grip.kind == "cloth" for grip in self._grips)
+            vertices = self._cloth.vertices() if cloth else self._vertices
             self._fingers.watch(self._cloth, vertices)
             held = self._fingers.held().get(self._cloth.body, ())
             self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)

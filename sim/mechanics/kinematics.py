@@ -102,6 +102,13 @@ class Kinematics:
         """Pose (4, 4) of one hand for its n angles (n,) [rad] and a base pose (3,)."""
         return planar_pose(pose_base_in_map) @ self.pose_hand_in_base(side, q)
 
+    def poses_hands_in_map(self, arm_positions: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
+        """Poses (2, 4, 4) of both hands for the angles of the arms (2, n) [rad] and a base pose (3,)."""
+        base, poses = planar_pose(pose_base_in_map), np.empty((2, 4, 4))
+        for n, side in enumerate(SIDES):
+            poses[n] = base @ self.pose_hand_in_base(side, arm_positions[n])
+        return poses
+
     def jacobian_hand_in_base(self, side: Side, q: np.ndarray) -> np.ndarray:
         """Jacobian (6, n) of the hand point: linear, then angular velocity, along the axes of `base`."""
         arm, data, frame = self._arms[side]

@@ -16,6 +16,7 @@ from .kinematics import Kinematics
 from .twist import TwistTracker
 
 PERIOD = 0.01  # [s]
+_STILL = np.zeros(3)
 MAX_LEAD = 0.05  # of a target before a joint that something stops: so far it moves on once it is free [rad]
 
 
@@ -137,7 +138,7 @@ class Servo:
     def keep_near(self, arm_positions: np.ndarray) -> None:
         """Let the targets of the arms run ahead of the measured joints (2 n,) [rad] by no more than `MAX_LEAD`."""
         arms = self.positions[:-1]
-        self.positions[:-1] = np.clip(arms, arm_positions - MAX_LEAD, arm_positions + MAX_LEAD)
+        self.positions[:-1] = _within(arms, arm_positions - MAX_LEAD, arm_positions + MAX_LEAD)
 
     def advance(self, time: float) -> None:
         """Move the targets on to `time` [s]; nothing happens when less than `PERIOD` has passed."""
@@ -147,7 +148,9 @@ class Servo:
             self._advance_arms()
 
     def _advance_base(self) -> None:
-        wanted = self._base_wanted if self._time <= self._base_until + 1e-9 else np.zeros(3)
+        wanted = self._base_wanted if self._time <= self._base_until + 1e-9 else _STILL
+        if not (wanted.any() or self.twist_base.any()):
+            return
         change = wanted - self.twist_base
         length = float(np.hypot(*change[:2]))
         change[:2] *= min(1.0, self._moved.base_acceleration[0] * PERIOD / max(length, 1e-12))
@@ -161,7 +164,7 @@ class Servo:
 
     def _advance_arms(self) -> None:
         limit = self._acceleration * PERIOD
-        wanted = self.velocities - np.clip(self.velocities, -limit, limit)  # brake, unless something drives the joint
+        wanted = self.velocities - _within(self.velocities, -limit, limit)  # brake, unless something drives the joint
         for joint, motion in enumerate(self._owner):
             if motion is None:
                 continue
@@ -179,11 +182,11 @@ class Servo:
                 wanted[part] = rates
             driven = self._rates.get(side)
             if driven is not None and self._time <= driven[1] + 1e-9:
-                wanted[part] = self.velocities[part] + np.clip(
+                wanted[part] = self.velocities[part] + _within(
                     driven[0] - self.velocities[part], -limit[part], limit[part]
                 )
-        wanted = np.clip(wanted, -self._speed, self._speed)
-        target = np.clip(self.positions + wanted * PERIOD, self._lower, self._upper)
+        wanted = _within(wanted, -self._speed, self._speed)
+        target = _within(self.positions + wanted * PERIOD, self._lower, self._upper)
         self.velocities = (target - self.positions) / PERIOD
         self.positions = target
 
@@ -206,6 +209,11 @@ class Servo:
                 self._twists[SIDES[joint // self._dof]].cancel()
                 self._rates.pop(SIDES[joint // self._dof], None)
         return JointTrajectory(joints=command.joints, times=times, positions=positions)
+
+
+def _within(values: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """As np.clip, which takes twice as long for a few numbers."""
+    return np.minimum(np.maximum(values, low), high)
 
 
 def _interpolate(times: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ import numpy as np
 from ..compiled import njit
 
 EXPOSURE = 0.82  # white under full light; the brightest ward (intensity 1.2) just does not burn out
+WIDE = 8  # triangles wider than this are drawn by what each row has of them [px]
 NEAR = 0.03  # clipping distance [m]: closer than any cloth a hand camera can focus on
 
 
@@ -163,6 +164,25 @@ def _marked(u, v, pattern, pitch):
     return abs(du) + abs(dv) < 0.3
 
 
+@njit(inline="always", nogil=True)
+def _span(x0, y0, x1, y1, x2, y2, scale, y, left, right):
+    """First and last pixel of row `y` that can be in a triangle, with one to spare: most of a large one's box is not.
+
+    Nothing is cut off where rounding could put an edge a pixel aside.
+    """
+    first, last = float(left), float(right)
+    size = max(max(x0, x1, x2) - min(x0, x1, x2), max(y0, y1, y2) - min(y0, y1, y2)) + right - left
+    doubt = 1e-14 * size * size * abs(scale)
+    w0 = ((x1 - left) * (y2 - y) - (y1 - y) * (x2 - left)) * scale
+    w1 = ((x2 - left) * (y0 - y) - (y2 - y) * (x0 - left)) * scale
+    for w, slope in ((w0, (y1 - y2) * scale), (w1, (y2 - y0) * scale), (1 - w0 - w1, (y0 - y1) * scale)):
+        if slope > doubt:
+            first = max(first, np.floor(left - w / slope) - 1)
+        elif slope < -doubt:
+            last = min(last, np.ceil(left - w / slope) + 1)
+    return int(min(first, right + 1.0)), int(max(last, left - 1.0))
+
+
 @njit(nogil=True)
 def _draw(
     points, faces, front, back, ids, uv, printed, light, fx, fy, cx, cy, near, pattern, pitch, ink, closed, rgb, depth,
@@ -199,8 +219,12 @@ def _draw(
             bottom = min(height - 1, int(np.floor(max(y0, y1, y2))))
             i0, i1, i2 = 1 / corner[p, 2], 1 / corner[q, 2], 1 / corner[r, 2]
             scale = 1 / area
+            wide = right - left > WIDE
+            first, last = left, right
             for y in range(top, bottom + 1):
-                for x in range(left, right + 1):
+                if wide:
+                    first, last = _span(x0, y0, x1, y1, x2, y2, scale, y, left, right)
+                for x in range(first, last + 1):
                     w0 = ((x1 - x) * (y2 - y) - (y1 - y) * (x2 - x)) * scale
                     w1 = ((x2 - x) * (y0 - y) - (y2 - y) * (x0 - x)) * scale
                     w2 = 1 - w0 - w1

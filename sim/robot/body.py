@@ -37,7 +37,7 @@ class JointReading:
     Attributes:
         arm_positions: (2, 7) [rad].
         arm_velocities: (2, 7) [rad/s].
-        arm_efforts: (2, 7) motor torque, gravity included [N m].
+        motor_torques: (2, 7) of the arms, beside what carries them (`RobotBody.efforts`) [N m].
         head_pan: [rad].
         pose_base_in_map: (3,) [m, m, rad], yaw within -pi and pi.
         twist_base: (3,) in the base frame [m/s, m/s, rad/s].
@@ -47,7 +47,7 @@ class JointReading:
 
     arm_positions: np.ndarray
     arm_velocities: np.ndarray
-    arm_efforts: np.ndarray
+    motor_torques: np.ndarray
     head_pan: float
     pose_base_in_map: np.ndarray
     twist_base: np.ndarray
@@ -156,30 +156,40 @@ class RobotBody:
             self._drive()
 
     def read(self) -> JointReading:
-        """Joint positions, velocities and efforts as the sensors see them."""
+        """Joint positions, velocities and torques as the sensors see them."""
         states = self._client.getJointStates(self.body, self._joints)
         columns = tuple(zip(*states, strict=True))  # called at every step of the robot
         q, dq, torque = np.array(columns[0]), np.array(columns[1]), np.array(columns[3])
         yaw = float(q[2])
         c, s = np.cos(yaw), np.sin(yaw)
-        opening = q[18:22:2] + q[19:22:2]
-        # Each finger's motor pushes towards closed with minus its force.
-        squeeze = np.maximum((torque[18:22:2] + torque[19:22:2]) / -2.0, 0.0)
-        # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
-        closed = (opening < _CLOSED) & (self.servo.gripper_opening < _CLOSED)
-        squeeze = np.where(closed, self.servo.gripper_force_limit, squeeze)
-        arms = q[3:17].reshape(2, 7)
-        carried = self.kinematics.gravity_torque(self.kinematics.configuration(q[:3], arms, float(q[17]), opening))
+        opening, squeeze = np.empty(2), np.empty(2)
+        told, limit = self.servo.gripper_opening, self.servo.gripper_force_limit
+        for n, (one, other) in enumerate(((18, 19), (20, 21))):
+            opening[n] = apart = columns[0][one] + columns[0][other]
+            # Each finger's motor pushes towards closed with minus its force.
+            squeeze[n] = max(0.0, (columns[3][one] + columns[3][other]) / -2.0)
+            # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
+            if apart < _CLOSED and told[n] < _CLOSED:
+                squeeze[n] = limit[n]
         return JointReading(
-            arm_positions=arms,
+            arm_positions=q[3:17].reshape(2, 7),
             arm_velocities=dq[3:17].reshape(2, 7),
-            arm_efforts=torque[3:17].reshape(2, 7) + carried,
+            motor_torques=torque[3:17].reshape(2, 7),
             head_pan=float(q[17]),
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
             gripper_opening=opening,
             gripper_force=squeeze,
         )
+
+    def efforts(self, reading: JointReading) -> np.ndarray:
+        """(2, 7) torque of the arms' motors, gravity included, where the joints are as in `reading` [N m]."""
+        return reading.motor_torques + self.kinematics.gravity_torque(self.configuration(reading))
+
+    def poses_hands_in_map(self, reading: JointReading | None = None) -> np.ndarray:
+        """Poses (2, 4, 4) of both hands by forward kinematics of the measured joints."""
+        reading = reading or self.read()
+        return self.kinematics.poses_hands_in_map(reading.arm_positions, reading.pose_base_in_map)
 
     def pose_hand_in_map(self, side: Side, reading: JointReading | None = None) -> np.ndarray:
         """Pose (4, 4) of a hand by forward kinematics of the measured joints."""
@@ -196,8 +206,9 @@ class RobotBody:
 
     def apply_hand_force(self, side: Side, force_in_map: np.ndarray) -> None:
         """Load a hand between the fingertips with a force (3,) [N] for the next physics step."""
-        name = f"{side}_hand"
-        self.push(name, force_in_map, np.array(self._client.getLinkState(self.body, self.links[name])[4]))
+        link = self.links[f"{side}_hand"]
+        point = self._client.getLinkState(self.body, link)[4]
+        self._client.applyExternalForce(self.body, link, force_in_map.tolist(), point, pybullet.WORLD_FRAME)
 
     def push(self, link: str, force_in_map: np.ndarray, point_in_map: np.ndarray) -> None:
         """Load a link with a force (3,) [N] at a point (3,) [m] for the next physics step."""
@@ -207,11 +218,9 @@ class RobotBody:
 
     def _torque_limits(self, arms: np.ndarray) -> np.ndarray:
         """(2, 7) what each motor may do in a posture (2, 7), beside carrying the arm [N m]."""
-        levers = [
-            np.linalg.norm(self.kinematics.jacobian_hand_in_base(side, q)[:3], axis=0)
-            for side, q in zip(SIDES, arms, strict=True)
-        ]
-        return np.minimum(_MAX_TORQUE, _HAND_FORCE * np.array(levers) + _MOTION_TORQUE)
+        moved = [self.kinematics.jacobian_hand_in_base(side, q)[:3] for side, q in zip(SIDES, arms, strict=True)]
+        levers = np.sqrt(np.array([np.add.reduce(each * each, axis=0) for each in moved]))
+        return np.minimum(_MAX_TORQUE, _HAND_FORCE * levers + _MOTION_TORQUE)
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
         """Motor targets (22,) and their rates, at the middle of the coming control period."""
@@ -226,7 +235,7 @@ class RobotBody:
     def _drive(self) -> None:
         aim = np.repeat(self.servo.gripper_opening / 2, 2)
         step = model.GRIPPER_SPEED / 2 * PERIOD
-        self._fingers = self._fingers + np.clip(aim - self._fingers, -step, step)
+        self._fingers = self._fingers + np.minimum(np.maximum(aim - self._fingers, -step), step)
         self._forces[18:22] = np.repeat(self.servo.gripper_force_limit, 2)
         positions, velocities = self._targets()
         self._client.setJointMotorControlArray(

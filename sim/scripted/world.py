@@ -361,7 +361,7 @@ class ScriptedWorld(World):
         if left > 0.0:
             self._q += self._coast_q * left * dt
         if not self._unlimited:
-            np.clip(self._q, self._lower, self._upper, out=self._q)
+            np.minimum(np.maximum(self._q, self._lower), self._upper, out=self._q)  # np.clip takes twice as long
         driven = max(min(self._base_until, now) - self.time.time, 0.0)
         if left > 0.0 or driven > 0.0:
             self._drive(driven * self._base_velocity + dt * left * self._coast_base)

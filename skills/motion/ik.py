@@ -18,6 +18,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross, length
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
+from .ik_step import ik_step
 
 if TYPE_CHECKING:
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
@@ -189,7 +190,7 @@ def _descend(
     limits = kinematics.limits[side]
     rows = _task_rows(free)
     turn, (shrink, grow), (least, most) = tuning.rotation_weight, tuning.damping_factors, tuning.damping_range
-    weight, unity = np.array((1.0, 1.0, 1.0, turn, turn, turn))[rows], np.eye(len(rows))
+    weight = np.array((1.0, 1.0, 1.0, turn, turn, turn))[rows]
     q = q.copy()
     last = np.inf
     damping = tuning.damping
@@ -209,28 +210,19 @@ def _descend(
         if step > tuning.stuck_after and size > tuning.stuck_ratio * last and size > tuning.stuck_error:
             break  # stuck far away: another seed is cheaper
         last = size
-        J = np.asfortranarray(weight[:, None] * jacobian[rows])
-        drift = tuning.posture_gain * (posture - q)  # in the null space
-        step_q = _step(J, e, drift, damping * unity)
-        low, high = q <= limits.lower, q >= limits.upper
-        if low.any() or high.any():
-            # Joints at a limit that the step would push further are taken out of the solve.
-            free_joints = np.ones(len(q), bool)
-            for _ in range(tuning.active_set_rounds - 1):
-                blocked = (low & (step_q < 0)) | (high & (step_q > 0))
-                if not blocked.any():
-                    break
-                free_joints &= ~blocked
-                step_q = np.zeros(len(q))
-                step_q[free_joints] = _step(J[:, free_joints], e, drift[free_joints], damping * unity)
+        step_q = ik_step(
+            weight[:, None] * jacobian[rows],
+            e,
+            tuning.posture_gain * (posture - q),
+            damping,
+            q,
+            limits.lower,
+            limits.upper,
+            tuning.active_set_rounds,
+        )
         q = q + step_q * min(1.0, tuning.max_step / max(float(np.abs(step_q).max()), 1e-9))
         q = np.minimum(np.maximum(q, limits.lower), limits.upper)
     return result
-
-
-def _step(J: np.ndarray, error: np.ndarray, drift: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """Change of the joints (n,) that takes out `error` (k,), and drifts where a Jacobian (k, n) leaves them free."""
-    return drift + J.T @ np.linalg.solve(J @ J.T + damping, error - J @ drift)
 
 
 def _task_rows(free: FreeAxis) -> list[int]:

@@ -6,7 +6,7 @@ import numpy as np
 import pybullet
 import pytest
 from caretree.sim.bullet.person import Person
-from caretree.sim.bullet.person_force import ForceBalance
+from caretree.sim.bullet.person_force import ForceBalance, count_touching
 from caretree.sim.bullet.soft_world import GRAVITY
 from caretree.sim.scene.person_spec import PERSON_PARTS, PERSONS
 from pybullet_utils.bullet_client import BulletClient
@@ -54,3 +54,17 @@ def test_a_held_arm_feels_the_hand(person):
     carried = np.array((0.0, 0.0, 0.45 * GRAVITY))
     force = balance.parts(0.0, on_chest() + (0, 0, 2.0), carried, {part: np.array((0.0, 0.0, 12.0))})
     assert force[part] == pytest.approx(12.0)
+
+
+def gap(points, a, b):
+    d = b - a
+    f = np.clip((points - a) @ d / (d @ d), 0.0, 1.0)
+    return np.linalg.norm(points - (a + f[:, None] * d), axis=1)
+
+
+def test_vertices_that_touch_are_counted_as_by_numpy():
+    rng = np.random.default_rng(4)
+    points, ends, reach = rng.uniform(-1, 1, (2000, 3)), rng.uniform(-1, 1, (12, 2, 3)), rng.uniform(0.02, 0.5, 12)
+    expected = [(gap(points, a, b) < most).sum() for (a, b), most in zip(ends, reach, strict=True)]
+    np.testing.assert_array_equal(count_touching(points, ends, reach), expected)
+    assert min(expected) > 0

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from caretree.sim.render import raster
 from caretree.sim.render.raster import Light, Triangles, add_sensor_noise, rasterise
 
 LIGHT = Light(direction_in_map=np.array((0.0, 0.0, -1.0)))
@@ -113,3 +114,34 @@ def test_sensor_noise_has_the_promised_spread_and_holes():
     once, _ = add_sensor_noise(picture, np.random.default_rng(5))
     assert (again == once).all()
     assert rgb.dtype == np.uint8
+
+
+def any_triangles(rng, size):
+    """Some that are wide, slivers, or reach behind the camera."""
+    corners = rng.normal(size=(8, 3, 3)) * size + (0.0, 0.0, 1.0)
+    corners[0, 2] = corners[0, :2].mean(axis=0) + rng.normal(size=3) * 1e-6
+    return Triangles(
+        vertices=corners.reshape(-1, 3),
+        faces=np.arange(24).reshape(8, 3),
+        front=rng.uniform(0, 255, (8, 3)),
+        back=rng.uniform(0, 255, (8, 3)),
+        ids=np.arange(8, dtype=np.int32),
+        uv=rng.normal(size=(24, 2)),
+        printed=np.arange(8) % 2 == 0,
+    )
+
+
+@pytest.mark.parametrize("size", [0.1, 0.7, 5.0, 300.0])
+def test_no_pixel_of_a_wide_triangle_is_left_out(monkeypatch, size):
+    """Rows are drawn from where the triangle begins in them; drawn by the whole box, the picture is the same."""
+    rng = np.random.default_rng(6)
+    scenes = [any_triangles(rng, size) for _ in range(3)]
+    by_rows = [rasterise(scene, LIGHT, (60.0, 60.0, 31.5, 23.5), np.eye(4), (64, 48)) for scene in scenes]
+    monkeypatch.setattr(raster, "WIDE", 10**9)
+    monkeypatch.setattr(raster, "_draw", raster._draw.py_func)
+    for scene, seen in zip(scenes, by_rows, strict=True):
+        whole = rasterise(scene, LIGHT, (60.0, 60.0, 31.5, 23.5), np.eye(4), (64, 48))
+        assert (whole.ids >= 0).any()
+        np.testing.assert_array_equal(seen.ids, whole.ids)
+        np.testing.assert_array_equal(seen.depth, whole.depth)
+        np.testing.assert_array_equal(seen.rgb, whole.rgb)

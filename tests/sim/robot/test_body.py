@@ -71,22 +71,22 @@ def test_motors_hold_and_track_within_half_a_degree(rig):
 
 def test_holding_torque_is_gravity_plus_the_load_on_the_hand(rig):
     rig.run(0.3)
-    before = rig.robot.read()
+    before = rig.robot.efforts(rig.robot.read())
     gravity = rig.robot.kinematics.gravity_torque(rig.robot.configuration())
-    np.testing.assert_allclose(before.arm_efforts, gravity, atol=0.15)
+    np.testing.assert_allclose(before, gravity, atol=0.15)
     load = np.array((4.0, -3.0, -20.0))
     rig.run(0.3, lambda: rig.robot.apply_hand_force("right", load))
     after = rig.robot.read()
     jacobian = rig.robot.kinematics.jacobian_hand_in_map("right", after.arm_positions[1], after.pose_base_in_map)
-    np.testing.assert_allclose((after.arm_efforts - before.arm_efforts)[1], -jacobian[:3].T @ load, atol=0.1)
+    np.testing.assert_allclose((rig.robot.efforts(after) - before)[1], -jacobian[:3].T @ load, atol=0.1)
 
 
 def test_a_push_on_a_link_is_felt_by_the_joints_before_it_and_no_others(rig):
     rig.run(0.3)
-    before = rig.robot.read().arm_efforts
+    before = rig.robot.read().motor_torques
     link = rig.robot.kinematics.link_poses(rig.robot.configuration())["right_lower_elbow"]
     rig.run(0.3, lambda: rig.robot.push("right_lower_elbow", np.array((0.0, 0.0, -30.0)), link[:3, 3]))
-    change = rig.robot.read().arm_efforts - before
+    change = rig.robot.read().motor_torques - before
     assert np.abs(change[1, :4]).max() > 3.0
     assert np.abs(change[1, 4:]).max() < 0.1
     assert np.abs(change[0]).max() < 0.1

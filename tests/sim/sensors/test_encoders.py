@@ -15,7 +15,7 @@ def reading():
     return JointReading(
         arm_positions=np.arange(14.0).reshape(2, 7),
         arm_velocities=np.ones((2, 7)),
-        arm_efforts=np.ones((2, 7)),
+        motor_torques=np.ones((2, 7)),
         head_pan=0.3,
         pose_base_in_map=np.array((1.0, 2.0, 0.5)),
         twist_base=np.zeros(3),
@@ -37,7 +37,7 @@ def test_joints_are_read_with_their_offset_and_nothing_else_changes():
     seen = encoders.measured(before)
     np.testing.assert_allclose((seen.arm_positions - before.arm_positions).ravel(), encoders.offsets[:14])
     assert np.isclose(seen.head_pan - before.head_pan, encoders.offsets[14])
-    for same in ("arm_velocities", "arm_efforts", "pose_base_in_map", "gripper_opening"):
+    for same in ("arm_velocities", "motor_torques", "pose_base_in_map", "gripper_opening"):
         assert getattr(seen, same) is getattr(before, same)
     np.testing.assert_array_equal(before.arm_positions, reading().arm_positions)
 

@@ -10,7 +10,7 @@ from caretree.sim.world_kind import DIFFICULTIES, EASY_KIND, WorldKind
 READING = JointReading(
     arm_positions=np.zeros((2, 7)),
     arm_velocities=np.zeros((2, 7)),
-    arm_efforts=np.zeros((2, 7)),
+    motor_torques=np.zeros((2, 7)),
     head_pan=0.0,
     pose_base_in_map=np.zeros(3),
     twist_base=np.zeros(3),
