@@ -385,6 +385,11 @@ class ScriptedWorld(World):
         self.between_fingers[side] = 0.0
         self.load[side] = np.zeros(6)
 
+    def slip_changes_nothing(self, side: Side) -> bool:
+        """Whether there is neither anything between the fingers nor a load."""
+        usual = type(self).fault_grip_slip is ScriptedWorld.fault_grip_slip
+        return usual and self.between_fingers[side] == 0.0 and not self.load[side].any()
+
     def fault_move_person(self) -> None:
         """The person shifts by 10 cm."""
         self.person_offset = self.person_offset + np.array((0.1, 0.0, 0.0))

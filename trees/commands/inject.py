@@ -16,8 +16,9 @@ from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
 from ...sim.record.spool import disk_error
 from ...sim.world_kind import WorldKind
+from ..campaign.fault_row import SIGNS, FaultKey, Row, table
 from ..campaign.heat_map import write_heat_map
-from ..campaign.inject import SIGNS, Campaign, FaultKey, Row, table
+from ..campaign.inject import Campaign
 from ..campaign.key import campaign_key
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
@@ -65,6 +66,7 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
         stage=options.stage,
+        jobs=options.jobs or 1,
     )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
