@@ -58,7 +58,7 @@ class ForkTree:
             if first == 0:
                 self._live(work)
             os.close(self._writing)
-            stack.callback(_end_all, first)
+            stack.callback(self._end_all, first)
             yield from self._lines()
 
     def fork(self) -> bool:
@@ -165,19 +165,20 @@ class ForkTree:
             if had_slot and os.waitstatus_to_exitcode(status) != 0:  # else it has done so itself
                 os.write(self._slots[1], SLOT)
 
+    def _end_all(self, first: int) -> None:
+        """Kill all that are left, and come back when they are gone, with whatever they have inherited from here."""
+        for kill in (os.killpg, os.kill):  # it may not have had the time to make the group
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                kill(first, signal.SIGKILL)
+        while os.read(self._reading, 1 << 16):
+            pass
+        os.waitpid(first, 0)
+
     def _lines(self) -> Iterator[str]:
         rest = b""
         while block := os.read(self._reading, 1 << 16):
             *lines, rest = (rest + block).split(b"\n")
             yield from (line.decode(errors="replace") for line in lines if line)
-
-
-def _end_all(first: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(first, signal.SIGKILL)
-    with contextlib.suppress(ProcessLookupError):
-        os.kill(first, signal.SIGKILL)  # it may not have had the time to make the group
-    os.waitpid(first, 0)
 
 
 def _readable(*pipes: int, timeout: float | None = None) -> bool:

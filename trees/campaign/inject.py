@@ -6,20 +6,17 @@ no arm is held, and, unless the task succeeded, the fingers are open.
 
 from __future__ import annotations
 
-import os
-import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Mapping
 
-from ...sim.abilities import SupportsForks
 from ...sim.errors import CaretreeError
-from ...sim.faults import FAULTS, PHASES
+from ...sim.faults import FAULTS, PHASES, FaultyWorld
 from ...skills.core.skill import Skill
 from ..nodes.decorators import FailSafe
 from ..run.task import Task
 from .ending import finished
 from .fault_row import FaultKey, Row, not_reached
-from .fresh_rows import fresh_rows
-from .run_maker import MakeWorld, RunMaker
+from .rows_here import forks_on, rows_here
+from .run_maker import MakeWorld, RunMaker, RunRecipe
 from .ways import Place, Way, triggers_of
 
 
@@ -32,13 +29,15 @@ class Campaign:
         seed: of every run.
         faults: which ones.
         stage: run this stage alone, or a span of them; None for the whole task.
-        jobs: runs at the same time.
+        jobs: runs at the same time; None for one here, and as many as it has cores on a cluster.
+        address: of a Ray cluster to run on; None for this machine.
+        recipe: by which other processes make the same runs: for a cluster, and for several at once on a world that
+            cannot be forked.
 
     Attributes:
         nominal: outcome without any fault.
         nodes: skills in the order of the tree.
-        forks: whether rows may share what they have in common, as forks of one run: on a world in memory, and where
-            this process has no other threads.
+        forks: whether rows share what they have in common, as branches of one run.
 
     Raises:
         CaretreeError: no job.
@@ -52,12 +51,14 @@ class Campaign:
         seed: int = 0,
         faults: tuple[str, ...] = FAULTS,
         stage: str | None = None,
-        jobs: int = 1,
+        jobs: int | None = None,
+        address: str | None = None,
+        recipe: RunRecipe | None = None,
     ) -> None:
-        if jobs < 1:
+        if jobs is not None and jobs < 1:
             raise CaretreeError(f"--jobs is {jobs}, but at least 1 is asked for")
         self._maker = RunMaker(task, make_world, seed=seed, stage=stage)
-        self._faults, self._jobs = faults, jobs
+        self._faults, self._jobs, self._address, self._recipe = faults, jobs, address, recipe
         self._reached: set[Place] = set()
         run = self._maker.run()
         self.nodes = [node.name for node in run.root.iterate() if isinstance(node, Skill)]
@@ -73,9 +74,8 @@ class Campaign:
         run.context.observers.append(lambda node, phase: self._reached.add((node, phase)))
         run.context.observers.append(lambda node, phase: order.append(node) if phase == "step" else None)
         self.nominal = finished(run)
-        assert hasattr(run.world, "inner")
-        alone = threading.active_count() == 1 and hasattr(os, "fork")
-        self.forks = alone and isinstance(run.world.inner, SupportsForks)  # type: ignore[attr-defined]
+        assert isinstance(run.world, FaultyWorld)
+        self.forks = forks_on(run.world.inner)
         run.world.close()
         moving = [node for node in order if node in movers]
         # to see the safe branch at work, the run is stopped where it is deepest in the task
@@ -97,7 +97,7 @@ class Campaign:
             reachable = goal in self._reached or bool(fails)
         return Way(stop_at=stop_at, fails={} if goal in self._reached else fails, goal=goal) if reachable else None
 
-    def rows(self, keys: Iterable[FaultKey] | None = None) -> Iterator[Row]:
+    def rows(self, keys: Iterable[FaultKey] | None = None) -> Generator[Row, None, None]:
         """Rows as they end, those of `keys` or of the whole plan; one whose process was killed is missing."""
         ways: dict[FaultKey, Way] = {}
         for key in self.plan() if keys is None else keys:
@@ -106,9 +106,15 @@ class Campaign:
                 yield not_reached(key)
             else:
                 ways[key] = way
-        if self.forks:
-            from .branches import branched_rows
+        yield from self._tried(ways)
 
-            yield from branched_rows(self._maker, ways, self._jobs)
-        else:
-            yield from fresh_rows(self._maker, ways)
+    def _tried(self, ways: Mapping[FaultKey, Way]) -> Iterator[Row]:
+        if self._recipe is not None and self._address is not None:
+            from .rows_on_cluster import rows_on_cluster
+
+            return rows_on_cluster(self._address, self._jobs, self._recipe, ways, forks=self.forks)
+        if self._recipe is not None and not self.forks and (self._jobs or 1) > 1:
+            from .rows_process import rows_in_processes
+
+            return rows_in_processes(self._recipe, ways, self._jobs or 1)
+        return rows_here(self._maker, ways, forks=self.forks, jobs=self._jobs or 1)

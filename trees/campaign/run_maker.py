@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -62,7 +62,7 @@ class RunRecipe:
     robot: str | None = None
     world: str = "scripted"
     world_kind: str = "easy"
-    world_arguments: tuple[str, ...] = ()
+    world_arguments: Sequence[str] = ()
     seed: int = 0
     stage: str | None = None
 
