@@ -126,6 +126,10 @@ class SupportsForks(Protocol):
         """Whether that hand holds nothing that could slide out of it, so that such a fault would leave all as it is."""
         ...
 
+    def tell_of_person(self, asked: Callable[[], None]) -> bool:
+        """Call `asked` from now on before anybody asks where the person is; False where somebody may ask unnoticed."""
+        ...
+
 
 @runtime_checkable
 class SupportsInitialStates(Protocol):

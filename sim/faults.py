@@ -34,10 +34,10 @@ DURATION: dict[str, float] = {
     "dead_camera": FOREVER,
     "dead_sensor": FOREVER,
 }
-# The calls that it changes while it lasts; what happens in physics is over at once.
+# The calls that it changes while it lasts, and `person`, the question where the person is.
 FELT: dict[str, tuple[str, ...]] = {
     "grip_slip": (),
-    "person_moves": (),
+    "person_moves": ("person",),
     "occlusion": ("look",),
     "stale_frame": ("look",),
     "force_spike": ("observe",),
@@ -137,7 +137,7 @@ class FaultyWorld(World):
         self._until[fault] = (self.clock.now() if since is None else since) + DURATION[fault]
 
     def feels(self, fault: str, call: str, camera: str = "") -> bool:
-        """Whether a fault, while it lasts, changes what one of `observe`, `look`, `send` and `stop` does here."""
+        """Whether a fault, while it lasts, changes what one of the calls in `FELT` does here."""
         return call in FELT[fault] and (fault != "stale_frame" or camera in self._last_frame)
 
     @property

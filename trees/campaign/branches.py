@@ -7,7 +7,8 @@ sets it apart from the other:
 |---|---|
 | a skill that is made to fail on the way to the place | where that skill starts |
 | an operator who stops the run there | at that tick |
-| a fault in physics | at the place; a hand that holds nothing lets nothing slip, so nothing begins |
+| a grip that slips | at the place; a hand that holds nothing lets nothing slip, so nothing begins |
+| a person who moves | where somebody next asks where the person is |
 | a fault of sensors or commands | at the first call that it changes; one that is over before is never felt |
 
 So a row costs what lies beyond its branch, and two whose faults are felt at the same moment are one run.
@@ -16,12 +17,12 @@ So a row costs what lies beyond its branch, and two whose faults are felt at the
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
 from ...sim.abilities import SupportsForks
-from ...sim.faults import DURATION, FOREVER, IN_PHYSICS, FaultyWorld
+from ...sim.faults import DURATION, FOREVER, FaultyWorld
 from ...sim.world import Command, Frame, Observation, World
 from ...skills.core.context import Phase
 from ...skills.core.reasons import Reason, SkillFailure
@@ -33,6 +34,8 @@ from .run_maker import RunMaker
 from .ways import FAILED, Way
 
 INTERRUPTED = "interrupted"
+# How long a fault waits to be felt [s]: a person who has moved is found elsewhere whenever somebody asks.
+WAITS = DURATION | {"person_moves": FOREVER}
 Answer = TypeVar("Answer", bound=Hashable)
 
 
@@ -81,14 +84,15 @@ class Variant:
             found.add((self.way.stop_at, "step"))
         return found | ({self.way.goal} | {(name, "start") for name in self.way.fails} if self._armed else set())
 
-    def enter(self, name: str, phase: str, now: float, *, slips: bool) -> Event:
-        """What happens where a skill enters a phase; `slips` says whether a hand holds something that can slip."""
+    def enter(self, name: str, phase: str, now: float, at_once: Collection[str]) -> Event:
+        """What happens where a skill enters a phase; `at_once` are the faults that would change something there."""
         fault, fails = None, None
         if self.begun is None and (name, phase) == (self.node, self.phase):
             self.begun = now
-            self.pending = DURATION[self.fault] > 0.0
-            if self.fault in IN_PHYSICS and (slips or self.fault != "grip_slip"):
+            if self.fault in at_once:
                 fault = self.fault
+            else:
+                self.pending = WAITS[self.fault] > 0.0
         stop = not self._stopped and self.way.stops(name, phase)
         self._stopped |= stop
         if (name, phase) == self.way.goal:
@@ -142,7 +146,11 @@ class SharedRun:
 
     def __init__(self, run: Run, world: BranchingWorld, ways: Mapping[FaultKey, Way], tree: ForkTree) -> None:
         self._run, self._world, self._tree = run, world, tree
+        inner = world.inner
+        assert isinstance(inner, SupportsForks)
+        self._inner = inner
         world.run = self
+        self._told_of_person = inner.tell_of_person(lambda: self.called("person"))
         run.context.observers.append(self._entered)
         self._stand_for([Variant(key, way) for key, way in ways.items()])
 
@@ -153,26 +161,26 @@ class SharedRun:
         except KeyboardInterrupt:
             self._tree.report(json.dumps(INTERRUPTED))
             return
-        self._world.run = None
+        self._pending = []
         reached = any(each.begun is not None for each in self._variants)
         unsafe = unsafe_after(self._run, result.outcome) if reached else ""
         for each in self._variants:
             row = not_reached(each.key) if each.begun is None else ended(each.key, result, each.begun, unsafe)
             self._tree.report(json.dumps(row.as_dict()))
 
-    def called(self, call: str, camera: str) -> None:
+    def called(self, call: str, camera: str = "") -> None:
         """Before a call of the world: rows that feel their fault in it are branches of their own from here on."""
         if not self._pending:
             return
         now, answers = self._world.clock.now(), dict[tuple[str, float] | None, list[Variant]]()
         for each in self._pending:
-            each.pending = now < each.began + DURATION[each.fault]
+            each.pending = now < each.began + WAITS[each.fault]
         self._pending = [each for each in self._pending if each.pending]
         felt = {each for each in self._pending if self._world.feels(each.fault, call, camera)}
         if not felt:
             return
         for each in self._variants:
-            same = (each.fault, 0.0 if DURATION[each.fault] == FOREVER else each.began) if each in felt else None
+            same = (each.fault, 0.0 if WAITS[each.fault] == FOREVER else each.began) if each in felt else None
             each.pending &= each not in felt
             answers.setdefault(same, []).append(each)
         chosen = self._branch(answers, None)
@@ -184,10 +192,10 @@ class SharedRun:
         if (name, phase) not in self._places:
             return
         now, answers = self._world.clock.now(), dict[Event, list[Variant]]()
-        inner = self._world.inner
-        slips = not (isinstance(inner, SupportsForks) and inner.slip_changes_nothing(self._world.slipping))
+        slips = not self._inner.slip_changes_nothing(self._world.slipping)
+        at_once = ({"grip_slip"} if slips else set[str]()) | (set() if self._told_of_person else {"person_moves"})
         for each in self._variants:
-            answers.setdefault(each.enter(name, phase, now, slips=slips), []).append(each)
+            answers.setdefault(each.enter(name, phase, now, at_once), []).append(each)
         event = self._branch(answers, NOTHING)
         if event.fault is not None:
             self._world.begin(event.fault)
