@@ -391,6 +391,7 @@ class ScriptedWorld(World):
 
     @person_offset.setter
     def person_offset(self, offset: np.ndarray) -> None:
+        """Have the person moved so far."""
         self._person_offset = offset
 
     def tell_of_person(self, asked: Callable[[], None]) -> bool:
