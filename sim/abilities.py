@@ -116,6 +116,22 @@ class SupportsFaults(Protocol):
 
 
 @runtime_checkable
+class SupportsForks(Protocol):
+    """A world that is all in this process' memory: after a fork, each of the two processes has one of its own.
+
+    One with threads, sockets, open files or a physics engine is none.
+    """
+
+    def slip_changes_nothing(self, side: Side) -> bool:
+        """Whether that hand holds nothing that could slide out of it, so that such a fault would leave all as it is."""
+        ...
+
+    def tell_of_person(self, asked: Callable[[], None]) -> bool:
+        """Call `asked` from now on before anybody asks where the person is; False where somebody may ask unnoticed."""
+        ...
+
+
+@runtime_checkable
 class SupportsInitialStates(Protocol):
     """A world that can begin a run elsewhere than at its beginning, for stages that are tried alone."""
 

@@ -34,6 +34,17 @@ DURATION: dict[str, float] = {
     "dead_camera": FOREVER,
     "dead_sensor": FOREVER,
 }
+# The calls that it changes while it lasts, and `person`, the question where the person is.
+FELT: dict[str, tuple[str, ...]] = {
+    "grip_slip": (),
+    "person_moves": ("person",),
+    "occlusion": ("look",),
+    "stale_frame": ("look",),
+    "force_spike": ("observe",),
+    "lost_command": ("send", "stop"),
+    "dead_camera": ("look",),
+    "dead_sensor": ("observe",),
+}
 SPIKE = np.array((0.0, 0.0, -40.0, 0.0, 0.0, 0.0))  # [N], [N m] above every limit of a load
 OCCLUDER = 0.25  # [m] distance of what stands before the camera
 CLOSED = 0.03  # [m] a hand sent to less than this is taken to hold something
@@ -108,7 +119,31 @@ class FaultyWorld(World):
         for spec in self.faults:
             if spec.node == node and spec.phase == phase and all(spec is not done for done, _ in self.begun):
                 self.begun.append((spec, self.clock.now()))
-                self._begin(spec.fault)
+                self.begin(spec.fault)
+
+    def begin(self, fault: str, since: float | None = None) -> None:
+        """Have a fault begin, whatever the phase.
+
+        Args:
+            fault: which one.
+            since: when it began [s], for one that nobody has felt yet; None for now.
+        """
+        if fault in IN_PHYSICS:
+            assert isinstance(self.inner, SupportsFaults)
+            if fault == "grip_slip":
+                self.inner.fault_grip_slip(self._closed)
+            else:
+                self.inner.fault_move_person()
+        self._until[fault] = (self.clock.now() if since is None else since) + DURATION[fault]
+
+    def feels(self, fault: str, call: str, camera: str = "") -> bool:
+        """Whether a fault, while it lasts, changes what one of the calls in `FELT` does here."""
+        return call in FELT[fault] and (fault != "stale_frame" or camera in self._last_frame)
+
+    @property
+    def slipping(self) -> Side:
+        """The hand that a grip slips out of."""
+        return self._closed
 
     def observe(self) -> Observation:
         """Proprioception, spiked or dead when told so."""
@@ -145,15 +180,6 @@ class FaultyWorld(World):
     def close(self) -> None:
         """Release the inner world."""
         self.inner.close()
-
-    def _begin(self, fault: str) -> None:
-        if fault in IN_PHYSICS:
-            assert isinstance(self.inner, SupportsFaults)
-            if fault == "grip_slip":
-                self.inner.fault_grip_slip(self._closed)
-            else:
-                self.inner.fault_move_person()
-        self._until[fault] = self.clock.now() + DURATION[fault]
 
     def _active(self, fault: str) -> bool:
         return self.clock.now() < self._until.get(fault, -FOREVER)

@@ -41,6 +41,7 @@ OUTSIDE_THE_TREE = {
     "trees/campaign/trial.py",
     "trees/campaign/trials.py",
     "trees/campaign/on_cluster.py",
+    "trees/campaign/rows_on_cluster.py",
     "trees/commands/evaluate.py",
     "trees/commands/robot.py",
     "trees/commands/run.py",

@@ -190,6 +190,10 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     )
     inject.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
+    inject.add_argument(
+        "--jobs", type=int, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
+    )
+    inject.add_argument("--address", metavar="ray://...", help="run them on a Ray cluster; `local` starts one here")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 
     replay = commands.add_parser("replay", help="run a record again and say where it differs")

@@ -50,6 +50,10 @@ DEPTH_NOISE = 0.001  # [m]
 FROM_ABOVE = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.2), (0.0, 0.0, 0.0, 1.0)))
 
 
+def _nothing() -> None:
+    pass
+
+
 def scripted_room() -> RoomMap:
     """A free room of 8 m by 8 m with a bed in the middle."""
     free = np.ones((80, 80), dtype=bool)
@@ -109,7 +113,6 @@ class ScriptedWorld(World):
         time: the clock, whose `time` may be set.
         load: side -> force and torque (6,) on that hand in the map frame [N], [N m]; set it at will.
         between_fingers: side -> thickness of what the fingers meet when they close [m]; 0 for nothing.
-        person_offset: (3,) how far the person has moved [m]; tests and estimators may read it.
         sent: every command, in order.
         objects: what a task has added, by name; here they only stand in the record of it.
         has_gown: whether a task has left the gown in the room.
@@ -134,7 +137,7 @@ class ScriptedWorld(World):
         shape = (2, robot.dof)
         self.load: dict[Side, np.ndarray] = {side: np.zeros(6) for side in SIDES}
         self.between_fingers: dict[Side, float] = {"left": 0.0, "right": 0.0}
-        self.person_offset = np.zeros(3)
+        self._person_offset, self._person_asked = np.zeros(3), _nothing
         self.sent: list[Command] = []
         self.objects: dict[str, RoomObject] = {}
         self.has_gown = True
@@ -378,6 +381,24 @@ class ScriptedWorld(World):
         c, s = math.cos(yaw), math.sin(yaw)
         self._base += np.array((c * vx - s * vy, s * vx + c * vy, turn))
 
+    # -- the person --------------------------------------------------------------------------------------
+
+    @property
+    def person_offset(self) -> np.ndarray:
+        """How far the person has moved (3,) [m]; tests and estimators may read it."""
+        self._person_asked()
+        return self._person_offset
+
+    @person_offset.setter
+    def person_offset(self, offset: np.ndarray) -> None:
+        """Have the person moved so far."""
+        self._person_offset = offset
+
+    def tell_of_person(self, asked: Callable[[], None]) -> bool:
+        """Call `asked` before each look at `person_offset`; False for a class that has its people move otherwise."""
+        self._person_asked = asked
+        return type(self).fault_move_person is ScriptedWorld.fault_move_person
+
     # -- effects of faults -------------------------------------------------------------------------------
 
     def fault_grip_slip(self, side: Side) -> None:
@@ -385,6 +406,11 @@ class ScriptedWorld(World):
         self.between_fingers[side] = 0.0
         self.load[side] = np.zeros(6)
 
+    def slip_changes_nothing(self, side: Side) -> bool:
+        """Whether there is neither anything between the fingers nor a load."""
+        usual = type(self).fault_grip_slip is ScriptedWorld.fault_grip_slip
+        return usual and self.between_fingers[side] == 0.0 and not self.load[side].any()
+
     def fault_move_person(self) -> None:
         """The person shifts by 10 cm."""
-        self.person_offset = self.person_offset + np.array((0.1, 0.0, 0.0))
+        self._person_offset = self._person_offset + np.array((0.1, 0.0, 0.0))

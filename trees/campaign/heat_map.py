@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...sim.record.spool import disk_error
-from .inject import Row
+from .fault_row import Row
 
 PAGE = "inject.html"
 COLOURS = {

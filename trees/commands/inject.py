@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import re
@@ -16,9 +17,11 @@ from ...sim.faults import FAULTS
 from ...sim.record.file_lock import lock_file
 from ...sim.record.spool import disk_error
 from ...sim.world_kind import WorldKind
+from ..campaign.fault_row import SIGNS, FaultKey, Row, table
 from ..campaign.heat_map import write_heat_map
-from ..campaign.inject import SIGNS, Campaign, FaultKey, Row, table
+from ..campaign.inject import Campaign
 from ..campaign.key import campaign_key
+from ..campaign.run_maker import RunRecipe
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.worlds import make_world, read_world_arguments
@@ -36,6 +39,8 @@ def main(options: argparse.Namespace) -> int:
     for fault in options.fault:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
+    if options.jobs is not None and options.jobs < 1:
+        raise CaretreeError(f"--jobs is {options.jobs}, but at least 1 is asked for")
     kind = WorldKind.named(options.world_kind)
     read_world_arguments(options.world, options.world_arg)
     parts = [re.sub(r"[^\w.-]+", "_", part) for part in (options.world, options.robot) if part]
@@ -65,6 +70,17 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
         stage=options.stage,
+        jobs=options.jobs,
+        address=options.address,
+        recipe=RunRecipe(
+            task=options.task,
+            robot=options.robot,
+            world=options.world,
+            world_kind=options.world_kind,
+            world_arguments=tuple(options.world_arg),
+            seed=options.seed,
+            stage=options.stage,
+        ),
     )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
@@ -75,9 +91,10 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
     try:
-        with path.open("a", encoding="utf-8") as file:
-            done = {row.key for row in rows}
-            for row in campaign.rows([key for key in wanted if key not in done]):
+        done = {row.key for row in rows}
+        missing = campaign.rows([key for key in wanted if key not in done])
+        with path.open("a", encoding="utf-8") as file, contextlib.closing(missing):
+            for row in missing:
                 file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
                 file.flush()
                 rows.append(row)
@@ -95,6 +112,11 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     tried = [row for row in rows if row.outcome != "not_reached"]
     if len(tried) < len(rows):
         print(f"{len(rows) - len(tried)} of {len(rows)} were not reached: nothing is said of them")
+    if len(rows) < len(wanted):
+        print(
+            f"{len(wanted) - len(rows)} were lost with the process that tried them: the same command tries them again"
+        )
+        return 1
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
 
 

@@ -186,6 +186,10 @@ class Run:
             self._began = time.perf_counter()
             self._limit.start()
 
+    def go_on_in_fork(self) -> None:
+        """To be called in a process that was forked during this run, and goes on with it."""
+        self._limit.set_alarm()
+
     def _check_fault_nodes(self, world: FaultyWorld) -> None:
         skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
         for spec in world.faults:

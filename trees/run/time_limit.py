@@ -87,6 +87,11 @@ class TimeLimit:
         if self._active and self._allowed < self._seconds:
             signal.setitimer(signal.ITIMER_REAL, self._allowed)
 
+    def set_alarm(self) -> None:
+        """Have the alarm ring in this process too: a fork inherits none."""
+        if self._active:
+            signal.setitimer(signal.ITIMER_REAL, self._allowed)
+
     def pause(self) -> None:
         """What comes now may take as long as it likes."""
         self._ends = math.inf

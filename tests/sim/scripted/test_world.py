@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from caretree.sim.abilities import SupportsForks
 from caretree.sim.scripted.exact_twist import pseudo_inverse
 from caretree.sim.scripted.linear_arm import LinearArms
 from caretree.sim.scripted.world import ScriptedWorld
@@ -98,6 +99,37 @@ def test_fingers_close_on_what_is_between_them():
     world.fault_grip_slip("left")
     world.clock.wait_until(3.0)
     assert world.observe().gripper_opening[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_slip_of_an_empty_hand_changes_nothing():
+    class Strange(ScriptedWorld):
+        def fault_grip_slip(self, side):
+            self.load[side] = np.ones(6)
+
+    world = ScriptedWorld()
+    assert isinstance(world, SupportsForks)
+    assert world.slip_changes_nothing("left")
+    assert not Strange().slip_changes_nothing("left"), "who knows what its faults do"
+    world.load["left"] = np.ones(6)
+    assert not world.slip_changes_nothing("left")
+    world.fault_grip_slip("left")
+    assert world.slip_changes_nothing("left")
+    world.between_fingers["left"] = 0.01
+    assert not world.slip_changes_nothing("left")
+
+
+def test_who_asks_where_the_person_is_is_told_of():
+    class Strange(ScriptedWorld):
+        def fault_move_person(self):
+            self.person_offset = np.ones(3)
+
+    world, asked = ScriptedWorld(), []
+    assert world.tell_of_person(lambda: asked.append(1))
+    world.fault_move_person()
+    assert not asked
+    assert world.person_offset[0] == pytest.approx(0.1)
+    assert len(asked) == 1
+    assert not Strange().tell_of_person(lambda: None)
 
 
 def test_noise_is_seeded_and_never_silent():

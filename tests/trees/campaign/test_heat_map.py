@@ -1,7 +1,7 @@
 """The page of a fault campaign has a cell for every fault, told apart by how it ended."""
 
+from caretree.trees.campaign.fault_row import Row
 from caretree.trees.campaign.heat_map import COLOURS, page, write_heat_map
-from caretree.trees.campaign.inject import Row
 
 ROWS = [
     Row(node="lift <1>", phase="step", fault="occlusion", outcome="success", time_to_safe=3.25),

@@ -8,7 +8,9 @@ from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
-from caretree.trees.campaign.inject import Campaign, Row, table, triggers_of
+from caretree.trees.campaign.fault_row import Row, table
+from caretree.trees.campaign.inject import Campaign
+from caretree.trees.campaign.ways import triggers_of
 from caretree.trees.nodes.composers import fallback, sequence
 from caretree.trees.nodes.decorators import FailSafe, RecoverBy
 from caretree.trees.run.runner import Run, run

@@ -70,3 +70,64 @@ def build(context, stages=tuple(STAGES)):
     assert "hold two" in Path("i/inject.html").read_text()
     assert main(["inject", "staged.py", "--stage", "three", "--out", "j"]) == 2
     assert "no stage 'three'" in capsys.readouterr().err
+
+
+INTERRUPTING = """
+import os, signal
+from pathlib import Path
+from caretree.skills import HoldStill, Retreat
+from caretree.skills.core.skill import Skill
+from caretree.trees import FailSafe, sequence
+
+CAMPAIGN = os.getpid()
+
+
+class Look(Skill):
+    commands = False
+
+    def steps(self):
+        if os.getpid() != CAMPAIGN and self.world.observe().time > 1.0 and not Path("interrupted").exists():
+            Path("interrupted").touch()
+            os.kill(CAMPAIGN, signal.SIG{signal})
+            signal.pause()
+        yield
+
+
+def build(context):
+    body = sequence("s", HoldStill("hold", context, seconds=2.0), Look("look", context))
+    return FailSafe("safely", body, Retreat("let go", context, hand_distance=0.0, ready="never"))
+"""
+
+
+@pytest.mark.parametrize("name", ["INT", "TERM"])
+def test_an_interrupted_campaign_of_two_jobs_ends_its_processes_and_goes_on(name, capsys):
+    Path("presses.py").write_text(INTERRUPTING.replace("{signal}", name))
+    words = ["inject", "presses.py", "--jobs", "2", "--fault", "dead_sensor", "--fault", "occlusion", "--out", "i"]
+    assert main(words) == 130
+    told = capsys.readouterr().out
+    kept = len(Path("i/inject.jsonl").read_text().splitlines())
+    assert f"interrupted; {kept} of 18 rows are kept" in told
+    assert main(words) == 0
+    told = capsys.readouterr().out
+    assert f"18 faults to try, {kept} of them tried before" in told
+    rows = [json.loads(line) for line in Path("i/inject.jsonl").read_text().splitlines()]
+    assert len(rows) == 18
+    assert "lost" not in told
+
+
+def test_rows_of_a_killed_process_are_lost_and_tried_again(capsys):
+    text = INTERRUPTING.replace("CAMPAIGN, signal.SIG{signal}", "os.getpid(), signal.SIGKILL")
+    Path("dies.py").write_text(text)
+    words = ["inject", "dies.py", "--fault", "occlusion", "--out", "i"]
+    assert main(words) == 1
+    assert "were lost with the process that tried them: the same command tries them again" in capsys.readouterr().out
+    kept = len(Path("i/inject.jsonl").read_text().splitlines())
+    assert kept < 9
+    assert main(words) == 0
+    assert f"9 faults to try, {kept} of them tried before" in capsys.readouterr().out
+
+
+def test_no_job_is_refused(capsys):
+    assert main(["inject", "wave", "--jobs", "0", "--out", "i"]) == 2
+    assert "--jobs is 0, but at least 1 is asked for" in capsys.readouterr().err
+    assert not Path("i").exists()

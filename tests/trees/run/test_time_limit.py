@@ -1,6 +1,7 @@
 """Code that does not come back is interrupted where it stands, and the run still ends safely."""
 
 import contextlib
+import os
 import signal
 import subprocess
 import sys
@@ -99,6 +100,24 @@ def test_what_is_started_again_has_its_whole_time_again(monkeypatch):
         now[0] = 1011.0
         with pytest.raises(TookTooLongError):
             signal.raise_signal(signal.SIGALRM)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_it_holds_in_a_fork_too():
+    with TimeLimit(SHORT) as limit:
+        limit.pause()
+        fork = os.fork()
+        if fork == 0:
+            try:
+                limit.set_alarm()
+                limit.start()
+                spin()
+            except TookTooLongError:
+                os._exit(3)
+            finally:
+                os._exit(1)
+        _, status = os.waitpid(fork, 0)
+    assert os.waitstatus_to_exitcode(status) == 3
 
 
 def test_a_debugger_is_left_alone(monkeypatch):
