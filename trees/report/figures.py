@@ -35,6 +35,7 @@ STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "run
 FAULT = {"color": "#7b3fa0", "linewidth": 1.0, "linestyle": ":"}
 LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
 ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 70 to 110
+LETTERS = 60  # of a name that is written beside its bar; the longest of the package have 40
 
 
 def _figure(rows: int, height: float) -> tuple[Figure, list[Axes]]:
@@ -98,6 +99,7 @@ def timeline(
     names, left_out = telling_skills(spans)
     for name in names:
         bars.append((name, [(span.t_start, span.t_end, span.status.lower()) for span in spans if span.name == name]))
+    faults = [(t, _shortened(which)) for t, which in faults]
     above = 0.03 * max((len(which) for _, which in faults), default=0)  # [in] that the slanting names of faults rise
     figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)) + above)
     for row, (_, pieces) in enumerate(bars):
@@ -125,7 +127,7 @@ def timeline(
     for t, which in faults:
         axis.axvline(t, **FAULT)
         axis.annotate(which, (t, -0.6), rotation=30, fontsize=7, color=FAULT["color"], annotation_clip=False)
-    axis.set_yticks(range(len(bars)), [name for name, _ in bars])
+    axis.set_yticks(range(len(bars)), [_shortened(name) for name, _ in bars])
     for label in axis.get_yticklabels()[:first_skill]:
         label.set_fontweight("bold")
     axis.set_ylim(len(bars) - 0.4, -0.6)
@@ -134,6 +136,11 @@ def timeline(
     if left_out:
         axis.set_title(f"skills that failed, and those that took longest; {left_out} more are left out", fontsize=8)
     return _png(figure)
+
+
+def _shortened(name: str) -> str:
+    """A name that leaves room for what it names; a damaged record may have one of thousands of letters."""
+    return name if len(name) <= LETTERS else f"{name[: LETTERS - 1]}\u2026"
 
 
 def _line(axis: Axes, value: float, label: str) -> None:

@@ -39,6 +39,14 @@ def test_the_name_of_a_fault_has_room_above_a_short_timeline():
     assert height_of(timeline([], [span], 2.0, [(1.0, name)])) > height_of(timeline([], [span], 2.0))  # or it warns
 
 
+def test_names_of_thousands_of_letters_leave_room_for_the_timeline():
+    name = 5000 * "9"
+    span = Span(path=f"task/{name}", t_start=0.0, t_end=2.0, status="FAILURE")
+    stage = {"name": name, "status": "failure", "t_start": 0.0, "t_end": 2.0}
+    drawn = timeline([stage], [span], 2.0, [(1.0, f"dead_sensor@{name}:step")])  # or it warns
+    assert height_of(drawn) <= 1.1 * height_of(timeline([stage], [span], 2.0, [(1.0, 60 * "x")]))
+
+
 def test_of_too_many_skills_those_are_drawn_that_failed_or_took_longest():
     def span(name, start, seconds, status="SUCCESS"):
         return Span(path=f"task/{name}", t_start=start, t_end=start + seconds, status=status)
