@@ -80,7 +80,7 @@ class ScriptedSenses(Senses):
     def __init__(self, world: Proprioception) -> None:
         self._world = world
         self._moved_before = self._moved()
-        self._collar_aside = 0.04  # [m]
+        self._collar = 0.04  # across the bed [m]
 
     def on(self: _Senses, world: Proprioception) -> _Senses:
         """The same senses for another robot, such as one behind a ROS master."""
@@ -215,9 +215,10 @@ class ScriptedSenses(Senses):
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
     ) -> GraspPoint:
-        """A little aside until it is asked where to grasp it on the chest, and then in the middle, taken from above."""
-        place = np.array((self._collar_aside + away[0], -0.5 + away[1], 0.83))
-        self._collar_aside *= not 0.0 < np.hypot(*away) < _CHEST
+        """A little aside until it is asked where to grasp it on the chest, and then in the person's middle."""
+        place = np.array((self._collar + away[0], -0.5 + away[1], 0.83))
+        if 0.0 < np.hypot(*away) < _CHEST:
+            self._collar = self._moved()[0]
         return GraspPoint(
             stamp=frame.stamp,
             confidence=1.0,  # all of it shows

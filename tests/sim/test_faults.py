@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
-from caretree.sim.faults import FAULTS, PHASES, FaultSpec, FaultyWorld, parse_fault
+from caretree.sim.faults import FAULTS, PHASES, SETTLED, FaultSpec, FaultyWorld, parse_fault
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening, HandTwist, SensorLost
 
@@ -131,3 +131,61 @@ def test_physical_faults_need_a_world_that_can_play_them():
     with pytest.raises(CaretreeError, match=r"Plain cannot play grip_slip, which happens in physics; .* occlusion"):
         FaultyWorld(Plain(), [FaultSpec("grip_slip", "n", "step")])
     assert FaultyWorld(Plain(), [FaultSpec("occlusion", "n", "step")]).faults
+
+
+def ask(world, inner, fault):
+    """Whatever the fault changes."""
+    if fault in ("occlusion", "stale_frame"):
+        world.look("head")
+    elif fault == "lost_command":
+        world.stop()
+    elif fault == "person_moves":
+        _ = inner.person_offset
+    else:
+        world.observe()
+
+
+@pytest.mark.parametrize("fault", [fault for fault in FAULTS if fault != "dead_camera"])
+def test_a_run_is_settled_half_a_minute_after_its_fault_was_felt(fault):
+    inner, world = faulty(fault)
+    inner.between_fingers["left"] = 0.01  # for a grip to slip
+    world.look("head")  # for a frame to be stale
+    ask(world, inner, fault)
+    assert not world.felt
+    begin(world)
+    inner.clock.wait_until(0.4)
+    ask(world, inner, fault)
+    felt = 0.0 if fault == "grip_slip" else 0.4
+    assert world.felt == {fault: felt}
+    inner.clock.wait_until(felt + SETTLED - 0.1)
+    ask(world, inner, fault)
+    assert not world.settled
+    inner.clock.wait_until(felt + SETTLED)
+    assert world.settled
+
+
+def test_what_changes_nothing_is_not_felt():
+    for fault in ("grip_slip", "stale_frame", "occlusion", "force_spike"):
+        inner, world = faulty(fault)
+        begin(world)
+        if fault == "stale_frame":
+            world.look("head")  # the first one: there is none that could be shown again
+        inner.clock.wait_until(5.0)  # over
+        ask(world, inner, fault)
+        inner.clock.wait_until(100.0)
+        assert not world.felt
+        assert not world.settled
+
+
+def test_a_run_is_settled_when_its_last_fault_is():
+    inner = ScriptedWorld()
+    world = FaultyWorld(inner, [FaultSpec("dead_sensor", "node", "start"), FaultSpec("occlusion", "later", "start")])
+    begin(world)
+    world.observe()
+    inner.clock.wait_until(100.0)
+    assert not world.settled
+    world.on_phase("later", "start")
+    world.look("head")
+    assert not world.settled
+    inner.clock.wait_until(100.0 + SETTLED)
+    assert world.settled

@@ -26,6 +26,7 @@ class Recorded:
             given.
         world_kind: name.
         rate_hz: ticks a second.
+        settled_rate_hz: the same once all faults lie behind; None where it stays as it was.
         log_rate: measurements a second that its log asked for, between ticks too; None for those of the tree alone.
         inject: faults, as on the command line.
         tuning: skill -> number -> value.
@@ -48,6 +49,7 @@ class Recorded:
     start: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
+    settled_rate_hz: float | None = None
     log_rate: float | None = None
     inject: tuple[str, ...] = ()
     tuning: Mapping[str, Mapping[str, Any]]
@@ -73,6 +75,7 @@ def recorded(directory: Path) -> Recorded:
         world=_value(file, run, "world", str, _is_text),
         world_kind=_value(file, given, "world_kind", str, _is_text, EASY),
         rate_hz=_value(file, given, "rate_hz", float, _is_rate, 15.0),
+        settled_rate_hz=_value(file, given, "settled_rate_hz", float, _is_rate, None),
         log_rate=_value(file, given, "log_rate", float, _is_rate, None),
         inject=_value(file, given, "inject", tuple, _is_texts, ()),
         tuning=_value(file, given, "tuning", dict, _is_tuning, {}),

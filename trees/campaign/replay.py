@@ -67,6 +67,7 @@ def replay(directory: Path) -> Replay:
             world,
             seed=given.seed,
             rate_hz=given.rate_hz,
+            settled_rate_hz=given.settled_rate_hz,
             senses=senses,
             params=loaded.values(given.build) | loaded.parameters(given.stage),
             settings=Settings(given.tuning),

@@ -11,7 +11,7 @@ from ...sim.faults import FaultSpec, FaultyWorld
 from ...sim.world import World
 from ..run.runner import Run
 from ..run.task import Task, load_task
-from ..run.worlds import make_world, prepare_stage, read_world_arguments
+from ..run.worlds import make_world, prepare_stage, read_world_arguments, tick_rate_of
 
 MakeWorld = Callable[[], tuple[World, Senses | None]]
 
@@ -43,7 +43,8 @@ class RunMaker:
     def run_on(self, world: FaultyWorld, senses: Senses | None) -> Run:
         """A run on this world, not started."""
         parameters = self._task.parameters(self._stage)
-        return Run(self._task, world, seed=self._seed, senses=senses, params=parameters)
+        settled = tick_rate_of(world.inner)
+        return Run(self._task, world, seed=self._seed, settled_rate_hz=settled, senses=senses, params=parameters)
 
 
 @dataclass(frozen=True, kw_only=True)

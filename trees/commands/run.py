@@ -163,14 +163,16 @@ def _run(
     watchers: Watchers,
 ) -> int:
     world = FaultyWorld(measured, faults) if faults else measured
-    rate_hz = TICK_RATE if faults else tick_rate_of(inner)  # how soon a fault is answered is looked at
-    parameters = {**parameters, "rate_hz": rate_hz}
+    settled_rate_hz = tick_rate_of(inner)
+    rate_hz = TICK_RATE if faults else settled_rate_hz  # how soon a fault is answered is looked at
+    parameters = {**parameters, "rate_hz": rate_hz, "settled_rate_hz": settled_rate_hz}
     events = _Events()
     run = Run(
         task,
         world,
         seed=options.seed,
         rate_hz=rate_hz,
+        settled_rate_hz=settled_rate_hz,
         recorder=events,
         on_progress=events.progress,
         senses=senses,

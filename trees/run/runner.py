@@ -72,6 +72,8 @@ class Run:
         world: unguarded; the run puts the guard around it.
         seed: of the run's chance.
         rate_hz: ticks per second of world time.
+        settled_rate_hz: ticks per second from when all that a world with faults had in store lies behind; None for
+            the same as before.
         recorder: gets every event of the trace; an error of it ends the run in the safe stop.
         on_progress: told of stages and skills as they begin and end; an error of it ends the run in the safe stop.
         senses: to be used instead of those that the task offers.
@@ -99,6 +101,7 @@ class Run:
         *,
         seed: int = 0,
         rate_hz: float = 15.0,
+        settled_rate_hz: float | None = None,
         recorder: EventSink | None = None,
         on_progress: Callable[[Progress], None] | None = None,
         senses: Senses | None = None,
@@ -109,8 +112,9 @@ class Run:
         on_sample: Callable[[Observation], None] | None = None,
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
-        if not rate_hz > 0:
-            raise CaretreeError(f"rate_hz is {rate_hz}, but must be above 0")
+        for name, rate in (("rate_hz", rate_hz), ("settled_rate_hz", settled_rate_hz or rate_hz)):
+            if not rate > 0:
+                raise CaretreeError(f"{name} is {rate}, but must be above 0")
         self.world = world
         self.limits = limits
         self._stepped = isinstance(world.clock, SteppedClock)
@@ -124,6 +128,7 @@ class Run:
             on_sample=self._sampled,
         )
         self._period = 1.0 / rate_hz
+        self._settled_period = 1.0 / (settled_rate_hz or rate_hz)
         self.context = Context(
             world=self.guard,
             guard=self.guard,
@@ -239,6 +244,8 @@ class Run:
                 stop = Failure(Reason.TIMEOUT, f"no run may last over {self.limits.run:g} s", "runner")
             if stop is not None:
                 return stop
+            if isinstance(self.world, FaultyWorld) and self.world.settled:
+                self._period = self.context.hold = self._settled_period
             self._tick(self.root)
             if self.root.status != Status.RUNNING:
                 return None

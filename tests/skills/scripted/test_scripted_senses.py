@@ -72,3 +72,19 @@ def test_a_person_who_moves_is_elsewhere_and_has_shifted_once():
     assert senses.arm(frame, side="right").points_in_map - lies == pytest.approx(np.tile((0.1, 0.0, 0.0), (4, 1)))
     assert senses.arm_shift(frame, before=frame, arm_in_map=lies).share == 1.0
     assert senses.arm_shift(frame, before=frame, arm_in_map=lies).share == 0.0
+
+
+def test_the_collar_is_drawn_over_to_the_middle_of_whoever_has_moved():
+    world = ScriptedWorld()
+    senses = ScriptedSenses(world)
+
+    def across(**where):
+        return senses.collar_middle(world.look("head"), near_in_map=np.zeros(3), **where).position_in_map[0]
+
+    assert across() == pytest.approx(0.04)
+    across(away=(0.0, 0.3))
+    assert across() == 0.0
+    world.fault_move_person()
+    assert across() == 0.0, "it lies where it lay"
+    across(away=(0.0, 0.3))
+    assert across() == pytest.approx(0.1)

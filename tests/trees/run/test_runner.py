@@ -5,6 +5,7 @@ import numpy as np
 import py_trees
 import pytest
 from caretree.sim.errors import CaretreeError, RecordError
+from caretree.sim.faults import SETTLED, FaultSpec, FaultyWorld
 from caretree.sim.record.record import read_run
 from caretree.sim.record.recorder import Recorder
 from caretree.sim.scripted.world import ScriptedWorld
@@ -454,6 +455,28 @@ def test_a_world_whose_time_does_not_wait_is_ticked_on_time():
     run = run_of(lambda context: Slow("slow", context, outcomes=[True]), rate_hz=10.0)
     assert run.run().outcome == "success"
     assert ticks == pytest.approx([0.0, 0.1, 0.3, 0.4])
+
+
+def test_a_run_is_ticked_otherwise_when_its_fault_lies_behind():
+    ticks = []
+
+    class Watches(Plan):
+        def steps(self):
+            while self.now() < SETTLED + 2.0:
+                ticks.append(self.now())
+                self.world.look("head")
+                yield
+
+    world = FaultyWorld(ScriptedWorld(), [FaultSpec("occlusion", "watch", "step")])
+    run = run_of(lambda context: Watches("watch", context, outcomes=[True]), world, rate_hz=10.0, settled_rate_hz=2.0)
+    assert run.run().outcome == "success"
+    apart, often = np.diff(ticks), np.array(ticks[:-1]) < 0.05 + SETTLED
+    np.testing.assert_allclose(apart[often], 0.1)
+    np.testing.assert_allclose(apart[~often], 0.5)
+    assert run.context.hold == 0.5
+    for rates in ({"rate_hz": 0.0}, {"settled_rate_hz": -1.0}):
+        with pytest.raises(CaretreeError, match="but must be above 0"):
+            run_of(lambda context: Watches("watch", context, outcomes=[True]), **rates)
 
 
 def test_skills_and_trees_run_where_truth_cannot_be_read():
