@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
 from ..sim.cluster import Cluster, LostCallError
+from ..sim.command_line import at_least_one
 from ..sim.errors import CaretreeError
 
 Shard = TypeVar("Shard")
@@ -16,17 +17,11 @@ def add_cluster_options(parser: argparse.ArgumentParser) -> None:
     """`--jobs` and `--address`, as `each_shard` takes them."""
     parser.add_argument(
         "--jobs",
-        type=_jobs,
+        type=at_least_one,
         metavar="N",
         help="shards at once (1; on a cluster as many as it has cores); more than 1 needs Ray",
     )
     parser.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
-
-
-def _jobs(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r}, but a whole number of at least 1 is asked for")
-    return int(text)
 
 
 def each_shard(

@@ -45,6 +45,17 @@ def whole_number(text: str) -> int:
     return int(text)
 
 
+def at_least_one(text: str) -> int:
+    """Type of an argument that counts what there must be one of, such as runs at the same time.
+
+    Raises:
+        ArgumentTypeError: it is no such number.
+    """
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r}, but a whole number of at least 1 is asked for")
+    return int(text)
+
+
 def seed(text: str) -> int:
     """Type of an argument that seeds a random generator.
 

@@ -12,7 +12,7 @@ import io
 import sys
 from collections.abc import Sequence
 
-from ..sim.command_line import CommandParser, answered, port, rate, seed
+from ..sim.command_line import CommandParser, answered, at_least_one, port, rate, seed
 from ..sim.errors import CaretreeError
 
 SELF_PARSED = {
@@ -191,7 +191,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
     inject.add_argument(
-        "--jobs", type=int, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
+        "--jobs", type=at_least_one, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
     )
     inject.add_argument("--address", metavar="ray://...", help="run them on a Ray cluster; `local` starts one here")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...sim.command_line import CommandParser, answered, seed
+from ...sim.command_line import CommandParser, answered, at_least_one, seed
 from .errors import GapError
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="of drops: make the recordings each verdict asks for, run again, and score both rounds",
     )
-    p.add_argument("--jobs", type=int, default=1, help="processes")
+    p.add_argument("--jobs", type=at_least_one, default=1, help="processes")
     return top
 
 

@@ -56,7 +56,7 @@ class Campaign:
         recipe: RunRecipe | None = None,
     ) -> None:
         if jobs is not None and jobs < 1:
-            raise CaretreeError(f"--jobs is {jobs}, but at least 1 is asked for")
+            raise CaretreeError(f"jobs is {jobs}, but at least 1 is asked for")
         self._maker = RunMaker(task, make_world, seed=seed, stage=stage)
         self._faults, self._jobs, self._address, self._recipe = faults, jobs, address, recipe
         self._reached: set[Place] = set()

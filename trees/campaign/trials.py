@@ -72,7 +72,7 @@ class Plan:
         if not self.seeds or len(set(self.seeds)) != len(self.seeds) or min(self.seeds) < 0:
             raise CaretreeError(f"seeds are {list(self.seeds)}, but different numbers from 0 on are asked for")
         if self.jobs is not None and self.jobs < 1:
-            raise CaretreeError(f"--jobs is {self.jobs}, but at least 1 is asked for")
+            raise CaretreeError(f"jobs is {self.jobs}, but at least 1 is asked for")
 
     @property
     def kind(self) -> str:

@@ -39,8 +39,6 @@ def main(options: argparse.Namespace) -> int:
     for fault in options.fault:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
-    if options.jobs is not None and options.jobs < 1:
-        raise CaretreeError(f"--jobs is {options.jobs}, but at least 1 is asked for")
     kind = WorldKind.named(options.world_kind)
     read_world_arguments(options.world, options.world_arg)
     parts = [re.sub(r"[^\w.-]+", "_", part) for part in (options.world, options.robot) if part]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...sim.command_line import INTERRUPTED, SEEDS
+from ...sim.command_line import INTERRUPTED, SEEDS, at_least_one
 from ...sim.errors import CaretreeError
 from ..campaign.key import campaign_key
 from ..campaign.rows_file import write_parquet
@@ -35,7 +35,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread, from a world prepared for it"
     )
     parser.add_argument(
-        "--jobs", type=int, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
+        "--jobs", type=at_least_one, metavar="J", help="runs at the same time (1; on a cluster as many as it has cores)"
     )
     parser.add_argument("--address", metavar="ray://...", help="run them on a Ray cluster; `local` starts one here")
     parser.add_argument("--parquet", action="store_true", help="write trials.parquet too; needs pyarrow")

@@ -129,5 +129,5 @@ def test_rows_of_a_killed_process_are_lost_and_tried_again(capsys):
 
 def test_no_job_is_refused(capsys):
     assert main(["inject", "wave", "--jobs", "0", "--out", "i"]) == 2
-    assert "--jobs is 0, but at least 1 is asked for" in capsys.readouterr().err
+    assert "argument --jobs: '0', but a whole number of at least 1 is asked for" in capsys.readouterr().err
     assert not Path("i").exists()
