@@ -47,7 +47,7 @@ FELT: dict[str, tuple[str, ...]] = {
 }
 SPIKE = np.array((0.0, 0.0, -40.0, 0.0, 0.0, 0.0))  # [N], [N m] above every limit of a load
 OCCLUDER = 0.25  # [m] distance of what stands before the camera
-SETTLED = 30.0  # [s] after a fault was first felt; 97 of 100 safe stops have come to their end by then (measured)
+SETTLED = 30.0  # [s] after a fault was first felt; 93 of 100 safe stops of the dressing are over by then (measured)
 CLOSED = 0.03  # [m] a hand sent to less than this is taken to hold something
 
 
