@@ -73,11 +73,13 @@ class Felt:
         time: [s].
         pull: (3,) force in the map [N].
         place: (3,) of the hand in the map [m].
+        other: (3,) force on the robot's other hand in the map, which may meet the arm [N].
     """
 
     time: float
     pull: np.ndarray
     place: np.ndarray
+    other: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,10 @@ def notice_motion(skill: Skill, *, tuning: PersonMotionTuning = PERSON_MOTION) -
 
 
 def unexplained_jump(felt: Sequence[Felt], stiffness: float) -> float:
-    """Greatest change of a pull up to its last record, less what the hand's way against that change explains [N].
+    """Greatest change of a pull up to its last record, less what the robot itself has done to it [N].
+
+    That is the hand's way against the change, and what the other hand pressed the arm with meanwhile: it comes back
+    from there as the opposite force.
 
     Args:
         felt: records, oldest first.
@@ -160,8 +165,9 @@ def unexplained_jump(felt: Sequence[Felt], stiffness: float) -> float:
     for before in felt:
         change = last.pull - before.pull
         size = float(np.linalg.norm(change))
-        against = -float((last.place - before.place) @ change) / max(size, 1e-9)
-        greatest = max(greatest, size - stiffness * max(against, 0.0))
+        against = -(last.place - before.place) @ change / max(size, 1e-9)
+        pressed = -(last.other - before.other) @ change / max(size, 1e-9)
+        greatest = max(greatest, size - stiffness * max(float(against), 0.0) - max(float(pressed), 0.0))
     return greatest
 
 
@@ -173,7 +179,8 @@ def _feel(skill: Skill, memory: PersonMotion, tuning: PersonMotionTuning) -> str
         if skill.context.guard.grip(hand) != "arm":
             felt.clear()
             continue
-        felt.append(Felt(observed.time, observed.wrench_hand_in_map[n, :3], observed.pose_hand_in_map[n, :3, 3]))
+        pull, other = observed.wrench_hand_in_map[n, :3], observed.wrench_hand_in_map[1 - n, :3]
+        felt.append(Felt(observed.time, pull, observed.pose_hand_in_map[n, :3, 3], other))
         while felt[0].time < observed.time - tuning.felt_memory:
             felt.popleft()
         jump = unexplained_jump(felt, tuning.stiffness)

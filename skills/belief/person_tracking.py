@@ -80,6 +80,7 @@ class Watch:
         looked: when the camera was last asked [s].
         searched: when that arm was last looked for elsewhere than where it was [s].
         doubted: arms that have moved since, of which nothing is believed until they are seen anew.
+        before: where doubted arms were; their shoulders are still there.
         front: (2,) heights of the chest's front above the mattress, at its highest and on the midline; the lowest that
             were seen, as cloth only adds to them [m].
         view: the head camera's last picture, and when it was asked for [s].
@@ -90,6 +91,7 @@ class Watch:
     looked: float = -np.inf
     searched: dict[Side, float] = field(default_factory=dict)
     doubted: set[Side] = field(default_factory=set)
+    before: dict[Side, ArmPosture] = field(default_factory=dict)
     front: np.ndarray | None = None
     view: tuple[float, Frame] | None = None
 
@@ -116,6 +118,7 @@ def doubt_arms(skill: Skill) -> None:
     """The person has moved: their arms are unknown until each of them is found all over again."""
     watch = watch_of(skill)
     watch.doubted |= watch.arms.keys()
+    watch.before.update(watch.arms)
     for side in watch.arms:
         skill.context.guard.zone.forget(f"{side} arm")
     watch.arms.clear()
@@ -165,6 +168,24 @@ def watch_arm(
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
+
+
+def posture_in_hand(skill: Skill, side: Side, hold: Hold) -> ArmPosture | None:
+    """An arm that a hand holds, by where the hand is, and its shoulder by where it was; None where it was never found.
+
+    Whoever has moved still has the arm between the fingers: a hand that lowers it need not wait until it is found.
+
+    Args:
+        skill: that asks.
+        side: of the person.
+        hold: the hand that holds this arm.
+    """
+    watch = watch_of(skill)
+    known = watch.arms.get(side, watch.before.get(side))
+    if known is None:
+        return None
+    points = turned_about_shoulder(known.points_in_map, hold.coordinate, _held_at(skill, hold))
+    return replace(known, points_in_map=points)
 
 
 def take_from_hand(

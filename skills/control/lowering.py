@@ -14,7 +14,7 @@ from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, HandTwist, SensorLost, Side
-from ..belief.person_tracking import see_person, take_from_hand, watch_arm, watch_of
+from ..belief.person_tracking import posture_in_hand, see_person, take_from_hand, watch_arm, watch_of
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..geometry.arm_path import UP, ArmPath
@@ -94,18 +94,32 @@ def lies(skill: Skill, posture: ArmPosture, below: float = LOWERING.lies_below) 
 
 
 def held_arm(skill: Skill, hand: Side, *, tuning: LoweringTuning = LOWERING) -> tuple[Side, Hold] | None:
-    """The arm that runs between the fingers of a hand; None where neither memory nor a look has one there."""
-    if not watch_of(skill).arms:
+    """The arm that runs between the fingers of a hand; None where neither memory nor a look has one there.
+
+    An arm that the hand was said to hold when its owner moved is still there, found or not.
+    """
+    watch = watch_of(skill)
+    if not watch.arms:
         with suppress(PerceptionFailure, SensorLost, SkillFailure):
             see_person(skill)  # they have moved, and nothing that was known is believed
     place, best = hand_now(skill, hand)[:3, 3], None
-    for side, posture in watch_of(skill).arms.items():
-        path = ArmPath.of(posture)
-        coordinate = float(np.clip(path.coordinate_of(place), 0.0, 3.0))
-        away = float(np.linalg.norm(path.point(coordinate) - place))
+    for side, posture in watch.arms.items():
+        away, coordinate = _along(posture, place)
         if best is None or away < best[0]:
             best = away, side, Hold(hand, coordinate)
-    return best[1:] if best is not None and best[0] < tuning.max_grip_distance else None
+    if best is not None and best[0] < tuning.max_grip_distance:
+        return best[1:]
+    for side, posture in watch.before.items():
+        if side not in watch.arms and skill.context.guard.held_arms().get(hand) == f"{side} arm":
+            return side, Hold(hand, _along(posture, place)[1])
+    return None
+
+
+def _along(posture: ArmPosture, place: np.ndarray) -> tuple[float, float]:
+    """How far an arm's axis is from a place (3,) [m], and the arm coordinate there."""
+    path = ArmPath.of(posture)
+    coordinate = float(np.clip(path.coordinate_of(place), 0.0, 3.0))
+    return float(np.linalg.norm(path.point(coordinate) - place)), coordinate
 
 
 def resting_place(
@@ -142,6 +156,17 @@ def lower_arm(
     Raises:
         SkillFailure: MOTION_BLOCKED when the hand stands too high, TIMEOUT; the arm is still held.
     """
+    try:
+        yield from _lower(skill, hand, held, tuning)
+    except SkillFailure:
+        if held and (posture := posture_in_hand(skill, *held)) is not None:
+            # half way down, and soon let go of: nobody should look for it where it was held up
+            known = watch_of(skill).arms if held[0] in watch_of(skill).arms else watch_of(skill).before
+            known[held[0]] = posture
+        raise
+
+
+def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: LoweringTuning) -> Iterator[None]:
     mattress = float(skill.world.room.bed[1, 2])
     downwards = _about_shoulder(skill, *held, tuning) if held else lambda position: -UP
     end, window = skill.now() + tuning.timeout, deque[tuple[float, float]]()
@@ -152,6 +177,8 @@ def lower_arm(
         at_rest = height < tuning.rest_height or (low and held is not None and _seen_to_lie(skill, *held, tuning))
         if lost_arm(skill, hand):
             return
+        # the bed is stiff: pressed on for as long as a stall takes to be noticed, the guard's limit is passed
+        at_rest |= low and float(load[2]) > tuning.stop_at
         if at_rest or _carried(window, skill.now(), height, load, tuning):
             if held:
                 with suppress(PerceptionFailure, SensorLost, SkillFailure):
@@ -172,7 +199,8 @@ def lower_arm(
 
 def _about_shoulder(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -> Callable[[np.ndarray], np.ndarray]:
     """Unit vector (3,) in which a hand at a position (3,) goes: about the shoulder, to where what it holds rests."""
-    posture = watch_of(skill).arms[side]
+    posture = posture_in_hand(skill, side, hold)
+    assert posture is not None  # of an arm that was never found nobody knows that it is held
     shoulder = posture.points_in_map[0]
     goal = resting_place(skill, side, posture, hold.coordinate, tuning=tuning) - tuning.aim_below * UP - shoulder
 

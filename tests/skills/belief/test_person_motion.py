@@ -128,7 +128,10 @@ def test_a_push_on_the_hand_that_holds_an_arm_is_felt():
 
 def test_a_jump_counts_as_far_as_the_hand_did_not_move_against_it():
     def felt(*rows):
-        return deque(Felt(t, np.array((pull, 0.0, -12.0)), np.array((way, 0.0, 0.0))) for t, pull, way in rows)
+        return deque(
+            Felt(t, np.array((pull, 0.0, -12.0)), np.array((way, 0.0, 0.0)), np.array((other, 0.0, 5.0)))
+            for t, pull, way, other in ((*row, 0.0)[:4] for row in rows)
+        )
 
     pushed = felt((0.0, 2.0, 0.0), (0.07, 14.0, 0.0), (0.13, 30.0, 1e-3))
     assert unexplained_jump(pushed, 20e3) == pytest.approx(28.0)
@@ -136,6 +139,10 @@ def test_a_jump_counts_as_far_as_the_hand_did_not_move_against_it():
     assert unexplained_jump(shaken, 20e3) == pytest.approx(0.0)
     assert unexplained_jump(felt((0.0, 15.0, 0.0), (0.07, 0.0, 0.5e-3)), 20e3) == pytest.approx(5.0)
     assert unexplained_jump(felt((0.0, 3.0, 0.0)), 20e3) == 0.0
+    met = felt((0.0, 2.0, 0.0), (0.07, 30.0, 0.0, -27.0))
+    assert unexplained_jump(met, 20e3) == pytest.approx(1.0), "the other hand has come down on the arm"
+    swung = felt((0.0, 2.0, 0.0), (0.07, 30.0, 0.0, 27.0))
+    assert unexplained_jump(swung, 20e3) == pytest.approx(28.0), "an arm that swings takes both hands along"
 
 
 def test_nothing_is_commanded_once_the_person_has_moved():

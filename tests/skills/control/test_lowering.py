@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.image.cloud import unit
 from caretree.perception.person.arm_fit import turned_about_shoulder
-from caretree.skills.belief.person_tracking import Watch
+from caretree.skills.belief.person_tracking import Watch, doubt_arms, posture_in_hand
 from caretree.skills.control.arm_grip import over_arm
 from caretree.skills.control.lowering import held_arm, lies, resting_place
 from caretree.skills.geometry.arm_path import ArmPath
@@ -72,3 +73,21 @@ def test_the_arm_that_a_hand_holds_is_the_one_between_its_fingers():
     arm, hold = held_arm(asks, "left")
     assert (arm, hold.hand) == ("right", "left")
     assert hold.coordinate == pytest.approx(1.3, abs=0.02)
+
+
+def test_an_arm_whose_owner_has_moved_is_lowered_about_its_shoulder_found_or_not():
+    unseen = PerceptionFailure(Problem.NOTHING_SEEN, "person")
+    hand = over_arm(raised("right"), 1.3, 0.0)
+    asks = skill(hands={"left": hand}, arm=unseen, head=unseen, relocalised_arm=unseen)
+    watch = asks.context.memory.of(Watch, Watch)
+    watch.arms["right"] = raised("right", aside=0.1)
+    doubt_arms(asks)
+    assert held_arm(asks, "left") is None, "nobody said that the hand holds it"
+    asks.context.guard.held_arms = lambda: {"left": "right arm"}
+    arm, hold = held_arm(asks, "left")
+    assert (arm, hold.hand) == ("right", "left")
+    there = posture_in_hand(asks, arm, hold)
+    assert there.points_in_map[0] == pytest.approx(watch.before["right"].points_in_map[0])
+    on_axis = unit(ArmPath.of(there).point(hold.coordinate) - there.points_in_map[0])
+    assert on_axis == pytest.approx(unit(hand[:3, 3] - there.points_in_map[0]), abs=1e-4)
+    assert not watch.arms, "and nothing is believed of it otherwise"

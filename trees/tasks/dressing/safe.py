@@ -42,6 +42,8 @@ def put_down_if_possible(context: Context, side: Side) -> Behaviour:
     def go() -> Navigate:
         return Navigate("go to it", arm, goal=stance(side, "lift"))
 
-    from_beside = RecoverBy(f"safe: to the {side} arm", lower("lifting"), {Reason.UNREACHABLE: go})
+    # from beside it also shows to whoever has closed the fingers on nothing
+    elsewhere = dict.fromkeys((Reason.UNREACHABLE, Reason.GRASP_MISSED, Reason.ARM_SLIPPED), go)
+    from_beside = RecoverBy(f"safe: to the {side} arm", lower("lifting"), elsewhere)
     leave = Retreat("leave it up", arm, hand_distance=0.0, ready="never")
     return fallback(f"safe: {side} arm", lower("pulling"), from_beside, leave)
