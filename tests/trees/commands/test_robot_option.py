@@ -31,6 +31,13 @@ def test_wave_is_proven_for_them_too(capsys):
     assert "wave holds" in capsys.readouterr().out
 
 
+def test_the_dressing_is_proven_for_them_and_succeeds_on_its_scripted_world(capsys):
+    assert main(["check", "dressing", "--robot", "ur5-pair"]) == 0
+    said = capsys.readouterr().out
+    assert "dressing holds" in said
+    assert "on its scripted world it ends" not in said
+
+
 def test_a_robot_with_one_arm_ends_in_one_sentence(tmp_path, monkeypatch, capsys):
     (tmp_path / "one_armed.py").write_text(ONE_ARM)
     monkeypatch.syspath_prepend(tmp_path)
