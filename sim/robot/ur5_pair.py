@@ -3,8 +3,8 @@
 The arms are those of `ur5_robot.urdf` in `example-robot-data`, which has no UR5e.  An arm of six joints reaches a place
 in up to eight ways, and cannot go from one of them to another where it stands; so the joints' ranges leave one of them.
 
-Mount and way were looked for together: of some 20,000 places and turns of the foot and all eight ways, this is, rounded,
-where the hand poses of Baxter's dressing (as its base sees them) are farthest from the arm's singular postures.
+Mount and way were looked for together: of some 20,000 places and turns of the foot and all eight ways, this is about
+the one that keeps the hand poses of Baxter's dressing, in its base's frame, farthest from singular postures.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _COLUMN = 0.10  # its middle, behind the feet of the arms [m]
 
 @dataclass(frozen=True, kw_only=True)
 class Mount:
-    """How the arms are bolted on: at the ends of a beam, high and leaning outwards, so that a hand also works low and near.
+    """How the arms are bolted on: at the ends of a beam, high and leaning outwards, so that hands work low and near.
 
     Attributes:
         place: of the left arm's foot in the base frame; the right one's is its mirror image [m].
