@@ -65,7 +65,7 @@ def compose(mount: Mount = MOUNT) -> str:
     source = ET.parse(description("ur5_robot.urdf")).getroot()
     links = {link.get("name"): link for link in source.findall("link")}
     joints = {joint.get("name"): joint for joint in source.findall("joint")}
-    parts = UrdfParts("caretree_ur5_pair", {})
+    parts = UrdfParts("caretree_ur5_pair")
     parts.planar_base()
     parts.link("torso", 20.0, (0.2, 0.3, 0.8), (0.0, 0.0, -0.4))
     parts.joint("torso_mount", "fixed", "base", "torso", xyz=(mount.place[0] - _COLUMN, 0.0, mount.place[2]))
@@ -166,6 +166,7 @@ UR5_PAIR = RobotModel(
     cameras={camera: f"{camera}_camera" for camera in CAMERAS},
     limits=MotionLimits(
         arm_acceleration=np.full(6, 1.5),
+        motion_torque=np.array((6.0, 6.0, 6.0, 3.0, 3.0, 3.0)),
         head_velocity=_HEAD_VELOCITY,
         head_acceleration=2.0,
         base_velocity=model.BASE_VELOCITY,
@@ -174,6 +175,7 @@ UR5_PAIR = RobotModel(
         hand_acceleration=model.HAND_ACCELERATION,
         sources={
             "arm_acceleration": "choice: the 1.4 rad/s^2 (80 degrees/s^2) that a UR's teach pendant offers, about",
+            "motion_torque": "choice: as Baxter's; these accelerations take 5.5 N m in the median posture",
             "head_velocity": "choice: as Baxter's",
             "head_acceleration": "choice: it starts and stops gently",
             "base_velocity": "datasheet: Ridgeback, 1.1 m/s at most; half of that indoors beside a bed",

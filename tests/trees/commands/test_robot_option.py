@@ -50,7 +50,10 @@ def test_a_robot_with_one_arm_ends_in_one_sentence(tmp_path, monkeypatch, capsys
     ("words", "said"),
     [
         (["--robot", "atlas", "--world", "scripted"], "unknown robot 'atlas'; there are baxter, ur5-pair"),
-        (["--robot", "ur5-pair", "--world", "bullet"], "--robot ur5-pair needs the scripted world"),
+        (
+            ["--robot", "ur5-pair", "--world", "ros1"],
+            "--robot ur5-pair needs one of bullet, scripted: ros1 brings its own",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused(words, said, capsys, tmp_path, monkeypatch):
