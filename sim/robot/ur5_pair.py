@@ -53,8 +53,9 @@ def mirrored(angles: np.ndarray) -> np.ndarray:
 
 MOUNT = Mount()
 # Of the right arm [rad]: its elbow stays outside and bent one way, its wrist too.  A choice, as integrators set them:
-# what a dressing takes and 0.3 or more beyond, but where elbow or wrist would stretch.
-_RIGHT = np.array(((-5.0, -1.8), (-4.4, -1.2), (-2.8, -0.05), (-2.4, 2.6), (0.05, 3.09), (-6.28, -0.7)))
+# what a dressing takes and 0.3 or more beyond, but where elbow or wrist would stretch.  With the shoulder's lift only
+# up to -1.2 no hand could hold a sleeve out before an arm that is 0.4 m up, as arms in the bullet world are.
+_RIGHT = np.array(((-4.8, -2.0), (-4.4, -0.1), (-2.9, -0.05), (-2.6, 2.6), (0.05, 3.09), (-6.28, -0.3)))
 RANGES = {"left": np.sort(mirrored(_RIGHT.T).T, axis=1), "right": _RIGHT}
 HEAD_IN_BASE = np.array((0.10, 0.0, 1.54))  # as high as Baxter's, above the column
 _HEAD_VELOCITY = 1.0  # [rad/s]
