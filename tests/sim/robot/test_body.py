@@ -154,7 +154,7 @@ def test_a_hand_that_something_holds_back_presses_with_what_the_motors_may_do_an
     p.removeConstraint(fixed)
     lead = np.abs(rig.robot.servo.positions[:-1].reshape(2, -1)[n] - rig.robot.read().arm_positions[n]).max()
     rig.run(0.5)
-    # a UR5's hand presses with 174 N: joints are bounded each by its own lever, and six share less evenly than seven
+    # a UR5's hand presses with 174 N: motors are bounded joint by joint, which does not bound every hand alike
     most, way = {"baxter": (100.0, 0.08), "ur5-pair": (200.0, 0.10)}[rig.model.name]  # [N], [m] of 0.3 commanded
     assert 10.0 < force < most
     assert lead < 0.08  # [rad]
