@@ -82,7 +82,7 @@ def _robot_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--robot",
         metavar="NAME",
-        help=f"{ROBOTS}, or package.module:NAME of a RobotModel; of the scripted world (default: baxter)",
+        help=f"{ROBOTS}, or package.module:NAME of a RobotModel; bullet and scripted world only (default: baxter)",
     )
 
 

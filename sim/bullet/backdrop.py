@@ -12,7 +12,7 @@ from ..render.appearance import Appearance, gown_colours
 from ..render.camera import Renderer
 from ..render.diorama import Diorama, Furniture, along
 from ..render.solids import box_mesh, capsule_mesh, cylinder_mesh, sphere_mesh
-from ..robot.visual import visual_meshes
+from ..robot.visual import meshes_of
 from ..scene.person_spec import ARM_SEGMENTS, Capsule
 from ..scene.scene import BED_HALF, BED_THICKNESS, BED_TOP, RAIL_HEIGHT, Scene
 
@@ -53,10 +53,11 @@ class Backdrop:
         self._colours = look.colours
         self._room(scene)
         self._body(scene)
-        for name, (vertices, faces, rgb) in visual_meshes().items():
+        meshes = meshes_of(kinematics.robot)
+        for name, (vertices, faces, rgb) in meshes.items():
             colour = 255.0 * np.asarray(rgb) * look.tint
             self.renderer.add_rigid(f"robot_{name}", vertices, faces, colour)
-        self._links = list(visual_meshes())
+        self._links = list(meshes)
         self.renderer.set_cloth(scene.mesh.vertices, scene.mesh.faces, *gown_colours(scene.mesh, look))
         furniture = Furniture(bed_xy=scene.bed_xy, bed_top=BED_TOP, rail=(*scene.rail_xy, RAIL_HEIGHT))
         lengths = np.tile(scene.person.arm_lengths, (2, 1))

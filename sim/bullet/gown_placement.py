@@ -7,9 +7,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.optimize import least_squares
 
+from ..mechanics.kinematics import Kinematics, kinematics_of
+from ..robot.baxter import BAXTER
 from ..scene.gown import GownMesh
 from ..scene.person_spec import ARM_AXES, JOINT_LIMITS
-from ..world import SIDES, Side
+from ..world import SIDES, Side, WorldError
 from .cloth import ClothBody
 from .grip import Grip
 from .handle import Handle
@@ -25,6 +27,7 @@ _FORCE = 30.0  # of the fingers [N]
 # Arms that hold a neckline before the chest: hands 0.62 m ahead, 0.74 m apart and 1.36 m high [rad]
 _ARM = np.array((1.67, -0.10, -2.02, 2.60, 0.40, 0.18, -0.30))
 HOLDING = np.stack((_ARM, _ARM * (-1, 1, -1, 1, -1, 1, -1)))
+_AT = 0.01  # such hands are where they should be, in position and each axis' end [m]
 HOLDING_AT = (2.7, -0.9, np.pi / 2)  # of the base, back from the rail [m, m, rad]
 RAISED = (0.85, 0.58, -1.3, 0.25)  # joints of an arm that was lifted, dressed and let go of [rad]
 _RANGE = tuple(zip(*(JOINT_LIMITS[axis] for axis in ARM_AXES), strict=True))  # least and greatest angles [rad]
@@ -36,6 +39,31 @@ _OVER = np.array(((-0.04, -0.10, 0.10), (-0.08, -0.15, 0.10)))  # where a strap 
 # from there it is laid down behind it, as a nurse leaves it
 _BEHIND = 0.12  # by which it is then lowered [m]
 _LOWERING = 1.2  # of the arms [s]
+
+
+def holding(kinematics: Kinematics) -> np.ndarray:
+    """(2, n) angles of arms that hold a neckline before the chest, the hands where Baxter's are [rad].
+
+    Raises:
+        WorldError: this robot's hands do not reach there.
+    """
+    if kinematics.robot is BAXTER:
+        return HOLDING
+    found = np.empty_like(kinematics.robot.ready)
+    for n, side in enumerate(SIDES):
+        goal = kinematics_of(BAXTER).pose_hand_in_base(side, HOLDING[n])
+
+        def left(q: np.ndarray, side: Side = side, goal: np.ndarray = goal) -> np.ndarray:
+            return (kinematics.pose_hand_in_base(side, q) - goal)[:3].ravel()
+
+        limits = kinematics.limits[side]
+        best = least_squares(left, kinematics.robot.ready[n], bounds=(limits.lower, limits.upper))
+        if np.abs(best.fun).max() > _AT:
+            raise WorldError(
+                f"{kinematics.robot.name} cannot begin with the gown in its hands: the {side} one does not reach"
+            )
+        found[n] = best.x
+    return found
 
 
 def lay_by_hand(cloth: ClothBody, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:

@@ -22,7 +22,6 @@ from ..mechanics.kinematics import Kinematics
 from ..record.measured import Measured
 from ..record.recorded_stretch import Stretch
 from ..robot.body import JointReading
-from ..robot.model import READY
 from ..world import SIDES, Command
 from .gown_placement import put_arms
 from .grip import Grip
@@ -107,7 +106,7 @@ class ReplayWorld(BulletWorld):
     def _stand(self, pose_base_in_map: tuple[float, float, float], **posture: Any) -> Any:
         """In the place of a robot: one that is led."""
         reading = replace(
-            self._places.at(self._start), arm_positions=READY, pose_base_in_map=np.array(pose_base_in_map)
+            self._places.at(self._start), arm_positions=self.robot.ready, pose_base_in_map=np.array(pose_base_in_map)
         )
         self._led = _LedRobot(self.kinematics, reading)
         return self._led

@@ -18,9 +18,17 @@ class ThinkingTime:
         seed: of the run.
         kind: of the world.
         sizes: what a thought costs.
+        head_joint: that moves at once.
     """
 
-    def __init__(self, seed: int, kind: WorldKind, sizes: difficulties.ThinkingTime = SIZES.thinking_time) -> None:
+    def __init__(
+        self,
+        seed: int,
+        kind: WorldKind,
+        sizes: difficulties.ThinkingTime = SIZES.thinking_time,
+        head_joint: str = HEAD_JOINT,
+    ) -> None:
+        self._head_joint = head_joint
         self._rng = stream(seed, "thinking_time") if kind.has("thinking_time") else None
         self._sizes, self._owed = sizes, 0.0
 
@@ -31,7 +39,7 @@ class ThinkingTime:
 
     def decided(self, command: Command) -> None:
         """A command has been thought of: a motion of arms has been planned, all else is a matter of the moment."""
-        if self._rng and isinstance(command, JointTrajectory) and command.joints != (HEAD_JOINT,):
+        if self._rng and isinstance(command, JointTrajectory) and command.joints != (self._head_joint,):
             self._owed += self._rng.uniform(*self._sizes.plan)
 
     def spend(self) -> float:

@@ -26,6 +26,7 @@ from ..effects.model_file import EffectModel, load_model
 from ..errors import CaretreeError
 from ..mechanics.capsules import RobotCapsules
 from ..mechanics.kinematics import kinematics_of
+from ..mechanics.robot_model import RobotModel
 from ..record.recorded_state import RecordedState
 from ..record.recorder import Recorder
 from ..record.truth import TruthFrame
@@ -50,7 +51,7 @@ from .contact import Contact
 from .engines import BULLET, engine_named
 from .fingers import Fingers
 from .furniture import add_furniture
-from .gown_placement import HOLDING, HOLDING_AT, dress_by_hand, hold_in_hands, lay_by_hand, put_arms, put_on_by_hand
+from .gown_placement import HOLDING_AT, dress_by_hand, hold_in_hands, holding, lay_by_hand, put_arms, put_on_by_hand
 from .grip import Grip
 from .handle import Handle
 from .hook import Hook
@@ -81,6 +82,7 @@ class BulletWorld(World):
         kind: how hard the world is made, see `sim/world_kind.py`.
         look: of gown, person and room, see `sim/render/looks.py`.
         engine: what moves the cloth, see `engines.py`.
+        robot: that stands in the room; Baxter by default.
 
     Attributes:
         scene: what was drawn; truth, not for skills.
@@ -106,6 +108,7 @@ class BulletWorld(World):
         kind: str = EASY,
         look: str = TAPED,
         engine: str = BULLET,
+        robot: RobotModel = BAXTER,
     ) -> None:
         self._engine = engine_named(engine)
         if model is not None and not self._engine.soft_bodies:
@@ -118,12 +121,12 @@ class BulletWorld(World):
         self.room = room_map()
         self.time = SteppedClock(self._advance_to)
         self.clock = self.time
-        self.robot = BAXTER
-        self.kinematics = kinematics_of(BAXTER)
+        self.robot = robot
+        self.kinematics = kinematics_of(robot)
         self.stopwatch = Stopwatch()
         self._noise = np.random.default_rng([seed, 2])
-        self._errors = SensorErrors(seed, self.scene.kind, bias=bias)
-        self._thinking = ThinkingTime(seed, self.scene.kind)
+        self._errors = SensorErrors(seed, self.scene.kind, bias=bias, joints=robot.commanded_joints)
+        self._thinking = ThinkingTime(seed, self.scene.kind, head_joint=robot.head_joint)
         self._steps = 0
         self._asleep = False
         self._moving_person: list[float] = []
@@ -234,7 +237,7 @@ class BulletWorld(World):
             return
         self._take_off_hook()
         if state == InitialState.GOWN_IN_HANDS:
-            self._robot = self._stand(HOLDING_AT, arm_positions=HOLDING, gripper_opening=0.0)
+            self._robot = self._stand(HOLDING_AT, arm_positions=holding(self.kinematics), gripper_opening=0.0)
             self._hands = self._robot.poses_hands_in_map()
             hold_in_hands(self._cloth, self._grips, self._hands, self._soft.step, TIME_STEP)
         else:
@@ -343,7 +346,7 @@ class BulletWorld(World):
         return self._fingers.obey(command, self._robot)
 
     def send_joint_velocities(self, side: Side, velocities: np.ndarray, duration: float) -> None:
-        """Move an arm joint by joint (7,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
+        """Move an arm joint by joint (n,) [rad/s] for `duration` [s]: for drivers, no part of the contract."""
         self._advance_to(self.time.time)
         self._robot.move_joints(side, velocities, duration)
 

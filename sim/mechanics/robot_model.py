@@ -30,6 +30,8 @@ class MotionLimits:
 
     Attributes:
         arm_acceleration: (n,) of an arm's joints [rad/s^2].
+        motion_torque: (n,) that a simulated motor may take for its own motion, beside carrying its arm and what the
+            hand presses with [N m].
         head_velocity: [rad/s].
         head_acceleration: [rad/s^2].
         base_velocity: along the floor and turning [m/s, rad/s].
@@ -40,6 +42,7 @@ class MotionLimits:
     """
 
     arm_acceleration: np.ndarray
+    motion_torque: np.ndarray
     head_velocity: float
     head_acceleration: float
     base_velocity: np.ndarray
@@ -122,9 +125,9 @@ class RobotModel:
             if np.shape(getattr(self, what)) != (2, count):
                 shape = np.shape(getattr(self, what))
                 raise RobotError(f"the posture {what} of {self.name} has shape {shape}, but {(2, count)} is asked for")
-        if np.shape(self.limits.arm_acceleration) != (count,):
-            shape = np.shape(self.limits.arm_acceleration)
-            raise RobotError(f"arm_acceleration of {self.name} has shape {shape}, but {(count,)} is asked for")
+        for what in ("arm_acceleration", "motion_torque"):
+            if (shape := np.shape(getattr(self.limits, what))) != (count,):
+                raise RobotError(f"{what} of {self.name} has shape {shape}, but {(count,)} is asked for")
 
     @property
     def dof(self) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import RecordError
+from ..known_robots import DEFAULT
 from ..scene.person_spec import ARM_SEGMENTS, arm_part
 from ..scene.scene import Scene, draw_scene
 from ..world import SIDES, Side
@@ -169,5 +170,7 @@ def _scene(directory: Path) -> tuple[Scene, str | None, str | None]:
         raise RecordError(f"{directory / RUN_FILE} is damaged: it has no seed or no parameters")
     if run.get("world") != "bullet":
         raise RecordError(f"{directory} was run on {run.get('world')!r}, only records of the bullet world can be used")
+    if (robot := given.get("robot") or DEFAULT) != DEFAULT:
+        raise RecordError(f"{directory} is of the robot {robot}, only records of {DEFAULT} can be used")
     gown, person = given.get("gown"), given.get("person")
     return draw_scene(seed, gown, person, WorldKind.named(given.get("world_kind", EASY))), gown, person

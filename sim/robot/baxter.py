@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from ..mechanics.robot_model import MotionLimits, RobotModel
@@ -20,7 +18,7 @@ RIGHT_HELD_UP = np.array((0.284, -1.137, 1.275, 0.913, -0.47, 2.046, 0.517))
 
 BAXTER = RobotModel(
     name="baxter",
-    urdf=partial(compose, collisions=False),
+    urdf=compose,
     arm_joints=model.ARM_JOINTS,
     ready=model.READY,
     held_up=np.array((MIRROR * RIGHT_HELD_UP, RIGHT_HELD_UP)),
@@ -33,6 +31,7 @@ BAXTER = RobotModel(
     cameras={camera: f"{camera}_camera" for camera in CAMERAS},
     limits=MotionLimits(
         arm_acceleration=model.ARM_ACCELERATION,
+        motion_torque=np.array((6.0, 6.0, 6.0, 6.0, 3.0, 3.0, 3.0)),
         head_velocity=model.HEAD_VELOCITY,
         head_acceleration=model.HEAD_ACCELERATION,
         base_velocity=model.BASE_VELOCITY,
@@ -41,6 +40,7 @@ BAXTER = RobotModel(
         hand_acceleration=model.HAND_ACCELERATION,
         sources={
             "arm_acceleration": "baxter_moveit_config plans with 1.0 rad/s^2; a test holds these against rated torque",
+            "motion_torque": "choice: what these accelerations take in the median posture, and some more",
             "head_velocity": "choice: the URDF's 10000 rad/s is a placeholder",
             "head_acceleration": "choice: it starts and stops gently",
             "base_velocity": "datasheet: Ridgeback, 1.1 m/s at most; half of that indoors beside a bed",

@@ -11,7 +11,6 @@ from ..bullet_client import pybullet
 from ..mechanics.kinematics import Kinematics, kinematics_of
 from ..mechanics.servo import PERIOD, Servo
 from ..world import SIDES, Command, Side
-from . import model
 from .baxter import BAXTER
 from .urdf import urdf_path
 
@@ -20,11 +19,11 @@ from .urdf import urdf_path
 _NO_GROUP = 0
 
 # What a motor may do beside carrying its arm, which Baxter does with springs on s1 and gravity compensation: what the
-# hand may press with, at the joint's lever, and what its own motion takes.  That bounds what a hand that meets a person
-# does, whatever is commanded; the guard stops a hand that carries an arm at a peak of 45 N.
+# hand may press with, at the joint's lever, and what its own motion takes, at most what the URDF rates it at.  That
+# bounds what a hand that meets a person does, whatever is commanded; the guard stops a hand that carries an arm at a
+# peak of 45 N.
 _HAND_FORCE = 45.0  # [N]
-_MOTION_TORQUE = np.array((6.0, 6.0, 6.0, 6.0, 3.0, 3.0, 3.0))  # [N m]
-_MAX_TORQUE = np.array((50.0, 50.0, 50.0, 50.0, 15.0, 15.0, 15.0))  # rated [N m]
+_HEAD_TORQUE = 50.0  # [N m]
 _BASE_FORCE = np.array((5000.0, 5000.0, 5000.0))
 _POSITION_GAIN = 0.3  # share of a position error taken out per physics step, beside the velocity feed-forward
 _CLOSED = 2e-3  # below this opening the fingertips touch [m]
@@ -35,9 +34,9 @@ class JointReading:
     """What the joint sensors say.
 
     Attributes:
-        arm_positions: (2, 7) [rad].
-        arm_velocities: (2, 7) [rad/s].
-        motor_torques: (2, 7) of the arms, beside what carries them (`RobotBody.efforts`) [N m].
+        arm_positions: (2, n) [rad].
+        arm_velocities: (2, n) [rad/s].
+        motor_torques: (2, n) of the arms, beside what carries them (`RobotBody.efforts`) [N m].
         head_pan: [rad].
         pose_base_in_map: (3,) [m, m, rad], yaw within -pi and pi.
         twist_base: (3,) in the base frame [m/s, m/s, rad/s].
@@ -67,12 +66,12 @@ class RobotBody:
     Args:
         client: a `pybullet_utils.bullet_client.BulletClient`, or the `pybullet` module itself.
         pose_base_in_map: (3,) where the base stands [m, m, rad].
-        arm_positions: (2, 7) posture to start in [rad]; the ready posture when omitted.
+        arm_positions: (2, n) posture to start in [rad]; the ready posture when omitted.
         head_pan: [rad].
-        gripper_opening: of both hands [m].
+        gripper_opening: of both hands; wide when omitted [m].
         collision_mask: PyBullet group bits that hands and arms collide with.
         time: the world's clock now [s].
-        kinematics: the model to use; one per process when omitted.
+        kinematics: of the robot; Baxter's when omitted.
 
     Attributes:
         body: PyBullet's id of the robot.
@@ -87,30 +86,35 @@ class RobotBody:
         arm_positions: np.ndarray | None = None,
         head_pan: float = 0.0,
         *,
-        gripper_opening: float = model.GRIPPER_STROKE,
+        gripper_opening: float | None = None,
         collision_mask: int = 0,
         time: float = 0.0,
         kinematics: Kinematics | None = None,
     ) -> None:
         self._client = client
         self.kinematics = kinematics or kinematics_of(BAXTER)
-        arms = model.READY if arm_positions is None else np.asarray(arm_positions, float)
+        self._robot = robot = self.kinematics.robot
+        arms = robot.ready if arm_positions is None else np.asarray(arm_positions, float)
+        opening = robot.gripper.stroke if gripper_opening is None else gripper_opening
         self.servo = Servo(self.kinematics, pose_base_in_map, arms, head_pan, time)
-        self.servo.gripper_opening = np.full(2, gripper_opening)
-        self.body: int = client.loadURDF(str(urdf_path()), useFixedBase=True)
+        self.servo.gripper_opening = np.full(2, opening)
+        self.body: int = client.loadURDF(str(urdf_path(robot)), useFixedBase=True)
         joint_of: dict[str, int] = {}
         self.links: dict[str, int] = {"map": -1}
         for index in range(client.getNumJoints(self.body)):
             info = client.getJointInfo(self.body, index)
             joint_of[info[1].decode()] = index
             self.links[info[12].decode()] = index
-        names = (*model.BASE_JOINTS, *model.COMMANDED_JOINTS, *model.ALL_FINGER_JOINTS)
+        fingers = (joint for side in SIDES for joint in robot.fingers[side])
+        names = (*robot.base_joints, *robot.commanded_joints, *fingers)
         self._joints = [joint_of[name] for name in names]
         self._count = len(names)
         self._gains = [_POSITION_GAIN] * self._count
         self._velocity_gains = [1.0] * self._count
-        self._forces = np.concatenate((_BASE_FORCE, _MAX_TORQUE, _MAX_TORQUE, (50.0,), np.zeros(4)))
-        self._fingers = np.full(4, gripper_opening / 2)
+        self._arms = slice(3, 3 + 2 * robot.dof)  # of those; head and fingers come after them
+        self._rated = np.array([self.kinematics.limits[side].effort for side in SIDES])
+        self._forces = np.concatenate((_BASE_FORCE, self._rated.ravel(), (_HEAD_TORQUE,), np.zeros(4)))
+        self._fingers = np.full(4, opening / 2)
         self._next_update = -np.inf
         start = self._targets()[0]
         for joint, value in zip(self._joints, start, strict=True):
@@ -137,7 +141,7 @@ class RobotBody:
         return self.servo.command(command)
 
     def move_joints(self, side: Side, velocities: np.ndarray, duration: float) -> None:
-        """Move an arm's joints (7,) [rad/s] for `duration` [s] (see `Servo.move_joints`)."""
+        """Move an arm's joints (n,) [rad/s] for `duration` [s] (see `Servo.move_joints`)."""
         self.servo.move_joints(side, velocities, duration)
 
     def stop(self) -> None:
@@ -147,9 +151,9 @@ class RobotBody:
     def update(self, time: float) -> None:
         """Set the motors for the physics step that starts at `time` [s]; cheap between control periods."""
         if time + 1e-9 >= self._next_update:
-            states = self._client.getJointStates(self.body, self._joints[3:17])
+            states = self._client.getJointStates(self.body, self._joints[self._arms])
             arms = np.array([state[0] for state in states])
-            self._forces[3:17] = self._torque_limits(arms.reshape(2, 7)).ravel()
+            self._forces[self._arms] = self._torque_limits(arms.reshape(2, -1)).ravel()
             self.servo.keep_near(arms)
             self.servo.advance(time + PERIOD)
             self._next_update = time + PERIOD
@@ -164,7 +168,8 @@ class RobotBody:
         c, s = np.cos(yaw), np.sin(yaw)
         opening, squeeze = np.empty(2), np.empty(2)
         told, limit = self.servo.gripper_opening, self.servo.gripper_force_limit
-        for n, (one, other) in enumerate(((18, 19), (20, 21))):
+        for n, one in enumerate((-4, -2)):
+            other = one + 1
             opening[n] = apart = columns[0][one] + columns[0][other]
             # Each finger's motor pushes towards closed with minus its force.
             squeeze[n] = max(0.0, (columns[3][one] + columns[3][other]) / -2.0)
@@ -172,10 +177,10 @@ class RobotBody:
             if apart < _CLOSED and told[n] < _CLOSED:
                 squeeze[n] = limit[n]
         return JointReading(
-            arm_positions=q[3:17].reshape(2, 7),
-            arm_velocities=dq[3:17].reshape(2, 7),
-            motor_torques=torque[3:17].reshape(2, 7),
-            head_pan=float(q[17]),
+            arm_positions=q[self._arms].reshape(2, -1),
+            arm_velocities=dq[self._arms].reshape(2, -1),
+            motor_torques=torque[self._arms].reshape(2, -1),
+            head_pan=float(q[self._arms.stop]),
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
             gripper_opening=opening,
@@ -183,7 +188,7 @@ class RobotBody:
         )
 
     def efforts(self, reading: JointReading) -> np.ndarray:
-        """(2, 7) torque of the arms' motors, gravity included, where the joints are as in `reading` [N m]."""
+        """(2, n) torque of the arms' motors, gravity included, where the joints are as in `reading` [N m]."""
         return reading.motor_torques + self.kinematics.gravity_torque(self.configuration(reading))
 
     def poses_hands_in_map(self, reading: JointReading | None = None) -> np.ndarray:
@@ -217,13 +222,13 @@ class RobotBody:
         )
 
     def _torque_limits(self, arms: np.ndarray) -> np.ndarray:
-        """(2, 7) what each motor may do in a posture (2, 7), beside carrying the arm [N m]."""
+        """(2, n) what each motor may do in a posture (2, n), beside carrying the arm [N m]."""
         moved = [self.kinematics.jacobian_hand_in_base(side, q)[:3] for side, q in zip(SIDES, arms, strict=True)]
         levers = np.sqrt(np.array([np.add.reduce(each * each, axis=0) for each in moved]))
-        return np.minimum(_MAX_TORQUE, _HAND_FORCE * levers + _MOTION_TORQUE)
+        return np.minimum(self._rated, _HAND_FORCE * levers + self._robot.limits.motion_torque)
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
-        """Motor targets (22,) and their rates, at the middle of the coming control period."""
+        """Motor targets of all joints and their rates, at the middle of the coming control period."""
         servo = self.servo
         c, s = np.cos(servo.pose_base_in_map[2]), np.sin(servo.pose_base_in_map[2])
         vx, vy, rate = servo.twist_base
@@ -234,9 +239,9 @@ class RobotBody:
 
     def _drive(self) -> None:
         aim = np.repeat(self.servo.gripper_opening / 2, 2)
-        step = model.GRIPPER_SPEED / 2 * PERIOD
+        step = self._robot.gripper.speed / 2 * PERIOD
         self._fingers = self._fingers + np.minimum(np.maximum(aim - self._fingers, -step), step)
-        self._forces[18:22] = np.repeat(self.servo.gripper_force_limit, 2)
+        self._forces[-4:] = np.repeat(self.servo.gripper_force_limit, 2)
         positions, velocities = self._targets()
         self._client.setJointMotorControlArray(
             self.body,

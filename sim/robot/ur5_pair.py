@@ -2,6 +2,9 @@
 
 The arms are those of `ur5_robot.urdf` in `example-robot-data`, which has no UR5e.  An arm of six joints reaches a place
 in up to eight ways, and cannot go from one of them to another where it stands; so the joints' ranges leave one of them.
+
+Mount and way were looked for together: of some 20,000 places and turns of the foot and all eight ways, this is about
+the one that keeps the hand poses of Baxter's dressing, in its base's frame, farthest from singular postures.
 """
 
 from __future__ import annotations
@@ -27,19 +30,20 @@ LIMBS = ("upper_arm_link", "forearm_link", "wrist_1_link", "wrist_2_link", "wris
 _DISTAL, _HAND = LIMBS[1:], LIMBS[3:]  # these can meet the robot's own body, and those their own upper arm
 _FIXED = ("torso", "base", "head")
 _ACROSS = (np.pi / 2, 0.0, 0.0)  # along the link's y axis
+_COLUMN = 0.10  # its middle, behind the feet of the arms [m]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mount:
-    """How the arms are bolted on.
+    """How the arms are bolted on: at the ends of a beam, high and leaning outwards, so that hands work low and near.
 
     Attributes:
         place: of the left arm's foot in the base frame; the right one's is its mirror image [m].
         tilt: of its first axis, outwards from the vertical [rad].
     """
 
-    place: tuple[float, float, float] = (0.30, 0.25, 1.00)
-    tilt: float = float(np.deg2rad(30.0))
+    place: tuple[float, float, float] = (0.10, 0.33, 1.20)
+    tilt: float = float(np.deg2rad(50.0))
 
 
 def mirrored(angles: np.ndarray) -> np.ndarray:
@@ -48,8 +52,10 @@ def mirrored(angles: np.ndarray) -> np.ndarray:
 
 
 MOUNT = Mount()
-# Of the right arm [rad]: its elbow stays above and bent one way, its wrist too.  A choice, as integrators set them.
-_RIGHT = np.array(((-2.8, 0.9), (-3.1, 0.3), (0.05, 2.8), (-2.6, 3.3), (0.05, 3.09), (-5.2, 1.0)))
+# Of the right arm [rad]: its elbow stays outside and bent one way, its wrist too.  A choice, as integrators set them:
+# what a dressing takes and 0.3 or more beyond, but where elbow or wrist would stretch.  With the shoulder's lift only
+# up to -1.2 no hand could hold a sleeve out before an arm that is 0.4 m up, as arms in the bullet world are.
+_RIGHT = np.array(((-4.8, -2.0), (-4.4, -0.1), (-2.9, -0.05), (-2.6, 2.6), (0.05, 3.09), (-6.28, -0.3)))
 RANGES = {"left": np.sort(mirrored(_RIGHT.T).T, axis=1), "right": _RIGHT}
 HEAD_IN_BASE = np.array((0.10, 0.0, 1.54))  # as high as Baxter's, above the column
 _HEAD_VELOCITY = 1.0  # [rad/s]
@@ -60,10 +66,10 @@ def compose(mount: Mount = MOUNT) -> str:
     source = ET.parse(description("ur5_robot.urdf")).getroot()
     links = {link.get("name"): link for link in source.findall("link")}
     joints = {joint.get("name"): joint for joint in source.findall("joint")}
-    parts = UrdfParts("caretree_ur5_pair", {})
+    parts = UrdfParts("caretree_ur5_pair")
     parts.planar_base()
     parts.link("torso", 20.0, (0.2, 0.3, 0.8), (0.0, 0.0, -0.4))
-    parts.joint("torso_mount", "fixed", "base", "torso", xyz=(mount.place[0] - 0.1, 0.0, mount.place[2]))
+    parts.joint("torso_mount", "fixed", "base", "torso", xyz=(mount.place[0] - _COLUMN, 0.0, mount.place[2]))
     parts.link("head", 1.0)
     limit = (-np.pi / 2, np.pi / 2, 50.0, _HEAD_VELOCITY)
     parts.joint("head_pan", "revolute", "base", "head", xyz=HEAD_IN_BASE, axis="0 0 1", limit=limit)
@@ -88,10 +94,13 @@ def compose(mount: Mount = MOUNT) -> str:
 
 def shapes() -> dict[str, tuple[Shape, ...]]:
     """Collision shapes of every link that has some: the arm's tubes as capsules."""
-    column = MOUNT.place[2] + 0.05 - model.BASE_SIZE[2]
+    column, foot = MOUNT.place[2] + 0.05 - model.BASE_SIZE[2], MOUNT.place[1]
     found: dict[str, tuple[Shape, ...]] = {
         "base": base_box(),
-        "torso": (Shape(kind="box", size=(0.16, 0.16, column), xyz=(0.0, 0.0, 0.05 - column / 2), rgb=STEEL),),
+        "torso": (
+            Shape(kind="box", size=(0.16, 0.16, column), xyz=(0.0, 0.0, 0.05 - column / 2), rgb=STEEL),
+            Shape(kind="box", size=(0.10, 2 * foot - 0.06, 0.10), xyz=(_COLUMN, 0.0, -0.05), rgb=STEEL),
+        ),
         "head": (Shape(kind="capsule", size=(0.06, 0.04), xyz=(0.12, 0.0, 0.08), rgb=BLACK),),
     }
     arm = {
@@ -115,6 +124,7 @@ def own_pairs() -> tuple[tuple[str, str], ...]:
     for side in SIDES:
         other = SIDES[1 - SIDES.index(side)]
         pairs += [(f"{side}_{a}", b) for a in _DISTAL for b in _FIXED]
+        pairs += [(f"{side}_upper_arm_link", b) for b in ("torso", "head")]
         pairs += [(f"{side}_{a}", f"{other}_shoulder_link") for a in _DISTAL]
         pairs += [(f"{side}_{a}", f"{side}_{b}") for a in _HAND for b in ("shoulder_link", "upper_arm_link")]
     return tuple(pairs)
@@ -136,10 +146,9 @@ def capsules() -> tuple[LinkCapsule, ...]:
     return (*found, of_capsule("head", "head", made["head"][0]))
 
 
-# Hands where Baxter's are in the same postures; of the ways to reach that, those with the most room to the limits that
-# touch nothing.  Left and right are mirror images.
-_RIGHT_READY = np.array((-0.652, -1.413, 1.842, 0.911, 1.721, -1.932))
-_RIGHT_HELD_UP = np.array((0.541, -0.992, 1.082, 1.770, 2.014, -0.964))
+# Hands where Baxter's are in the same postures, the one way to reach that.  Left and right are mirror images.
+_RIGHT_READY = np.array((-3.121, -2.069, -2.016, -0.533, 0.962, -4.429))
+_RIGHT_HELD_UP = np.array((-2.408, -2.397, -1.350, -1.639, 0.965, -3.761))
 READY = np.array((mirrored(_RIGHT_READY), _RIGHT_READY))
 HELD_UP = np.array((mirrored(_RIGHT_HELD_UP), _RIGHT_HELD_UP))
 
@@ -158,6 +167,7 @@ UR5_PAIR = RobotModel(
     cameras={camera: f"{camera}_camera" for camera in CAMERAS},
     limits=MotionLimits(
         arm_acceleration=np.full(6, 1.5),
+        motion_torque=np.array((6.0, 6.0, 6.0, 3.0, 3.0, 3.0)),
         head_velocity=_HEAD_VELOCITY,
         head_acceleration=2.0,
         base_velocity=model.BASE_VELOCITY,
@@ -166,6 +176,7 @@ UR5_PAIR = RobotModel(
         hand_acceleration=model.HAND_ACCELERATION,
         sources={
             "arm_acceleration": "choice: the 1.4 rad/s^2 (80 degrees/s^2) that a UR's teach pendant offers, about",
+            "motion_torque": "choice: as Baxter's; these accelerations take 5.5 N m in the median posture",
             "head_velocity": "choice: as Baxter's",
             "head_acceleration": "choice: it starts and stops gently",
             "base_velocity": "datasheet: Ridgeback, 1.1 m/s at most; half of that indoors beside a bed",

@@ -9,10 +9,10 @@ import xml.etree.ElementTree as ET
 from functools import lru_cache
 from pathlib import Path
 
+from ..mechanics.robot_model import RobotModel
 from ..world import SIDES
 from . import model
-from .shapes import collision_shapes
-from .urdf_parts import UrdfParts, description
+from .urdf_parts import UrdfParts, description, with_collisions
 
 _ARM_LINKS = (
     "arm_mount",
@@ -33,16 +33,12 @@ def baxter_folder() -> Path:
     return description("baxter.urdf").parent.parent
 
 
-def compose(*, collisions: bool = True) -> str:
-    """The whole robot as URDF text, without visual meshes (`visual.py` has them).
-
-    Args:
-        collisions: with collision shapes, as PyBullet wants it; pinocchio's parser knows no capsules.
-    """
+def compose() -> str:
+    """The whole robot as URDF text, without visual meshes (`visual.py` has them) and without shapes."""
     source = ET.parse(baxter_folder() / "urdf" / "baxter.urdf").getroot()
     links = {link.get("name"): link for link in source.findall("link")}
     joints = {joint.get("name"): joint for joint in source.findall("joint")}
-    parts = UrdfParts("caretree_baxter", collision_shapes() if collisions else {})
+    parts = UrdfParts("caretree_baxter")
     robot = parts.robot
     parts.planar_base()
     parts.given_link("torso", links["torso"])
@@ -64,9 +60,9 @@ def compose(*, collisions: bool = True) -> str:
 
 
 @lru_cache
-def urdf_path() -> Path:
-    """Write the composed URDF once into the user's cache folder and return its path."""
-    text = compose()
+def urdf_path(robot: RobotModel) -> Path:
+    """Write a robot's URDF with its shapes once into the user's cache folder and return its path."""
+    text = with_collisions(robot.urdf(), robot.shapes)
     path = cache_folder() / f"robot_{hashlib.sha256(text.encode()).hexdigest()[:12]}.urdf"
     if not path.exists():
         write_atomically(path, text.encode())

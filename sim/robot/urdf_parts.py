@@ -40,15 +40,13 @@ class UrdfParts:
 
     Args:
         name: of the robot.
-        shapes: what its links collide with, by link.
 
     Attributes:
         robot: root element.
     """
 
-    def __init__(self, name: str, shapes: Mapping[str, tuple[Shape, ...]]) -> None:
+    def __init__(self, name: str) -> None:
         self.robot = ET.Element("robot", name=name)
-        self._shapes = shapes
 
     def link(
         self, name: str, mass: float = 1e-4, size: ArrayLike = (0.1, 0.1, 0.1), centre: ArrayLike = (0, 0, 0)
@@ -56,15 +54,13 @@ class UrdfParts:
         """Add a link of ours; its inertia is that of a solid box (frames need a little, or PyBullet assumes 1 kg)."""
         element = ET.SubElement(self.robot, "link", name=name)
         _inertial(element, mass, size, centre)
-        _collisions(element, self._shapes.get(name, ()))
 
     def given_link(self, name: str, source: ET.Element) -> None:
-        """Add a link of another robot: its inertia, our shapes."""
+        """Add a link of another robot: its inertia."""
         element = ET.SubElement(self.robot, "link", name=name)
         inertial = source.find("inertial")
         if inertial is not None:
             element.append(inertial)
-        _collisions(element, self._shapes.get(name, ()))
 
     def given_joint(self, source: ET.Element, prefix: str) -> ET.Element:
         """Add a joint of another robot, with `prefix` before its name and the names of its links; what was added."""
@@ -158,6 +154,15 @@ class UrdfParts:
         """All of it."""
         ET.indent(self.robot)
         return ET.tostring(self.robot, encoding="unicode")
+
+
+def with_collisions(text: str, shapes: Mapping[str, tuple[Shape, ...]]) -> str:
+    """A robot's description with shapes that its links collide with, by link."""
+    robot = ET.fromstring(text)  # nosec: composed by ourselves
+    for link in robot.iter("link"):
+        _collisions(link, shapes.get(link.get("name", ""), ()))
+    ET.indent(robot)
+    return ET.tostring(robot, encoding="unicode")
 
 
 def _inertial(element: ET.Element, mass: float, size, centre) -> None:

@@ -14,9 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanics.robot_model import RobotModel
 from ..mechanics.shape import Shape
-from ..render.solids import box_mesh
+from ..render.solids import box_mesh, capsule_mesh
 from ..world import SIDES
+from .baxter import BAXTER
 from .shapes import BLACK, DARK, RED, STEEL, collision_shapes
 from .urdf import baxter_folder, cache_folder, write_atomically
 
@@ -41,6 +43,19 @@ _BAXTER: dict[str, tuple[str, int, int, tuple[float, float, float]]] = {
 _SCREEN = ("head/H1.DAE", (1.75057, 0.0, np.pi / 2), (0.0, -np.pi / 2, 0.0))
 
 
+def meshes_of(robot: RobotModel) -> dict[str, Mesh]:
+    """Meshes of every link that shows, as `visual_meshes` has them; other robots than Baxter look as they collide."""
+    return visual_meshes() if robot is BAXTER else _collision_meshes(robot)
+
+
+def _collision_meshes(robot: RobotModel) -> dict[str, Mesh]:
+    meshes: dict[str, Mesh] = {}
+    for name, shapes in robot.shapes.items():
+        rgb = next((shape.rgb for shape in shapes if shape.rgb is not None), DARK)
+        meshes[name] = (*_join([_solid(shape) for shape in shapes]), rgb)
+    return meshes | _cameras()
+
+
 @lru_cache
 def visual_meshes() -> dict[str, Mesh]:
     """Meshes of every visible link: vertices (n, 3) in the link frame [m], outward faces (m, 3), rgb from 0 to 1.
@@ -59,7 +74,7 @@ def visual_meshes() -> dict[str, Mesh]:
         np.savez_compressed(stream, **arrays)
         write_atomically(path, stream.getvalue())
     for name, shapes in collision_shapes().items():  # base, column, palm and fingers are drawn as they collide
-        boxes = [_box(shape) for shape in shapes if shape.rgb is not None]
+        boxes = [_solid(shape) for shape in shapes if shape.rgb is not None]
         if boxes:
             rgb = next(shape.rgb for shape in shapes if shape.rgb is not None)
             meshes[name] = (*_join(boxes), rgb)
@@ -99,8 +114,12 @@ def _build() -> dict[str, Mesh]:
         mesh = (*_join(hulls), rgb)
         for name in (link,) if link in ("torso", "head") else tuple(f"{side}_{link}" for side in SIDES):
             meshes[name] = mesh
-    for side in SIDES:
-        meshes[f"{side}_hand_camera"] = (*box_mesh(np.array((-0.03, -0.01, -0.02)), np.array((0.03, 0.01, 0.0))), BLACK)
+    return meshes | _cameras()
+
+
+def _cameras() -> dict[str, Mesh]:
+    hand = (*box_mesh(np.array((-0.03, -0.01, -0.02)), np.array((0.03, 0.01, 0.0))), BLACK)
+    meshes: dict[str, Mesh] = {f"{side}_hand_camera": hand for side in SIDES}
     meshes["head_camera"] = (*box_mesh(np.array((-0.06, -0.015, -0.03)), np.array((0.06, 0.015, 0.0))), BLACK)
     return meshes
 
@@ -155,9 +174,14 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     return vertices, faces
 
 
-def _box(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    half = np.array(shape.size) / 2
-    vertices, faces = box_mesh(-half, half)
+def _solid(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+    if shape.kind == "box":
+        half = np.array(shape.size) / 2
+        vertices, faces = box_mesh(-half, half)
+    else:
+        radius, length = shape.size
+        half = np.array((0.0, 0.0, length / 2))
+        vertices, faces = capsule_mesh(-half, half, radius)
     return vertices @ _rotation(shape.rpy).T + shape.xyz, faces
 
 

@@ -21,20 +21,27 @@ class Encoders:
     Args:
         rng: of this difficulty alone.
         sizes: how far off.
+        joints: (m,) of two arms and the head, as trajectories name them; Baxter's by default.
 
     Attributes:
-        offsets: (15,) reading less angle, in the order of `COMMANDED_JOINTS` [rad].
+        offsets: (m,) reading less angle, in the order of `joints` [rad].
     """
 
-    def __init__(self, rng: np.random.Generator, sizes: difficulties.Encoders = difficulties.SIZES.encoders) -> None:
-        self.offsets = sizes.offset * rng.uniform(-1.0, 1.0, len(COMMANDED_JOINTS))
+    def __init__(
+        self,
+        rng: np.random.Generator,
+        sizes: difficulties.Encoders = difficulties.SIZES.encoders,
+        joints: tuple[str, ...] = COMMANDED_JOINTS,
+    ) -> None:
+        self._joints = joints
+        self.offsets = sizes.offset * rng.uniform(-1.0, 1.0, len(joints))
 
     def measured(self, reading: JointReading) -> JointReading:
         """What is read of joints that stand as in `reading`."""
         return replace(
             reading,
-            arm_positions=reading.arm_positions + self.offsets[:14].reshape(2, 7),
-            head_pan=reading.head_pan + float(self.offsets[14]),
+            arm_positions=reading.arm_positions + self.offsets[:-1].reshape(2, -1),
+            head_pan=reading.head_pan + float(self.offsets[-1]),
         )
 
     def angles(self, command: JointTrajectory) -> JointTrajectory:
@@ -46,4 +53,4 @@ class Encoders:
         return replace(command, positions=command.positions + self._of(command))
 
     def _of(self, command: JointTrajectory) -> np.ndarray:
-        return self.offsets[[COMMANDED_JOINTS.index(name) for name in command.joints]]
+        return self.offsets[[self._joints.index(name) for name in command.joints]]

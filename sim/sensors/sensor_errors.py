@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..robot.model import COMMANDED_JOINTS
 from ..scene.difficulties import SIZES, Sizes, stream
 from ..world import Command, HandTwist, JointTrajectory
 from ..world_kind import WorldKind
@@ -29,16 +30,24 @@ class SensorErrors:
         kind: of the world.
         sizes: of the difficulties.
         bias: (2, 3) what the force sensors of both hands add besides, along the hands' axes [N].
+        joints: of two arms and the head, as trajectories name them; Baxter's by default.
 
     Attributes:
         late: what there was to see before, in a world whose images are late.
     """
 
-    def __init__(self, seed: int, kind: WorldKind, sizes: Sizes = SIZES, bias: np.ndarray | None = None) -> None:
+    def __init__(
+        self,
+        seed: int,
+        kind: WorldKind,
+        sizes: Sizes = SIZES,
+        bias: np.ndarray | None = None,
+        joints: tuple[str, ...] = COMMANDED_JOINTS,
+    ) -> None:
         def drawn(difficulty: str) -> np.random.Generator | None:
             return stream(seed, difficulty) if kind.has(difficulty) else None
 
-        self._encoders = Encoders(rng, sizes.encoders) if (rng := drawn("encoders")) else None
+        self._encoders = Encoders(rng, sizes.encoders, joints) if (rng := drawn("encoders")) else None
         self._localisation = Localisation(rng, sizes.localisation) if (rng := drawn("localisation")) else None
         self._cameras = camera_errors(rng, sizes.camera_extrinsics) if (rng := drawn("camera_extrinsics")) else {}
         rng = drawn("late_images")

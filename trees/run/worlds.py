@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from ...sim.abilities import HasTickRate, SupportsInitialStates, SupportsObjects
 from ...sim.errors import CaretreeError
 from ...sim.extras import missing_extra
-from ...sim.known_robots import DEFAULT
 from ...sim.world_kind import EASY, WorldKind
 from .open_world import HOW, OpenWorld, installed_worlds
 
@@ -54,9 +53,8 @@ def make_world(
     Raises:
         CaretreeError: an unknown world or kind, an option that this world does not take, or a world that is not there.
     """
-    if task.robot is not None and name != "scripted" and (name != "bullet" or task.robot.name != DEFAULT):
-        why = f"the bullet world has {DEFAULT}" if name == "bullet" else f"{name} brings its own"
-        raise CaretreeError(f"--robot {task.robot.name} needs the scripted world: {why}")
+    if task.robot is not None and name not in WORLDS:
+        raise CaretreeError(f"--robot {task.robot.name} needs one of {', '.join(WORLDS)}: {name} brings its own")
     if name != "bullet":
         asked: dict[str, object] = {"--gown": gown, "--person": person, "--model": model, "--look": look}
         asked["--engine"] = engine
@@ -80,7 +78,7 @@ def make_world(
             raise missing from error
         raise CaretreeError(f"the bullet world cannot be loaded: {error}") from error
     options: dict[str, Any] = {"gown": gown, "person": person, "model": model, "kind": kind, "look": look}
-    options["engine"] = engine
+    options |= {"engine": engine, "robot": task.robot}
     options = {key: value for key, value in options.items() if value is not None}
     world = BulletWorld(seed=seed, **options)
     _furnish(world, task, seed)

@@ -1,10 +1,20 @@
 """A gown that is put on by hand."""
 
 import numpy as np
-from caretree.sim.bullet.gown_placement import RAISED, put_on_by_hand
+from caretree.sim.bullet.gown_placement import RAISED, holding, put_on_by_hand
 from caretree.sim.bullet.world import TIME_STEP, BulletWorld
 from caretree.sim.evaluate.crossings import sleeve
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
+from caretree.sim.robot.ur5_pair import UR5_PAIR
 from caretree.sim.world import SIDES
+
+
+def test_another_robot_holds_the_neckline_where_baxter_does():
+    for n, side in enumerate(SIDES):
+        theirs = kinematics_of(BAXTER).pose_hand_in_base(side, holding(kinematics_of(BAXTER))[n])
+        ours = kinematics_of(UR5_PAIR).pose_hand_in_base(side, holding(kinematics_of(UR5_PAIR))[n])
+        np.testing.assert_allclose(ours, theirs, atol=0.01)
 
 
 def reached(spread):

@@ -27,6 +27,7 @@ def test_a_robot_with_one_arm_is_refused_in_one_sentence():
         ({"ready": np.zeros((2, 6))}, r"the posture ready of baxter has shape \(2, 6\), but \(2, 7\)"),
         ({"held_up": np.zeros(7)}, r"the posture held_up of baxter has shape \(7,\)"),
         ({"limits": replace(BAXTER.limits, arm_acceleration=np.ones(6))}, r"has shape \(6,\), but \(7,\)"),
+        ({"limits": replace(BAXTER.limits, motion_torque=np.ones(6))}, r"motion_torque of baxter has shape \(6,\)"),
     ],
 )
 def test_what_does_not_fit_together_is_refused(values, said):

@@ -48,6 +48,9 @@ def test_a_record_of_another_world_or_without_truth_is_told(record):
     (record / "run.json").write_text(json.dumps(run | {"world": "scripted"}))
     with pytest.raises(RecordError, match="only records of the bullet world"):
         read_stretch(record)
+    (record / "run.json").write_text(json.dumps(run | {"parameters": run["parameters"] | {"robot": "ur5-pair"}}))
+    with pytest.raises(RecordError, match="is of the robot ur5-pair, only records of baxter"):
+        read_stretch(record)
     (record / "run.json").write_text(json.dumps(run))
     (record / "truth.npz").unlink()
     with pytest.raises(RecordError, match=r"holds no truth.npz"):

@@ -8,6 +8,7 @@ from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.robot.ur5_pair import UR5_PAIR
 from caretree.sim.world import SIDES
+from caretree.skills.motion.ik import solve_ik
 
 HERE = np.zeros(3)
 
@@ -18,6 +19,14 @@ def test_hands_are_where_baxters_are(posture):
         theirs = kinematics_of(BAXTER).pose_hand_in_base(side, getattr(BAXTER, posture)[n])
         ours = kinematics_of(UR5_PAIR).pose_hand_in_base(side, getattr(UR5_PAIR, posture)[n])
         np.testing.assert_allclose(ours, theirs, atol=0.01)
+
+
+@pytest.mark.parametrize("ahead", [0.22, 0.29, 0.35])  # [m] three times in a bullet run (seed 104)
+def test_a_hand_holds_a_sleeve_out_before_an_arm_that_is_up(ahead):
+    pose = kinematics_of(UR5_PAIR).pose_hand_in_base("right", UR5_PAIR.ready[1])
+    pose[:3, 3] = (ahead, -0.58, 1.11)
+    q = solve_ik(kinematics_of(UR5_PAIR), "right", pose, HERE, UR5_PAIR.ready[1], seeds=6)
+    assert CollisionChecker(kinematics_of(UR5_PAIR)).free(HERE, np.stack((UR5_PAIR.ready[0], q)))
 
 
 def test_left_and_right_are_mirror_images():

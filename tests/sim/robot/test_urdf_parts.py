@@ -12,11 +12,11 @@ def test_a_description_is_found_or_named_as_missing():
 
 
 def test_a_joint_of_another_robot_gets_a_prefix_and_leaves_the_source_alone():
-    source = UrdfParts("source", {})
+    source = UrdfParts("source")
     source.joint("pan", "fixed", "one", "two")
     given = source.robot.find("joint")
     assert given is not None
-    parts = UrdfParts("ours", {})
+    parts = UrdfParts("ours")
     parts.given_joint(given, "left_")
     text = parts.text()
     assert 'name="left_pan"' in text

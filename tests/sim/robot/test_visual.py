@@ -2,6 +2,8 @@ import numpy as np
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import urdf, visual
 from caretree.sim.robot.baxter import BAXTER
+from caretree.sim.robot.ur5_pair import UR5_PAIR
+from caretree.sim.robot.urdf_parts import with_collisions
 
 
 def test_every_mesh_belongs_to_a_link_and_is_light():
@@ -15,6 +17,16 @@ def test_every_mesh_belongs_to_a_link_and_is_light():
         assert faces.max() < len(vertices)
         assert np.isfinite(vertices).all()
         assert all(0.0 <= value <= 1.0 for value in rgb)
+
+
+def test_another_robot_looks_as_it_collides():
+    meshes = visual.meshes_of(UR5_PAIR)
+    assert set(UR5_PAIR.shapes) <= set(meshes)
+    vertices, faces, _ = meshes["left_forearm_link"]
+    shape = UR5_PAIR.shapes["left_forearm_link"][0]
+    radius, length = shape.size
+    np.testing.assert_allclose(np.ptp(vertices, axis=0), (2 * radius, 2 * radius, length + 2 * radius), atol=0.005)
+    assert faces.max() < len(vertices)
 
 
 def test_hulls_keep_the_size_of_the_originals_and_face_outwards():
@@ -38,9 +50,9 @@ def test_urdf_is_written_once_and_whole(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     urdf.urdf_path.cache_clear()
     try:
-        path = urdf.urdf_path()
+        path = urdf.urdf_path(BAXTER)
         assert path.is_relative_to(tmp_path)
-        assert path.read_text() == urdf.compose()
+        assert path.read_text() == with_collisions(urdf.compose(), BAXTER.shapes)
         assert [file.name for file in path.parent.iterdir()] == [path.name]
     finally:
         urdf.urdf_path.cache_clear()

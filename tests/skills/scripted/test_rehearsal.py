@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from caretree.sim.world import BaseVelocity
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.world import SIDES, BaseVelocity
 from caretree.skills.core.skill import Skill
 from caretree.skills.scripted.rehearsal import REHEARSAL, RehearsalWorld
 from caretree.trees.run.runner import Run
@@ -32,6 +33,21 @@ def test_the_dressing_succeeds_at_the_rate_that_suffices():
     assert outcome == "success"
     stages = [node.rpartition("/")[2] for node, status, _ in nodes if node.count("/") == 2 and status == "SUCCESS"]
     assert stages == ["take down", "lay", "dress", "spread"]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_ur5_arms_dress_far_from_their_limits_and_singular_postures(seed):
+    task = load_task("dressing", robot="ur5-pair")
+    world, senses = task.scripted(seed)
+    run = Run(task, world, rate_hz=REHEARSAL.tick_rate, senses=senses)
+    arms, kinematics = [], kinematics_of(world.robot)
+    run.context.observers.append(lambda name, phase: arms.append(world.observe().arm_positions))
+    assert run.run().outcome == "success"
+    for n, side in enumerate(SIDES):
+        for q in np.unique(np.round(np.array(arms)[:, n], 2), axis=0):
+            # from there on sim/mechanics/damped_rates.py lets a hand follow its twist in full
+            assert kinematics.limits[side].margin(q) > 0.05  # [rad]
+            assert np.linalg.svd(kinematics.jacobian_hand_in_base(side, q), compute_uv=False)[-1] > 0.06
 
 
 class Drives(Skill):

@@ -31,6 +31,13 @@ def test_wave_is_proven_for_them_too(capsys):
     assert "wave holds" in capsys.readouterr().out
 
 
+def test_the_dressing_is_proven_for_them_and_succeeds_on_its_scripted_world(capsys):
+    assert main(["check", "dressing", "--robot", "ur5-pair"]) == 0
+    said = capsys.readouterr().out
+    assert "dressing holds" in said
+    assert "on its scripted world it ends" not in said
+
+
 def test_a_robot_with_one_arm_ends_in_one_sentence(tmp_path, monkeypatch, capsys):
     (tmp_path / "one_armed.py").write_text(ONE_ARM)
     monkeypatch.syspath_prepend(tmp_path)
@@ -43,7 +50,10 @@ def test_a_robot_with_one_arm_ends_in_one_sentence(tmp_path, monkeypatch, capsys
     ("words", "said"),
     [
         (["--robot", "atlas", "--world", "scripted"], "unknown robot 'atlas'; there are baxter, ur5-pair"),
-        (["--robot", "ur5-pair", "--world", "bullet"], "--robot ur5-pair needs the scripted world"),
+        (
+            ["--robot", "ur5-pair", "--world", "ros1"],
+            "--robot ur5-pair needs one of bullet, scripted: ros1 brings its own",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused(words, said, capsys, tmp_path, monkeypatch):
