@@ -67,5 +67,7 @@ for seed in range(int(first), int(last) + 1):
         print(json.dumps(found[-1]), flush=True)
 moved = [each for each in found if each["moved"] is not None]
 in_time = sum(each["after"] is not None and each["after"] <= ASKED + 1e-6 for each in moved)
-print(f"noticed within {ASKED} s: {SuccessRate(successes=in_time, trials=len(moved))}; "
-      f"{sum(each['false_alarms'] for each in found)} false alarms in {len(found)} runs")
+print(
+    f"noticed within {ASKED} s: {SuccessRate(successes=in_time, trials=len(moved))}; "
+    f"{sum(each['false_alarms'] for each in found)} false alarms in {len(found)} runs"
+)

@@ -43,7 +43,7 @@ def put_down_if_possible(context: Context, side: Side) -> Behaviour:
         return Navigate("go to it", arm, goal=stance(side, "lift"))
 
     # from beside it also shows to whoever has closed the fingers on nothing
-    elsewhere = dict.fromkeys((Reason.UNREACHABLE, Reason.GRASP_MISSED, Reason.ARM_SLIPPED), go)
+    elsewhere = {Reason.UNREACHABLE: go, Reason.GRASP_MISSED: go, Reason.ARM_SLIPPED: go}
     from_beside = RecoverBy(f"safe: to the {side} arm", lower("lifting"), elsewhere)
     leave = Retreat("leave it up", arm, hand_distance=0.0, ready="never")
     return fallback(f"safe: {side} arm", lower("pulling"), from_beside, leave)
