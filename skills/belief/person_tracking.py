@@ -155,8 +155,7 @@ def watch_arm(
         frame = head_view(skill)
         if hold is not None and side in watch.arms:
             # it has moved with the hand: where it was, it would count as hidden and be lost
-            points = turned_about_shoulder(watch.arms[side].points_in_map, hold.coordinate, _held_at(skill, hold))
-            watch.arms[side] = replace(watch.arms[side], points_in_map=points)
+            watch.arms[side] = _turned(skill, watch.arms[side], hold)
         try:
             if side not in watch.arms or visible_share(frame, watch.arms[side], tuning=tuning) >= tuning.min_visible:
                 _take(skill, frame, side, hold, tuning)
@@ -182,10 +181,20 @@ def posture_in_hand(skill: Skill, side: Side, hold: Hold) -> ArmPosture | None:
     """
     watch = watch_of(skill)
     known = watch.arms.get(side, watch.before.get(side))
-    if known is None:
-        return None
-    points = turned_about_shoulder(known.points_in_map, hold.coordinate, _held_at(skill, hold))
-    return replace(known, points_in_map=points)
+    return None if known is None else _turned(skill, known, hold)
+
+
+def keep_with_hand(skill: Skill, side: Side, hold: Hold) -> None:
+    """Take what is known of an arm along with the hand that holds it, before the hand lets go of it.
+
+    Args:
+        skill: that asks.
+        side: of the person.
+        hold: the hand that still holds this arm.
+    """
+    for known in (watch_of(skill).arms, watch_of(skill).before):
+        if side in known:
+            known[side] = _turned(skill, known[side], hold)
 
 
 def take_from_hand(
@@ -282,6 +291,12 @@ def _keep(skill: Skill, side: Side, posture: ArmPosture, tuning: PersonTrackingT
     watch = watch_of(skill)
     watch.arms[side], watch.seen[side] = posture, skill.now()
     skill.context.guard.update_person(posture.points_in_map, part=f"{side} arm", radius=tuning.arm_radius)
+
+
+def _turned(skill: Skill, posture: ArmPosture, hold: Hold) -> ArmPosture:
+    """An arm turned about its shoulder to where the hand that holds it is."""
+    points = turned_about_shoulder(posture.points_in_map, hold.coordinate, _held_at(skill, hold))
+    return replace(posture, points_in_map=points)
 
 
 def _held_at(skill: Skill, hold: Hold) -> np.ndarray:

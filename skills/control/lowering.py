@@ -14,7 +14,7 @@ from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, HandTwist, SensorLost, Side
-from ..belief.person_tracking import posture_in_hand, see_person, take_from_hand, watch_arm, watch_of
+from ..belief.person_tracking import keep_with_hand, posture_in_hand, see_person, take_from_hand, watch_arm, watch_of
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..geometry.arm_path import UP, ArmPath
@@ -159,10 +159,8 @@ def lower_arm(
     try:
         yield from _lower(skill, hand, held, tuning)
     except SkillFailure:
-        if held and (posture := posture_in_hand(skill, *held)) is not None:
-            # half way down, and soon let go of: nobody should look for it where it was held up
-            known = watch_of(skill).arms if held[0] in watch_of(skill).arms else watch_of(skill).before
-            known[held[0]] = posture
+        if held:  # half way down, and soon let go of: nobody should look for it where it was held up
+            keep_with_hand(skill, *held)
         raise
 
 

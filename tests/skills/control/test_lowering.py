@@ -9,8 +9,10 @@ from caretree.perception.image.cloud import unit
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.skills.belief.person_tracking import Watch, doubt_arms, posture_in_hand
 from caretree.skills.control.arm_grip import over_arm
-from caretree.skills.control.lowering import held_arm, lies, resting_place
+from caretree.skills.control.lowering import LOWERING, held_arm, lies, lower_arm, resting_place
+from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.arm_path import ArmPath
+from caretree.skills.geometry.hold import Hold
 from caretree.skills.geometry.stances import HEADWARD, outwards
 from caretree.skills.scripted.scripted_person import lying_posture
 
@@ -91,3 +93,21 @@ def test_an_arm_whose_owner_has_moved_is_lowered_about_its_shoulder_found_or_not
     on_axis = unit(ArmPath.of(there).point(hold.coordinate) - there.points_in_map[0])
     assert on_axis == pytest.approx(unit(hand[:3, 3] - there.points_in_map[0]), abs=1e-4)
     assert not watch.arms, "and nothing is believed of it otherwise"
+
+
+@pytest.mark.parametrize("doubted", [False, True])
+def test_what_is_known_of_an_arm_follows_a_hand_that_could_not_lower_it(doubted):
+    unseen = PerceptionFailure(Problem.NOTHING_SEEN, "person")
+    hand = over_arm(raised("right", height=0.08), 1.3, 0.0)
+    asks = skill(hands={"left": hand}, arm=unseen, head=unseen, relocalised_arm=unseen)
+    watch = asks.context.memory.of(Watch, Watch)
+    watch.arms["right"] = raised("right")
+    if doubted:
+        doubt_arms(asks)
+    held = "right", Hold("left", 1.3)
+    with pytest.raises(SkillFailure) as failed:
+        for _ in lower_arm(asks, "left", held, tuning=replace(LOWERING, timeout=-1.0)):
+            pass
+    assert failed.value.reason == Reason.TIMEOUT
+    known = (watch.before if doubted else watch.arms)["right"]
+    assert np.linalg.norm(ArmPath.of(known).point(1.3) - hand[:3, 3]) < 0.02
