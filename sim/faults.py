@@ -17,7 +17,15 @@ from .errors import CaretreeError
 from .world import SIDES, Command, Frame, GripperOpening, Observation, SensorLost, Side, World
 
 Fault = Literal[
-    "grip_slip", "occlusion", "stale_frame", "force_spike", "lost_command", "person_moves", "dead_camera", "dead_sensor"
+    "grip_slip",
+    "occlusion",
+    "stale_frame",
+    "force_spike",
+    "lost_command",
+    "person_moves",
+    "camera_out",
+    "dead_camera",
+    "dead_sensor",
 ]
 FAULTS: tuple[str, ...] = get_args(Fault)
 PHASES: tuple[str, ...] = ("start", "step", "cancel")
@@ -31,6 +39,7 @@ DURATION: dict[str, float] = {
     "stale_frame": 3.0,
     "force_spike": 0.5,
     "lost_command": 1.0,
+    "camera_out": 20.0,
     "dead_camera": FOREVER,
     "dead_sensor": FOREVER,
 }
@@ -42,6 +51,7 @@ FELT: dict[str, tuple[str, ...]] = {
     "stale_frame": ("look",),
     "force_spike": ("observe",),
     "lost_command": ("send", "stop"),
+    "camera_out": ("look",),
     "dead_camera": ("look",),
     "dead_sensor": ("observe",),
 }
@@ -176,7 +186,7 @@ class FaultyWorld(World):
 
     def look(self, camera: str) -> Frame:
         """A frame: lost, old, half hidden, or as it is."""
-        if self._active("dead_camera"):
+        if self._active("dead_camera") or self._active("camera_out"):
             raise SensorLost(f"the {camera} camera gives no image")
         if camera in self._last_frame and self._active("stale_frame"):
             return self._last_frame[camera]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import SIDES, Side
+from ..sim.world import SIDES, SensorLost, Side
 from .control.base import drive_to
 from .control.fingers import open_gripper
 from .control.hands import cloth_load, hand_now, move_hands
@@ -151,7 +151,7 @@ class LayGown(Skill):
         yield from look_towards(self, near)
         try:
             seen = self.context.senses.sleeve_opening(self.world.look("head"), side=NEAR_SLEEVE, near_in_map=near)
-        except PerceptionFailure:
+        except (PerceptionFailure, SensorLost):
             return  # it stays as it was taken
         shown = float(np.median(seen.armhole_points_in_map[:, 0]))
         askew = shown + tuning.hidden_offset - (self.width + tuning.overhang) / 2

@@ -32,7 +32,9 @@ WORLD_KINDS = (
     "easy, easy+falling_arms, easy+camera_extrinsics, easy+localisation, easy+encoders, easy+late_images, "
     "easy+wrench_bias, easy+depth_noise, easy+thinking_time, easy+skin_friction, hard"
 )
-FAULTS = "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, dead_camera, dead_sensor"
+FAULTS = (
+    "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, camera_out, dead_camera, dead_sensor"
+)
 EXPORTS = ("xml",)
 SHELLS = ("bash", "zsh")
 EXTRAS = {"gap": "gap", "learn": "learn", "robot": "ros", "serve-robot": "ros"}  # of commands that need one

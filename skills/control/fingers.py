@@ -25,6 +25,9 @@ class FingersTuning(Quantities):
     grip_force: float = quantity(30.0, "N", "of squeezing cloth, at most", "choice: thin cloth is held without a slip")
     timeout: float = quantity(3.0, "s", "for the fingers to open or close", "choice: five times what they take")
     min_closing: float = quantity(0.002, "m", "of the fingers that counts as motion", "choice: above the noise")
+    meets: float = quantity(
+        2.0, "N", "between fingers that stand open, from which something is between them", "choice: above the noise"
+    )
     rest_change: float = quantity(
         0.0005, "m", "from tick to tick below which the fingers rest", "choice: a few per cent of their speed"
     )
@@ -88,19 +91,23 @@ def close_gripper(
         What is left between the fingertips [m]; the caller says by `declare_grip` what that is.
 
     Raises:
-        SkillFailure: COMMAND_LOST when the fingers never moved, GRASP_MISSED when they never rest.
+        SkillFailure: COMMAND_LOST when the fingers never moved and felt nothing, GRASP_MISSED when they never rest or
+            something keeps them open.
     """
     n = SIDES.index(side)
     before = start = float(skill.world.observe().gripper_opening[n])
     skill.world.send(GripperOpening(side=side, opening=opening, force_limit=force))
-    end, calm, moved = skill.now() + timeout, 0, False
+    end, calm, moved, felt = skill.now() + timeout, 0, False, 0.0
     while calm < tuning.rest_ticks:
         if skill.now() >= end:
             if moved:
                 raise SkillFailure(Reason.GRASP_MISSED, f"the {side} fingers do not come to rest")
+            if felt > tuning.meets:
+                raise SkillFailure(Reason.GRASP_MISSED, f"something keeps the {side} fingers open with {felt:.0f} N")
             raise SkillFailure(Reason.COMMAND_LOST, f"the {side} fingers do not close")
         yield
-        gap = float(skill.world.observe().gripper_opening[n])
+        seen = skill.world.observe()
+        gap, felt = float(seen.gripper_opening[n]), max(felt, float(seen.gripper_force[n]))
         moved = moved or gap < start - tuning.min_closing or start <= opening + tuning.min_closing
         calm = calm + 1 if abs(gap - before) < tuning.rest_change and moved else 0
         before = gap

@@ -1,3 +1,5 @@
+from contextlib import suppress
+
 import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
@@ -32,7 +34,7 @@ def test_fault_texts():
     ):
         with pytest.raises(Exception, match=said):
             parse_fault(text)
-    assert len(FAULTS) == 8
+    assert len(FAULTS) == 9
     assert len(PHASES) == 3
 
 
@@ -103,6 +105,16 @@ def test_a_dead_sensor_repeats_and_a_dead_camera_is_gone():
         world.look("head")
 
 
+def test_a_camera_that_is_out_comes_back_after_20_seconds():
+    inner, world = faulty("camera_out")
+    begin(world)
+    inner.clock.wait_until(19.9)
+    with pytest.raises(SensorLost, match="head camera gives no image"):
+        world.look("head")
+    inner.clock.wait_until(20.1)
+    assert world.look("head").stamp == pytest.approx(20.1, abs=0.05)
+
+
 def test_a_stale_frame_keeps_its_old_stamp():
     inner, world = faulty("stale_frame")
     inner.clock.wait_until(1.0)
@@ -137,6 +149,9 @@ def ask(world, inner, fault):
     """Whatever the fault changes."""
     if fault in ("occlusion", "stale_frame"):
         world.look("head")
+    elif fault in ("camera_out", "dead_camera"):
+        with suppress(SensorLost):
+            world.look("head")
     elif fault == "lost_command":
         world.stop()
     elif fault == "person_moves":
@@ -145,7 +160,7 @@ def ask(world, inner, fault):
         world.observe()
 
 
-@pytest.mark.parametrize("fault", [fault for fault in FAULTS if fault != "dead_camera"])
+@pytest.mark.parametrize("fault", FAULTS)
 def test_a_run_is_settled_half_a_minute_after_its_fault_was_felt(fault):
     inner, world = faulty(fault)
     inner.between_fingers["left"] = 0.01  # for a grip to slip

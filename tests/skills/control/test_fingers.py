@@ -1,3 +1,6 @@
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from caretree.sim.world import GripperOpening
 from caretree.skills.control.fingers import close_gripper, open_gripper
@@ -22,3 +25,13 @@ def test_fingers_that_do_not_obey_are_told(motion):
     world, context = robot(deaf_to=GripperOpening)
     world._opening[:] = world._opening_goal[:] = 0.04
     assert carry_out(world, context, lambda skill: motion(skill, "left")).failure.reason == Reason.COMMAND_LOST
+
+
+def test_fingers_that_something_keeps_open_have_missed_it():
+    world, context = robot(deaf_to=GripperOpening)
+    world._opening[:] = world._opening_goal[:] = 0.04
+    observe = world.observe
+    world.observe = lambda: replace(observe(), gripper_force=np.array((25.0, 0.0)))
+    failure = carry_out(world, context, lambda skill: close_gripper(skill, "left")).failure
+    assert failure.reason == Reason.GRASP_MISSED
+    assert "keeps the left fingers open with 25 N" in failure.detail

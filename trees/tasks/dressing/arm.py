@@ -38,12 +38,21 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
 from .draw_flat import DrawFlat
+from .patience import FOR_A_MOMENT, patient, sight_again
 from .take_down import holds_gown_with
 from .tuning import DRESSING, SECOND_SLEEVE, SleeveTuning
 
 STUCK = (Reason.MOTION_BLOCKED, Reason.SLEEVE_CAUGHT, Reason.CLOTH_SLIPPED, Reason.FORCE_LIMIT)
 LOST = (Reason.ARM_LOST, Reason.ARM_SLIPPED, Reason.GRASP_MISSED, Reason.NOTHING_SEEN, Reason.UNREACHABLE)
-MISSES = (*STUCK, *LOST, Reason.SLEEVE_MISSED, Reason.SLEEVE_FOLDED, Reason.TIMEOUT, Reason.PERSON_MOVED)
+MISSES = (
+    *STUCK,
+    *LOST,
+    *FOR_A_MOMENT,
+    Reason.SLEEVE_MISSED,
+    Reason.SLEEVE_FOLDED,
+    Reason.TIMEOUT,
+    Reason.PERSON_MOVED,
+)
 
 # Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
 # is inside is looked at from beside it.
@@ -72,6 +81,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         return sequence(
             f"{scope.prefix}begin again",
             let_down("held", scope, "lifting", other="pulling"),
+            sight_again(scope, "then")(),
             free(scope),
             fallback(
                 f"{scope.prefix}arm and sleeve laid out",
@@ -89,8 +99,9 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         attempts=2,
     )
     away = back_off("back off", arm, DRESSING.back_off_distance)
-    inside = CheckSleeve("is inside", arm)
-    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, put_down("in the end", arm), inside)
+    inside = patient(arm, CheckSleeve("is inside", arm))
+    lies = patient(arm, put_down("in the end", arm))
+    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, lies, inside)
     again: dict[Reason, Callable[[], Behaviour]] = {
         **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
@@ -239,7 +250,7 @@ def not_slipped(arm: Scope, least: float, *, pulls: int = 2) -> Behaviour:
         CheckSleeve("up the arm", arm, min_reach=least, tuning=FROM_HEAD),
     )
     again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=1 + pulls)
-    return fallback(f"{arm.prefix}as it may be", again, back_off("leave it so", arm))
+    return fallback(f"{arm.prefix}as it may be", patient(arm, again), back_off("leave it so", arm))
 
 
 def lay_out(arm: Scope) -> Behaviour:
@@ -272,14 +283,14 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
 def carried_across(name: str, scope: Scope, side: Side) -> Behaviour:
     """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
     across = CarryAcross(f"carry {name} across", scope, side=side)
-    return sequence(f"{scope.prefix}{name} to its side", across, back_off(f"clear of {name}", scope))
+    return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"clear of {name}", scope))
 
 
 def flat(front: Scope) -> Behaviour:
     """From beside an arm, draw folds out of the gown's front; where it cannot be done, the rest may do."""
     draw = DrawFlat("draw flat", front, hand=front["pulling"])
     drawn = sequence(f"{front.prefix}draw it flat", draw, back_off("off the front", front))
-    return fallback(f"{front.prefix}no folds", drawn, back_off("leave the front", front))
+    return fallback(f"{front.prefix}no folds", patient(front, drawn), back_off("leave the front", front))
 
 
 def grasp_worn(name: str, arm: Scope) -> GraspSleeve:

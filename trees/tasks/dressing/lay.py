@@ -20,6 +20,7 @@ from ....skills.stretch_neckline import StretchNeckline
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
+from .patience import patient
 from .take_down import LEVEL, holds_gown_with, look_and_take
 from .tuning import DRESSING
 
@@ -30,7 +31,7 @@ def lay(context: Context) -> Stage:
     return timed_stage(
         "lay",
         by_both_ends(context, gown),
-        FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence),
+        patient(gown, FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence)),
         LayGown("lay it on the person", gown),
         precondition=holds_gown,
         seconds=DRESSING.lay_timeout,
@@ -40,8 +41,8 @@ def lay(context: Context) -> Stage:
 def by_both_ends(context: Context, gown: Scope) -> Behaviour:
     """Stretch the neckline; where it is too short, take an end anew with one hand, then with the other."""
 
-    def stretch(name: str) -> StretchNeckline:
-        return StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline)
+    def stretch(name: str) -> Behaviour:
+        return patient(gown, StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline))
 
     def anew(hand: Side) -> Behaviour:
         other = SIDES[1 - SIDES.index(hand)]

@@ -22,6 +22,7 @@ from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
 from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
+from .patience import patient
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
@@ -45,15 +46,13 @@ def spread(context: Context) -> Stage:
     bed = Scope(context, "gown")
     return timed_stage(
         "spread",
-        arm_lies(context, "left"),
-        arm_lies(context, "right"),
+        patient(bed, arm_lies(context, "left")),
+        patient(bed, arm_lies(context, "right")),
         *go_to_head(bed),
-        Retry("until it is neat", with_arms_in_view(context, bed), attempts=DRESSING.neaten_attempts),
-        surely_middle(context, bed),
-        *(node for side in SIDES for node in still_inside(context, side)),
-        LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
-        Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
-        Condition("the outside is out", outside_out, Reason.WRONG_SIDE),
+        patient(bed, Retry("until it is neat", with_arms_in_view(context, bed), attempts=DRESSING.neaten_attempts)),
+        patient(bed, surely_middle(context, bed)),
+        *(patient(bed, still_inside(context, side)) for side in SIDES),
+        patient(bed, chest_looks_right(context)),
         seconds=DRESSING.spread_timeout,
     )
 
@@ -178,14 +177,25 @@ def sits(context: Context, name: str, side: Side, reach: float, *, must_show: bo
     return [LookAtPerson("look", sleeve), look]
 
 
-def still_inside(context: Context, side: Side) -> list[Behaviour]:
+def still_inside(context: Context, side: Side) -> Behaviour:
     """Look from beside the bed whether the arm is inside its sleeve in the end: its cuff shows all round it there."""
     sleeve = arm_scope(context, f"{side} cuff", side)
-    return [
+    return sequence(
+        f"the {side} arm is still inside",
         Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look", sleeve),
         CheckSleeve("is inside", sleeve),
-    ]
+    )
+
+
+def chest_looks_right(context: Context) -> Behaviour:
+    """Look at the trunk: covered, the outside out."""
+    return sequence(
+        "the chest",
+        LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
+        Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
+        Condition("the outside is out", outside_out, Reason.WRONG_SIDE),
+    )
 
 
 def chest_covered(context: Context) -> bool:

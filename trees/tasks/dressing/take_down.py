@@ -25,6 +25,7 @@ from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
+from .patience import patient
 from .tuning import DRESSING
 
 LEVEL = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
@@ -33,7 +34,7 @@ LEVEL = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way th
 def take_down(context: Context) -> Stage:
     """The stage `take_down`."""
     rail = Scope(context, "rail", keys=("hook", "corner", "sleeve", "other_sleeve", "hand", "other_hand"))
-    outside = FlipSideCheck("outside to the front", rail, hung=True, min_confidence=0.0)
+    outside = patient(rail, FlipSideCheck("outside to the front", rail, hung=True, min_confidence=0.0))
     free = fallback("free hands", Condition("nothing is held", hands_open), Retreat("let go of both ends", rail))
     off = TakeDown("lift it off the hook", rail)
     by_both_ends = RecoverBy(
@@ -45,7 +46,9 @@ def take_down(context: Context) -> Stage:
         "take down",
         Navigate("go there", rail, goal="rail"),
         fallback("find the outside", outside, Navigate("go behind it", rail, goal="rail_back")),
-        fallback("take it", Retry("the other end first", by_both_ends, attempts=2), from_one_hand(context)),
+        fallback(
+            "take it", Retry("the other end first", patient(rail, by_both_ends), attempts=2), from_one_hand(context)
+        ),
         seconds=DRESSING.take_down_timeout,
     )
 
@@ -109,7 +112,7 @@ def from_one_hand(context: Context) -> Behaviour:
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", first),
-        SegmentAndGrasp("take it near the hook", first, hand="right"),
+        patient(first, SegmentAndGrasp("take it near the hook", first, hand="right")),
         Unhook("lift it off", first, hand="right"),
         fallback(
             "corner by corner",
@@ -146,7 +149,7 @@ def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> 
     def once(name: str, take: str, **more: float) -> Behaviour:
         look = ViewAround(f"look all round{name}", scope, hand=hand)
         take_it = PreGraspManipulate(take, scope, min_distance=away[0], max_distance=away[1], **more)
-        return sequence(f"{scope.prefix}once{name}", look, take_it)
+        return patient(scope, sequence(f"{scope.prefix}once{name}", look, take_it))
 
     clear = Retry(
         f"{scope.prefix}until it holds a corner", once("", "take a corner"), attempts=DRESSING.corner_attempts

@@ -43,6 +43,12 @@ SECOND_SLEEVE = SleeveTuning(carry_load=2.0, pull_load=3.8)
 class DressingTuning(Quantities):
     """Numbers of the task that hold for both sleeves, and for the gown."""
 
+    patient_attempts: int = quantity(
+        3,
+        "1",
+        "at what a camera or a command was lost in, the first one included",
+        "choice: each waits for half a minute",
+    )
     # taking the gown down
     neckline: tuple[float, float] = quantity(
         (0.70, 0.98),

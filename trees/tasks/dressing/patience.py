@@ -1,0 +1,31 @@
+"""What was lost for a moment is waited for, and then done once more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+
+from ....skills.core.context import Context
+from ....skills.core.reasons import Reason
+from ....skills.core.scope import Scope
+from ....skills.wait_for_sight import WaitForSight
+from ...nodes.composers import commanding
+from ...nodes.decorators import RecoverBy
+from .tuning import DRESSING
+
+SIGHT = (Reason.SENSOR_LOST, Reason.SENSOR_STALE)
+FOR_A_MOMENT = (*SIGHT, Reason.COMMAND_LOST)
+
+
+def patient(context: Context | Scope, body: Behaviour) -> RecoverBy:
+    """The body, once more when the cameras show again, where they or a command were lost; nothing is let go of."""
+    reasons = FOR_A_MOMENT if commanding(body) else SIGHT
+    again = dict.fromkeys(reasons, sight_again(context, body.name))
+    return RecoverBy(f"{body.name}, with patience", body, again, attempts=DRESSING.patient_attempts)
+
+
+def sight_again(context: Context | Scope, name: str) -> Callable[[], Behaviour]:
+    """Builds the leaf that waits for the cameras, for a node of that name."""
+    scope = Scope.of(context)
+    return lambda: WaitForSight(f"{name.removeprefix(scope.prefix)}: see again", scope)
