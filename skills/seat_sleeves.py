@@ -74,6 +74,16 @@ class SeatSleevesTuning(Quantities):
         "of the upper arm, from which an armhole is left alone while the other one is lower",
         "measured: drawn up with the other one, an armhole at 0.87 came to 1.00 and the collar 0.15 m headward (106)",
     )
+    enough_draws: int = quantity(
+        2,
+        "1",
+        "after which an armhole that is almost up, and was brought no higher by the last one, is left as it is",
+        "measured: right ones seen at 0.66 to 0.72, at 0.71 to 0.80 in truth, were drawn up five times more, seen no "
+        "higher, and had the collar 0.12 m headward each time (159, 161)",
+    )
+    brought_higher: float = quantity(
+        0.03, "1", "of the upper arm, by which a draw raises an armhole that is drawn again", "choice: half of an error"
+    )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
@@ -92,9 +102,10 @@ class SeatSleevesTuning(Quantities):
 
 @dataclass
 class Drawn:
-    """How often each sleeve was drawn up in this run."""
+    """How often each sleeve was drawn up in this run, and how far up it was seen before the last time."""
 
     times: dict[Side, int] = field(default_factory=lambda: dict.fromkeys(SIDES, 0))
+    reach: dict[Side, float] = field(default_factory=dict)
 
 
 class SeatSleeves(Skill):
@@ -104,7 +115,8 @@ class SeatSleeves(Skill):
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
     which takes half of the time, each as far as it is low: drawn too far, one takes the collar headward and to the
-    other side.  One that is up already is left alone, and one that is missed does not keep the other from being drawn.
+    other side.  One that is up already is left alone, and so is one that is almost up and that no draw brings higher;
+    one that is missed does not keep the other from being drawn.
     The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and
     drawn back, after a missed grasp too.
     """
@@ -127,27 +139,27 @@ class SeatSleeves(Skill):
 
     def _seat(self) -> Iterator[None]:
         """Look at both, take one after the other, lift, draw, lay down, let go."""
-        tuning = self.tuning
+        tuning, drawn = self.tuning, self.context.memory.of(Drawn, Drawn)
         shoulders = np.array([watch_arm(self, side).points_in_map[0] for side in SIDES])
         seams, reach = {}, {}
         for n, side in enumerate(SIDES):  # before a hand comes in between
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             reach[side] = self._reach(frame, side)
-            if reach[side] < tuning.up_already:
+            if reach[side] < tuning.up_already and not self._as_high_as_it_gets(side, reach[side], drawn):
                 seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
         if not seams:
-            self.note("both are up already")
+            self.note("both are up already, or come no higher")
             return
         held = yield from take_each({side: partial(self._take, side, seam) for side, seam in seams.items()})
         self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
         above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
         yield from carry_each(self, above, tuning.carry, tuning.apart)
         over, laid = {}, {}
-        drawn = self.context.memory.of(Drawn, Drawn).times
         for side in held:
-            inward, headward = self._drawn_to(reach[side], drawn[side])
-            drawn[side] += 1
+            inward, headward = self._drawn_to(reach[side], drawn.times[side])
+            drawn.times[side] += 1
+            drawn.reach[side] = reach[side]
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
@@ -164,6 +176,12 @@ class SeatSleeves(Skill):
             return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach
         except PerceptionFailure:
             return 0.0
+
+    def _as_high_as_it_gets(self, side: Side, reach: float, drawn: Drawn) -> bool:
+        """Whether an armhole seen at `reach` is almost up, and was seen no lower before it was drawn last."""
+        tuning = self.tuning
+        often, almost = drawn.times[side] >= tuning.enough_draws, reach >= tuning.low_and_almost[1]
+        return often and almost and reach < drawn.reach.get(side, 0.0) + tuning.brought_higher
 
     def _drawn_to(self, reach: float, times: int) -> tuple[float, float]:
         """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""

@@ -163,6 +163,20 @@ def test_one_that_is_still_low_is_drawn_farther_the_next_time():
     assert ends == pytest.approx([0.09, 0.115, 0.14, 0.14], abs=0.01)  # [m]
 
 
+@pytest.mark.parametrize(
+    ("times", "before", "now", "drawn"),
+    [(2, 0.71, 0.70, False), (2, 0.65, 0.70, True), (1, 0.71, 0.70, True), (4, 0.50, 0.50, True)],
+)
+def test_one_that_is_almost_up_and_that_no_draw_brings_higher_is_left(times, before, now, drawn):
+    run = bench(reach={"left": now, "right": 0.95})
+    memory = run.context.memory.of(Drawn, Drawn)
+    memory.times["left"], memory.reach["left"] = times, before
+    assert run.ended() is None
+    assert memory.times["left"] == times + drawn
+    moved = np.linalg.norm(np.ptp(run.way("left"), axis=0))
+    assert moved > 0.2 if drawn else moved == pytest.approx(0.0, abs=1e-3)  # [m]
+
+
 def test_where_both_are_up_no_hand_moves():
     run = bench(reach=dict.fromkeys(SIDES, 0.9))
     assert run.ended() is None

@@ -100,7 +100,7 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     looks = [
         node
         for side in SIDES
-        for node in sits(context, f"{side} in the end", side, DRESSING.armhole_sits, must_show=True)
+        for node in sits(context, f"{side} in the end", side, DRESSING.armhole_claimed, must_show=True)
     ]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
