@@ -6,6 +6,7 @@ that it is lost.  Everybody who limits the age of what is measured asks here.
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from operator import attrgetter
 
@@ -31,9 +32,10 @@ def fresh_observation(seen: Observation, now: float, limit: float) -> Observatio
     """
     if (age := now - seen.time) > limit:
         raise SensorStale(f"no new joint state for {age:.1f} s")
-    if not np.isfinite(seen.time):
+    if not math.isfinite(seen.time):
         raise SensorLost("the joint state has no time")
-    if np.isfinite(np.concatenate(_numbers(seen), axis=None)).all():  # at once: several times in every tick
+    numbers = np.concatenate(_numbers(seen), axis=None)
+    if math.isfinite(numbers.dot(numbers)) or np.isfinite(numbers).all():  # at once: several times in every tick
         return seen
     name = next(name for name in NUMBERS if not np.isfinite(getattr(seen, name)).all())
     raise SensorLost(f"{name} of the joint state holds a number that is not finite")

@@ -40,18 +40,22 @@ class Stopwatch:
 
 
 class _Counting:
-    """Switches to a part and back: physics does so at every step, and a generator would take twice as long."""
+    """Switches to a part and back: physics does so at every step, and a generator would take twice as long.
 
-    __slots__ = ("_part", "_switch")
+    May be entered again, but not within itself.
+    """
+
+    __slots__ = ("_before", "_part", "_switch")
 
     def __init__(self, switch: Callable[[str | None], str | None], part: str | None) -> None:
         self._switch, self._part = switch, part
+        self._before: str | None = None
 
     def __enter__(self) -> None:
-        self._part = self._switch(self._part)
+        self._before = self._switch(self._part)
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        self._switch(self._part)
+        self._switch(self._before)
 
 
 def timed(part: str) -> Callable[[Method], Method]:

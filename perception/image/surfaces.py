@@ -73,3 +73,21 @@ def surfaces(rgb: np.ndarray, tuning: SurfaceTuning = DEFAULT) -> np.ndarray:
         band = cv2.inRange(hsv, (h0 / 2, 255 * s0, 255 * v0), (h1 / 2, 255 * s1, 255))
         labels[band > 0] = surface
     return labels
+
+
+def surfaces_at(rgb: np.ndarray, rows: np.ndarray, columns: np.ndarray, tuning: SurfaceTuning = DEFAULT) -> np.ndarray:
+    """Label some pixels as `surfaces` does, for less than the whole picture costs.
+
+    Args:
+        rgb: (H, W, 3) uint8.
+        rows: (n,) of the pixels, at least one.
+        columns: (n,) of the pixels.
+        tuning: numbers of the segmentation.
+
+    Returns:
+        (n,) uint8 of `Surface` values.
+    """
+    room = tuning.blur_size // 2
+    top, left = max(rows.min() - room, 0), max(columns.min() - room, 0)
+    window = rgb[top : rows.max() + room + 1, left : columns.max() + room + 1]
+    return surfaces(window, tuning)[rows - top, columns - left]

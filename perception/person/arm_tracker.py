@@ -16,7 +16,7 @@ from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import ArmPosture
 from ..image.projection import pixels_of
-from ..image.surfaces import Surface, surfaces
+from ..image.surfaces import Surface, surfaces_at
 from .arm_filter import ArmFilter, ArmFilterTuning
 from .arm_fit import ArmFitTuning, ChainFit, Limb, fit_chain, point_along, span_row
 from .arm_search import ArmSearchTuning, find_arm
@@ -291,7 +291,7 @@ class ArmTracker:
         coordinates = np.linspace(*self._tuning.bare_range, self._tuning.bare_samples)
         axis = np.array([point_along(joints, float(coordinate)) for coordinate in coordinates])
         rows, columns, depth, inside = pixels_of(frame, axis)
-        skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN
+        skin = surfaces_at(frame.rgb, rows, columns) == Surface.SKIN
         near = np.abs(frame.depth[rows, columns] - depth) < self._tuning.skin_distance
         return float((inside & skin & near).mean())
 

@@ -11,7 +11,7 @@ from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Cover
 from ..image.projection import pixels_of
-from ..image.surfaces import Surface, surfaces
+from ..image.surfaces import Surface, surfaces_at
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,5 +40,5 @@ def hand_cover(frame: Frame, points_in_map: np.ndarray, tuning: HandCoverTuning 
     rows, columns, _, inside = pixels_of(frame, points_in_map)
     if inside.sum() < tuning.min_points:
         raise PerceptionFailure(Problem.OUT_OF_REACH, "hand of the person")
-    seen = surfaces(frame.rgb)[rows[inside], columns[inside]]
+    seen = surfaces_at(frame.rgb, rows[inside], columns[inside])
     return Cover(stamp=frame.stamp, confidence=float(inside.mean()), share=float((seen != Surface.SKIN).mean()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compiled import njit
 from ..effects.cloth.gown_patch import gown_patch, loaded, recalibrated
 from ..effects.cloth.proxy_bodies import ClothPatch
 from ..effects.model_file import EffectModel
@@ -145,12 +147,10 @@ class Cloth(ClothBody):
         held vertices' own weight.  Motor forces behind an anchored link are no load cell as soon as that link
         can turn: known weights were read 8 to 30 % wrong (`tests/sim/bullet/test_handle.py` checks this one).
         """
-        cut = self._cut(tuple(held))
-        along = vertices[cut.outer] - vertices[cut.inner]
-        length = np.sqrt(np.add.reduce(along * along, axis=1))
-        tension = self.mesh.spec.elastic * (length - cut.rest)
-        weight = self.mesh.spec.mass * len(held) / len(vertices) * GRAVITY
-        return np.add.reduce(along * (tension / length)[:, None], axis=0) - (0.0, 0.0, weight)
+        cut, load = self._cut(tuple(held)), np.zeros(3)
+        _add_pulls(vertices, cut.inner, cut.outer, cut.rest, self.mesh.spec.elastic, load)
+        load[2] -= self.mesh.spec.mass * len(held) / len(vertices) * GRAVITY
+        return load
 
     def _cut(self, held: tuple[int, ...]) -> _Cut:
         """The springs between held and free vertices, kept while the same are held: every control step asks."""
@@ -166,6 +166,21 @@ class Cloth(ClothBody):
                 inner=np.where(swap, outer, inner), outer=np.where(swap, inner, outer), rest=self.rest_lengths[cut]
             )
         return self._cuts[held]
+
+
+@njit()
+def _add_pulls(
+    vertices: np.ndarray, inner: np.ndarray, outer: np.ndarray, rest: np.ndarray, elastic: float, load: np.ndarray
+) -> None:
+    """Add up in `load` (3,) [N] what springs (n,) of a stiffness [N/m] pull their inner ends with."""
+    for n in range(len(rest)):
+        a, b = vertices[inner[n]], vertices[outer[n]]
+        x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        length = math.sqrt(x * x + y * y + z * z)
+        share = elastic * (length - rest[n]) / length
+        load[0] += x * share
+        load[1] += y * share
+        load[2] += z * share
 
 
 def load_gown(

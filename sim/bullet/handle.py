@@ -70,14 +70,21 @@ class Handle:
 
     def reset(self, pose_in_map: np.ndarray) -> None:
         """Jump to a pose and call its orientation zero; only while nothing is held."""
-        self._turn_at_reset = pose_in_map[:3, :3].copy()
+        self._followed, self._turn_at_reset = b"", pose_in_map[:3, :3].copy()
         self._target = np.concatenate([pose_in_map[:3, 3], np.zeros(3)])
         for joint, value in enumerate(self._target):
             self.client.resetJointState(self.body, joint, float(value))
         self._load, self._speed = [0.0] * 3, [0.0] * 3
 
     def follow(self, pose_in_map: np.ndarray) -> None:
-        """Set the motors towards a pose (4, 4) and take a load reading; once per physics step."""
+        """Set the motors towards a pose (4, 4); once per physics step.
+
+        Motors keep what they were told: there is nothing to tell them where the pose has not changed since, as in every
+        second step of the room, of which the robot's takes two.
+        """
+        if (pose := pose_in_map.tobytes()) == self._followed:
+            return
+        self._followed = pose
         self._target = motor_targets(pose_in_map, self._turn_at_reset, self._target)
         self.client.setJointMotorControlArray(
             self.body,

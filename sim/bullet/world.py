@@ -66,7 +66,7 @@ ROBOT_STEPS = 2  # room steps per robot step
 CONTROL_STEPS = 4  # room steps between two looks at the fingers
 SETTLE = 2.0  # the gown hangs still before the clock starts [s]
 SETTLE_RECORDED = 0.2  # what was recorded while it moved comes to rest [s]
-WRENCH_NOISE = (0.05, 0.005)  # standard deviation of the wrist sensors [N], [N m]
+WRENCH_NOISE = np.repeat((0.05, 0.005), 3)  # (6,) standard deviation of the wrist sensors [N], [N m]
 SLEEP_MOVE = 0.004  # cloth that moves less than this ... [m]
 SLEEP_TIME = 0.4  # ... in this time, and that nobody holds, rests: its physics waits [s]
 
@@ -124,6 +124,7 @@ class BulletWorld(World):
         self.robot = robot
         self.kinematics = kinematics_of(robot)
         self.stopwatch = Stopwatch()
+        self._in_bullet = self.stopwatch.of("bullet")  # entered at every step
         self._noise = np.random.default_rng([seed, 2])
         self._errors = SensorErrors(seed, self.scene.kind, bias=bias, joints=robot.commanded_joints)
         self._thinking = ThinkingTime(seed, self.scene.kind, head_joint=robot.head_joint)
@@ -176,7 +177,7 @@ class BulletWorld(World):
         add_furniture(c, scene.bed_xy, plain=self._engine.soft_bodies)
         self._person = Person(c, scene.person, BED_TOP, scene.bed_xy, plain=self._engine.soft_bodies)
         self._hook = Hook(c, self._cloth, hook, scene.hang_vertex)
-        self._vertices = self._cloth.vertices()
+        self._look_anew()
 
     def _stand(self, pose_base_in_map: tuple[float, float, float], **posture: Any) -> RobotBody:
         """Put the robot somewhere, arms ready unless `posture` says otherwise."""
@@ -217,7 +218,7 @@ class BulletWorld(World):
             self._patch.detach()
             self._patch = None
         self._cloth.remove()
-        self._vertices = self._cloth.vertices()
+        self._look_anew()
         self.scene = replace(self.scene, mesh=without_cloth(self.scene.mesh))
         self._truth = self._truth_source()
         self._backdrop.renderer.remove_cloth()
@@ -290,7 +291,7 @@ class BulletWorld(World):
 
     def _tell_where_it_lies(self) -> None:
         """Let sleep, proxy bodies and whatever else remembers it know where the gown has been put."""
-        self._vertices = self._cloth.vertices()
+        self._look_anew()
         if self._patch is not None:
             self._patch.attach(self._client, self._cloth.body, self._vertices)
 
@@ -301,22 +302,22 @@ class BulletWorld(World):
         now = self.clock.now()
         stands = self._robot.read()
         reading = self._errors.joints(stands, now)
-        hands = self._robot.poses_hands_in_map(reading)
+        hands = self._hands.copy() if reading is self._reading else self._robot.poses_hands_in_map(reading)
         wrench = np.zeros((2, 6))
         for n in range(2):
             wrench[n, :3] = self._grips[n].load
         wrench += self._contact.wrench(self._hands)
-        wrench += np.repeat(WRENCH_NOISE, 3) * self._noise.standard_normal((2, 6))
+        wrench += WRENCH_NOISE * self._noise.standard_normal((2, 6))
         wrench = self._errors.wrench(wrench, self._hands, hands)
         force = np.maximum(reading.gripper_force, self._contact.squeeze(self._hands))
         return Observation(
             time=now,
-            arm_positions=reading.arm_positions,
-            arm_velocities=reading.arm_velocities,
+            arm_positions=reading.arm_positions.copy(),
+            arm_velocities=reading.arm_velocities.copy(),
             arm_efforts=self._robot.efforts(stands),
             head_pan=reading.head_pan,
-            pose_base_in_map=reading.pose_base_in_map,
-            twist_base=reading.twist_base,
+            pose_base_in_map=reading.pose_base_in_map.copy(),
+            twist_base=reading.twist_base.copy(),
             gripper_opening=reading.gripper_opening.copy(),
             gripper_force=self._fingers.felt(force),
             wrench_hand_in_map=wrench,
@@ -397,7 +398,7 @@ class BulletWorld(World):
                 self._robot.apply_hand_force(side, grip.load)
         self._contact.push_robot(self._robot)
         self._robot.update(self.time.time)
-        with self.stopwatch.of("bullet"):
+        with self._in_bullet:
             self._robot_client.stepSimulation()
         self._reading = reading = self._robot.read()
         self._contact.watch(self.time.time + ROBOT_STEPS * TIME_STEP, reading)
@@ -419,7 +420,7 @@ class BulletWorld(World):
         self._apply_effects()
         self._contact.push_arms()
         self._person.spring()
-        with self.stopwatch.of("bullet"):
+        with self._in_bullet:
             self._soft.step()
         for n in held:
             if self._grips[n].kind in ("arm", "object"):
@@ -441,7 +442,7 @@ class BulletWorld(World):
         squeeze = self._contact.squeeze(self._hands)
         if self._fingers.holding():
             cloth = self._hook.holds or any(grip.kind == "cloth" for grip in self._grips)
-            vertices = self._cloth.vertices() if cloth else self._vertices
+            vertices = self._vertices_now() if cloth else self._vertices
             self._fingers.watch(self._cloth, vertices)
             held = self._fingers.held().get(self._cloth.body, ())
             self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)
@@ -460,7 +461,7 @@ class BulletWorld(World):
         """Let a gown and arms that lie still and that nobody holds or touches rest, as rigid bodies sleep."""
         if self._asleep or self._steps % int(SLEEP_TIME / TIME_STEP):
             return
-        vertices, arms = self._cloth.vertices(), self._person.arms()
+        vertices, arms = self._vertices_now(), self._person.arms()
         moved = max(float(np.abs(arms - self._arms).max()), self._objects.moved())
         moved = max(moved, float(np.abs(vertices - self._vertices).max(initial=0.0)))
         self._vertices, self._arms = vertices, arms
@@ -478,7 +479,7 @@ class BulletWorld(World):
             if self.scene.person.falls and step % CONTROL_STEPS == 0:
                 self._person.resist()
             self._soft.step()
-        self._vertices = self._cloth.vertices()
+        self._look_anew()
 
     # -- truth: for the recorder only ----------------------------------------------------------------------
 
@@ -504,7 +505,16 @@ class BulletWorld(World):
         return Exposure(time=self.time.time, vertices=vertices, arms=arms, reading=reading, objects=drawn)
 
     def _vertices_now(self) -> np.ndarray:
-        return self._vertices if self._asleep else self._cloth.vertices()
+        """(V, 3) of the gown [m], read-only: PyBullet is asked once between two steps, and for long."""
+        if self._asleep:
+            return self._vertices
+        if self._looked_at != self._steps:
+            self._looked_at, self._seen_vertices = self._steps, self._cloth.vertices()
+        return self._seen_vertices
+
+    def _look_anew(self) -> None:
+        """The gown has been put somewhere else, or has moved before the run."""
+        self._vertices, self._looked_at = self._cloth.vertices(), -1
 
     # -- faults that need physics --------------------------------------------------------------------------
 

@@ -33,7 +33,8 @@ class RobotCapsules:
         self.names = tuple(capsule.name for capsule in self.capsules)
         self.radii = np.array([capsule.radius for capsule in self.capsules])
         self._kinematics, model_ = kinematics, kinematics.model
-        self._asked, self._ends = b"", np.zeros((0, 2, 3))  # for one posture the guard and the skills ask in turn
+        self._asked = b""  # for one posture the guard and the skills ask in turn
+        self._ends = np.zeros((len(self.capsules), 2, 3))
         frames = [model_.frames[model_.getFrameId(capsule.link)] for capsule in self.capsules]
         self._joints = np.array([frame.parentJoint for frame in frames])
         self._local = np.stack(
@@ -63,9 +64,25 @@ class RobotCapsules:
         q = robot.configuration(pose_base_in_map, arm_positions, head_pan, gripper_opening)
         if (asked := q.tobytes()) != self._asked:
             pin.forwardKinematics(robot.model, robot.data, q)
-            self._ends = _placed(self._local, self._joints, self._places)
+            _place(self._local, self._joints, self._places, self._ends)
             self._asked = asked
         return self._ends.copy()
+
+    def ends_along(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """(k, r, 2, 3) what `ends` gives for postures (k, 2, n) of the arms, at least one, the rest being the same."""
+        robot, ends = self._kinematics, np.empty((len(arm_positions), *self._ends.shape))
+        q = robot.configuration(pose_base_in_map, arm_positions[0], head_pan, gripper_opening)
+        for n, arms in enumerate(arm_positions):
+            robot.turn_arms(q, arms)
+            pin.forwardKinematics(robot.model, robot.data, q)
+            _place(self._local, self._joints, self._places, ends[n])
+        return ends
 
     def rows(self, ends: np.ndarray) -> np.ndarray:
         """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""
@@ -83,13 +100,11 @@ def _places(data: pin.Data) -> np.ndarray:
 
 
 @njit()
-def _placed(local: np.ndarray, joints: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Points (r, 2, 3) in the frames of `joints` (r,), in the map."""
-    points = np.empty_like(local)
+def _place(local: np.ndarray, joints: np.ndarray, places: np.ndarray, points: np.ndarray) -> None:
+    """Put points (r, 2, 3), given in the frames of `joints` (r,), in place in the map."""
     for n in range(len(local)):
         place = places[joints[n]]
         for end in range(2):
             x, y, z = local[n, end, 0], local[n, end, 1], local[n, end, 2]
             for k in range(3):
                 points[n, end, k] = fma(z, place[6 + k], fma(y, place[3 + k], x * place[k])) + place[9 + k]
-    return points

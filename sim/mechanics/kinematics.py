@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -71,7 +71,8 @@ class Kinematics:
         self._finger_index = np.array(
             [[full.joints[full.getJointId(name)].idx_q for name in robot.fingers[side]] for side in SIDES]
         )
-        self._base_index = np.array([full.joints[full.getJointId(name)].idx_q for name in robot.base_joints])
+        self._base_place = _place(np.array([full.joints[full.getJointId(name)].idx_q for name in robot.base_joints]))
+        self._arm_places = [_place(index) for index in self._arm_index]
         self._head_index = full.joints[full.getJointId(robot.head_joint)].idx_q
         self.head_range = (
             float(full.lowerPositionLimit[self._head_index]),
@@ -135,12 +136,16 @@ class Kinematics:
     ) -> np.ndarray:
         """Joint vector (nq,) of the full model."""
         q = np.zeros(self.model.nq)
-        q[self._base_index] = pose_base_in_map
-        q[self._arm_index] = arm_positions
+        q[self._base_place] = pose_base_in_map
         q[self._head_index] = head_pan
         if gripper_opening is not None:
             q[self._finger_index] = np.asarray(gripper_opening)[:, None] / 2.0
+        self.turn_arms(q, arm_positions)
         return q
+
+    def turn_arms(self, q: np.ndarray, arm_positions: np.ndarray) -> None:
+        """Put angles (2, n) [rad] of the arms into a joint vector of `configuration`."""
+        q[self._arm_places[0]], q[self._arm_places[1]] = arm_positions
 
     def link_poses(self, q: np.ndarray) -> dict[str, np.ndarray]:
         """Pose (4, 4) in the map of every link, for a joint vector of `configuration`."""
@@ -172,6 +177,11 @@ class Kinematics:
         velocity[self._arm_index] = arm_velocities
         acceleration[self._arm_index] = arm_accelerations
         return pin.rnea(self.model, self.data, q, velocity, acceleration)[self._arm_index]
+
+
+def _place(index: np.ndarray) -> Any:
+    """An index (n,) as a slice where its numbers follow each other: that is several times quicker."""
+    return slice(index[0], index[-1] + 1) if (np.diff(index) == 1).all() else index
 
 
 @lru_cache

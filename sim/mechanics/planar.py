@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,9 +11,16 @@ from ..compiled import njit
 
 
 def planar_pose(pose_base_in_map: np.ndarray) -> np.ndarray:
-    """Transform (4, 4) of a base pose (x [m], y [m], yaw [rad])."""
-    x, y, yaw = pose_base_in_map
-    return _planar_pose(float(x), float(y), float(yaw))
+    """Transform (4, 4) of a base pose (x [m], y [m], yaw [rad]); read-only."""
+    return _kept(*np.asarray(pose_base_in_map, float).tolist())
+
+
+@lru_cache(maxsize=16)
+def _kept(x: float, y: float, yaw: float) -> np.ndarray:
+    """While the base stands, every step and every hand asks for the same pose."""
+    pose = _planar_pose(x, y, yaw)
+    pose.flags.writeable = False
+    return pose
 
 
 @njit()

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..vector import length
+from ..compiled import njit
 from ..world import SIDES, HandTwist, Side
 from .damped_rates import damped_rates
 from .kinematics import Kinematics
 from .planar import planar_pose
-from .twist_law import lead, ramp
+from .twist_law import lead, pace, ramp
 
-_CENTRING = 0.4  # pull of the null space towards the ready posture [1/s] ...
-# ... of a hand that moves as fast as this: where it stands, the elbow stands too [m/s, rad/s]
-_CENTRED_AT = (0.1, 0.5)
+_CENTRING = 0.4  # pull of the null space towards the ready posture at full pace [1/s]
 _STILL = np.zeros(6)
 
 
@@ -77,13 +75,27 @@ class TwistTracker:
         if time > self._until and fastest < 1e-6:
             self.cancel()
             return None
-        velocity = lead(self._pose, self._twist, dt, base, twist_base, hand)
-        return damped_rates(jacobian, velocity, q, self._joints, _CENTRING * self._pace(), dt)
+        rates = np.empty(len(q))
+        _follow(self._pose, self._twist, dt, base, twist_base, hand, jacobian, q, self._joints, rates)
+        return rates
 
-    def _pace(self) -> float:
-        """How fast the hand is told to move, from 0 to 1.
 
-        A guard that slows a hand down as a link comes near to something must not see that link go on by itself.
-        """
-        move, turn = length(self._twist[:3]), length(self._twist[3:])
-        return min(1.0, move / _CENTRED_AT[0] + turn / _CENTRED_AT[1])
+@njit()
+def _follow(
+    goal: np.ndarray,
+    twist: np.ndarray,
+    dt: float,
+    base: np.ndarray,
+    twist_base: np.ndarray,
+    hand: np.ndarray,
+    jacobian: np.ndarray,
+    q: np.ndarray,
+    joints: np.ndarray,
+    rates: np.ndarray,
+) -> None:
+    """Put the joint rates (n,) in place that follow the pose; see `lead`, `pace` and `damped_rates`.
+
+    One call, as it is made at every step, and an array that a compiled function returns costs as much as the call.
+    """
+    velocity = lead(goal, twist, dt, base, twist_base, hand)
+    rates[:] = damped_rates(jacobian, velocity, q, joints, _CENTRING * pace(twist), dt)

@@ -10,6 +10,7 @@ from ..compiled import njit
 from .rotation_vector import rotation, rotation_vector
 
 _GAIN = 8.0  # of the position feedback that takes out the drift of integrating joint rates [1/s]
+_FULL_PACE = (0.1, 0.5)  # [m/s, rad/s]
 _MAX_LAG = (0.01, 0.06)  # the pose to follow never runs further ahead than this [m, rad]
 
 
@@ -65,6 +66,16 @@ def lead(
             for m in range(3):
                 along[3 * part + k] += velocity[part, m] * hand[m, k]
     return along
+
+
+@njit()
+def pace(twist: np.ndarray) -> float:
+    """How fast a twist (6,) moves the hand, from 0 to 1.
+
+    Where the hand stands, the elbow stands too: a guard that slows a hand down as a link comes near to something must
+    not see that link go on by itself.
+    """
+    return min(1.0, _length(twist[:3]) / _FULL_PACE[0] + _length(twist[3:]) / _FULL_PACE[1])
 
 
 @njit(inline="always")

@@ -116,6 +116,9 @@ class RobotBody:
         self._forces = np.concatenate((_BASE_FORCE, self._rated.ravel(), (_HEAD_TORQUE,), np.zeros(4)))
         self._fingers = np.full(4, opening / 2)
         self._next_update = -np.inf
+        self._reading: JointReading | None = None  # what `read` last said, as long as it holds
+        self._carried: JointReading | None = None  # for which `_efforts` were computed last
+        self._efforts = np.zeros((2, robot.dof))
         start = self._targets()[0]
         for joint, value in zip(self._joints, start, strict=True):
             client.resetJointState(self.body, joint, float(value))
@@ -138,6 +141,7 @@ class RobotBody:
 
     def command(self, command: Command) -> Command:
         """Start a command; returns it as clipped (see `Servo.command`)."""
+        self._reading = None  # what the fingers feel depends on what they were told
         return self.servo.command(command)
 
     def move_joints(self, side: Side, velocities: np.ndarray, duration: float) -> None:
@@ -151,16 +155,21 @@ class RobotBody:
     def update(self, time: float) -> None:
         """Set the motors for the physics step that starts at `time` [s]; cheap between control periods."""
         if time + 1e-9 >= self._next_update:
-            states = self._client.getJointStates(self.body, self._joints[self._arms])
-            arms = np.array([state[0] for state in states])
-            self._forces[self._arms] = self._torque_limits(arms.reshape(2, -1)).ravel()
-            self.servo.keep_near(arms)
+            arms = self.read().arm_positions
+            self._forces[self._arms] = self._torque_limits(arms).ravel()
+            self.servo.keep_near(arms.ravel())
             self.servo.advance(time + PERIOD)
             self._next_update = time + PERIOD
             self._drive()
+        self._reading = None
 
     def read(self) -> JointReading:
-        """Joint positions, velocities and torques as the sensors see them."""
+        """Joint positions, velocities and torques as the sensors see them; the same until the next `update`."""
+        if self._reading is None:
+            self._reading = self._read()
+        return self._reading
+
+    def _read(self) -> JointReading:
         states = self._client.getJointStates(self.body, self._joints)
         columns = tuple(zip(*states, strict=True))  # called at every step of the robot
         q, dq, torque = np.array(columns[0]), np.array(columns[1]), np.array(columns[3])
@@ -189,7 +198,10 @@ class RobotBody:
 
     def efforts(self, reading: JointReading) -> np.ndarray:
         """(2, n) torque of the arms' motors, gravity included, where the joints are as in `reading` [N m]."""
-        return reading.motor_torques + self.kinematics.gravity_torque(self.configuration(reading))
+        if self._carried is not reading:  # several look within one tick
+            gravity = self.kinematics.gravity_torque(self.configuration(reading))
+            self._carried, self._efforts = reading, reading.motor_torques + gravity
+        return self._efforts.copy()
 
     def poses_hands_in_map(self, reading: JointReading | None = None) -> np.ndarray:
         """Poses (2, 4, 4) of both hands by forward kinematics of the measured joints."""

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compiled import njit
 from ..mechanics.joint_limits import JointLimits
 from ..mechanics.kinematics import Kinematics
 from ..mechanics.robot_model import RobotModel
@@ -184,22 +185,22 @@ class ScriptedWorld(World):
     def observe(self) -> Observation:
         """Exact joints, noisy wrenches."""
         now = self.clock.now()
-        held = [
-            self.between_fingers[side] + 1e-6 >= opening > 1e-6
-            for side, opening in zip(SIDES, self._opening.tolist(), strict=True)
-        ]
-        wrench = np.array((self.load["left"], self.load["right"])) + WRENCH_NOISE * self._rng.standard_normal((2, 6))
-        squeezing = [force if holds else 0.0 for force, holds in zip(self._force_limit.tolist(), held, strict=True)]
+        wrench = WRENCH_NOISE * self._rng.standard_normal((2, 6))
+        squeezing = self._force_limit.copy()
+        for n, (side, opening) in enumerate(zip(SIDES, self._opening.tolist(), strict=True)):
+            wrench[n] += self.load[side]
+            if not self.between_fingers[side] + 1e-6 >= opening > 1e-6:
+                squeezing[n] = 0.0
         return Observation(
             time=now,
             arm_positions=self._q.copy(),
             arm_velocities=self._dq.copy(),
-            arm_efforts=np.zeros_like(self._q),
+            arm_efforts=np.zeros(self._q.shape),
             head_pan=self._head,
             pose_base_in_map=self._base.copy(),
             twist_base=self._twist_base(now).copy(),
             gripper_opening=self._opening.copy(),
-            gripper_force=np.array(squeezing),
+            gripper_force=squeezing,
             wrench_hand_in_map=wrench,
             pose_hand_in_map=self._hand_poses().copy(),
         )
@@ -293,7 +294,8 @@ class ScriptedWorld(World):
         """Fraction of the speed that is left at `time` after a stop."""
         if self._stopping_time <= 0.0:
             return 0.0
-        return min(max(1.0 - (time - self._coast_start) / self._stopping_time, 0.0), 1.0)
+        left = 1.0 - (time - self._coast_start) / self._stopping_time
+        return 0.0 if left <= 0.0 else min(left, 1.0)
 
     def _end_coasting(self, arm: int) -> None:
         """A new command takes an arm over (-1: the base)."""
@@ -313,7 +315,7 @@ class ScriptedWorld(World):
     def _advance_to(self, time: float) -> None:
         while self.time.time < time - 1e-9:
             if self._rests():
-                self._dq = np.zeros_like(self._q)
+                self._dq[:] = 0.0
                 break
             longest = min(self._longest_step, self._twist_step) if self._twisting() else self._longest_step
             self._step(min(longest, time - self.time.time))
@@ -341,7 +343,7 @@ class ScriptedWorld(World):
     def _step(self, dt: float) -> None:
         now = self.time.time + dt
         before = self._q.copy()
-        for motion in list(self._motions):
+        for motion in tuple(self._motions):
             values = motion.at(now - motion.start)
             self._q[motion.arms, motion.joints] = values[motion.columns]
             if motion.head is not None:
@@ -354,7 +356,7 @@ class ScriptedWorld(World):
             turns = twist.rates(now, self._q[arm], self._dq[arm], self._base, self._twist_base(self.time.time))
             if turns is not None:
                 self._q[arm] += turns * dt
-        for arm, (rates, until) in list(self._rates.items()):
+        for arm, (rates, until) in tuple(self._rates.items()):
             moved = min(until, now) - self.time.time
             if moved <= 1e-9:
                 del self._rates[arm]
@@ -363,15 +365,13 @@ class ScriptedWorld(World):
         left = self._slowing(now)
         if left > 0.0:
             self._q += self._coast_q * left * dt
-        if not self._unlimited:
-            np.minimum(np.maximum(self._q, self._lower), self._upper, out=self._q)  # np.clip takes twice as long
+        _limit(self._q, before, self._lower, self._upper, dt, self._dq)
         driven = max(min(self._base_until, now) - self.time.time, 0.0)
         if left > 0.0 or driven > 0.0:
             self._drive(driven * self._base_velocity + dt * left * self._coast_base)
         goal = self._fingers_goal()
         if self._opening.tolist() != goal:
             self._opening += np.clip(goal - self._opening, -FINGER_SPEED * dt, FINGER_SPEED * dt)
-        self._dq = (self._q - before) / dt
         self.time.time = now
 
     def _drive(self, way: np.ndarray) -> None:
@@ -414,3 +414,17 @@ class ScriptedWorld(World):
     def fault_move_person(self) -> None:
         """The person shifts by 10 cm."""
         self._person_offset = self._person_offset + np.array((0.1, 0.0, 0.0))
+
+
+@njit()
+def _limit(
+    q: np.ndarray, before: np.ndarray, lower: np.ndarray, upper: np.ndarray, dt: float, rates: np.ndarray
+) -> None:
+    """Keep angles (2, n) within their limits, and note at which rates (2, n) a step has brought them there."""
+    for arm in range(len(q)):
+        for joint in range(q.shape[1]):
+            if q[arm, joint] < lower[arm, joint]:
+                q[arm, joint] = lower[arm, joint]
+            elif q[arm, joint] > upper[arm, joint]:
+                q[arm, joint] = upper[arm, joint]
+            rates[arm, joint] = (q[arm, joint] - before[arm, joint]) / dt

@@ -18,7 +18,7 @@ import numpy as np
 from ...perception.errors import PerceptionFailure, Problem
 from ...perception.estimates import ArmPosture
 from ...perception.image.projection import pixels_of
-from ...perception.image.surfaces import Surface, surfaces
+from ...perception.image.surfaces import Surface, surfaces_at
 from ...perception.person.arm_fit import turned_about_shoulder
 from ...perception.person.lying_body import body_of
 from ...perception.person.person_facts import PERSON
@@ -227,12 +227,10 @@ def visible_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTu
         posture: where the arm is, or was.
         tuning: where it is looked at, and when it is hidden.
     """
-    path = ArmPath.of(posture)
-    coordinates = np.linspace(tuning.visible_from, tuning.visible_to, tuning.visible_points)
-    axis = np.array([path.point(float(coordinate)) for coordinate in coordinates])
+    axis = ArmPath.of(posture).at(np.linspace(tuning.visible_from, tuning.visible_to, tuning.visible_points))
     rows, columns, depth, inside = pixels_of(frame, axis)
     seen = frame.depth[rows, columns]
-    skin = surfaces(frame.rgb)[rows, columns] == Surface.SKIN  # an arm in front of where it was is not hidden
+    skin = surfaces_at(frame.rgb, rows, columns) == Surface.SKIN  # an arm in front of where it was is not hidden
     return float((inside & (skin | (seen > depth - tuning.hidden_behind))).mean())
 
 

@@ -75,6 +75,12 @@ class ArmPath:
         segment = _segment(coordinate)
         return self.points[segment] + (coordinate - segment) * self.lengths[segment] * self._directions[segment]
 
+    def at(self, coordinates: np.ndarray) -> np.ndarray:
+        """(n, 3) points of the arm's axis [m], as `point` gives them."""
+        segments = np.minimum(np.maximum(np.floor(coordinates), 0), 2).astype(int)
+        along = (coordinates - segments) * self.lengths[segments]
+        return self.points[segments] + along[:, None] * self._directions[segments]
+
     def direction(self, coordinate: float) -> np.ndarray:
         """(3,) unit vector towards the fingertip, turning evenly near the joints."""
         segment, rest = _segment(coordinate), coordinate - _segment(coordinate)
@@ -107,10 +113,7 @@ class ArmPath:
         else:
             low, high = near - tuning.search_window, near + tuning.search_window
         coordinates = np.linspace(low, high, int((high - low) / tuning.search_step) + 1)
-        segments = np.clip(np.floor(coordinates), 0, 2).astype(int)
-        along = (coordinates - segments) * self.lengths[segments]
-        points = self.points[segments] + along[:, None] * self._directions[segments]  # as `point` does
-        return float(coordinates[int(np.argmin(np.linalg.norm(points - point_in_map, axis=1)))])
+        return float(coordinates[int(np.argmin(np.linalg.norm(self.at(coordinates) - point_in_map, axis=1)))])
 
     def moved(self, coordinate: float, distance: float) -> float:
         """The arm coordinate `distance` [m] further towards the fingertip (negative: towards the shoulder)."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
+from ...sim.segments import any_nearer
 from ...sim.world import Side
 from .person_zone import HEAD, PersonZone
 
@@ -71,9 +72,17 @@ class LinkClearance:
             (r, m) room [m] and (r, m, 3) directions from the person to the link.
         """
         gaps, away = zone.gaps(ends_in_map, self.radii)
+        return gaps - self._least(zone, held), away
+
+    def less_left(self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str], room: np.ndarray) -> bool:
+        """Whether less is left of any gap than `room` (r, m) [m]; the other arguments are those of `room()`."""
+        return any_nearer(ends_in_map, self.radii, zone.ends, zone.radii, self._least(zone, held) + room)
+
+    def _least(self, zone: PersonZone, held: Mapping[Side, str]) -> np.ndarray:
+        """Least gaps (r, m) [m], kept as long as nothing is held otherwise."""
         if (asked := (zone.names, dict(held))) != self._asked:
             self._asked, self._gaps = asked, self.least_gaps(*asked)
-        return gaps - self._gaps, away
+        return self._gaps
 
     def least_gaps(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
         """Least gaps (r, m) [m].

@@ -30,6 +30,7 @@ class PersonZone:
         names: (m,) part that each capsule belongs to.
         ends: (m, 2, 3) of their axes [m].
         radii: (m,) [m].
+        known: whether all of the person has been seen at least once.
     """
 
     def __init__(self, bed: np.ndarray, above_bed: float = 0.0) -> None:
@@ -37,15 +38,11 @@ class PersonZone:
         self._bed = mattress.copy()
         self._bed[1, 2] += above_bed
         self._parts: dict[str, tuple[np.ndarray, float]] = {}
-        self._held: dict[str, tuple[np.ndarray, np.ndarray]] = {}  # arm -> its points and where a hand took it
+        # arm -> its points and where a hand took it, and where that hand was last
+        self._held: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray | None]] = {}
         self._has_bed = bool(np.ptp(mattress, axis=0).all())
         self._expected = expected_body(mattress) if self._has_bed else {}
         self._stack()
-
-    @property
-    def known(self) -> bool:
-        """Whether all of the person has been seen at least once."""
-        return WHOLE in self._parts or all(part in self._parts for part in PARTS)
 
     def seen(self, part: str) -> bool:
         """Whether that part has been seen at least once."""
@@ -85,15 +82,18 @@ class PersonZone:
         """
         if part not in self._parts:
             return
-        points, radius = self._parts[part]
-        chain, taken_at = self._held.setdefault(part, (points, np.asarray(hand_in_map, float)))
-        self._parts[part] = (_turned(chain, taken_at, np.asarray(hand_in_map, float)), radius)
+        hand, (points, radius) = np.array(hand_in_map, float), self._parts[part]
+        chain, taken_at, was_at = self._held.get(part, (points, hand, None))
+        if was_at is not None and (hand == was_at).all():
+            return
+        self._held[part] = chain, taken_at, hand
+        self._parts[part] = (_turned(chain, taken_at, hand), radius)
         self._stack()
 
     def distance(self, positions_in_map: np.ndarray) -> np.ndarray:
         """Distance (k,) from each position (k, 3) to where the person is or may be [m]; 0 inside."""
-        points = np.atleast_2d(np.asarray(positions_in_map, float))
-        return self.link_distance(np.stack((points, points), axis=1), np.zeros(len(points)))
+        points = np.asarray(positions_in_map, float).reshape(-1, 1, 3)
+        return self.link_distance(points.repeat(2, axis=1), np.zeros(len(points)))
 
     def link_distance(self, ends_in_map: np.ndarray, radii: np.ndarray) -> np.ndarray:
         """Distance (r,) from each capsule, ends (r, 2, 3) and radii (r,), to where the person is or may be [m]."""
@@ -114,6 +114,7 @@ class PersonZone:
 
     def _stack(self) -> None:
         """All chains as one array of capsules; what has not been seen is where it is expected."""
+        self.known = WHOLE in self._parts or all(part in self._parts for part in PARTS)
         parts = dict(self._parts) if WHOLE in self._parts else {**self._expected, **self._parts}
         chains = {name: (_links(points), radius) for name, (points, radius) in parts.items()}
         self.names = tuple(name for name, (links, _) in chains.items() for _ in links)
@@ -166,9 +167,9 @@ def body_parts(
 
 def _links(points: np.ndarray) -> np.ndarray:
     """The segments (k, 2, 3) of a chain (n, 3); a single point is one without length."""
-    if len(points) == 1:
-        return np.stack((points, points), axis=1)
-    return np.stack((points[:-1], points[1:]), axis=1)
+    links = np.empty((max(len(points) - 1, 1), 2, 3))
+    links[:, 0], links[:, 1] = points[: len(links)], points[-len(links) :]
+    return links
 
 
 def _to_chain(points: np.ndarray, chain: np.ndarray, radius: float) -> np.ndarray:

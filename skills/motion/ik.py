@@ -18,7 +18,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross, length
 from ...sim.world import SIDES, Side
 from .errors import Unreachable
-from .ik_step import ik_step
+from .ik_step import next_posture
 
 if TYPE_CHECKING:
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
@@ -69,6 +69,7 @@ class IkTuning(Quantities):
 
 
 IK = IkTuning()
+_AXES = np.eye(3)
 
 
 def solve_ik(
@@ -210,8 +211,10 @@ def _descend(
         if step > tuning.stuck_after and size > tuning.stuck_ratio * last and size > tuning.stuck_error:
             break  # stuck far away: another seed is cheaper
         last = size
-        step_q = ik_step(
-            weight[:, None] * jacobian[rows],
+        q = next_posture(
+            jacobian,
+            rows,
+            weight,
             e,
             tuning.posture_gain * (posture - q),
             damping,
@@ -219,17 +222,16 @@ def _descend(
             limits.lower,
             limits.upper,
             tuning.active_set_rounds,
+            tuning.max_step,
         )
-        q = q + step_q * min(1.0, tuning.max_step / max(float(np.abs(step_q).max()), 1e-9))
-        q = np.minimum(np.maximum(q, limits.lower), limits.upper)
     return result
 
 
-def _task_rows(free: FreeAxis) -> list[int]:
+def _task_rows(free: FreeAxis) -> np.ndarray:
     rows = {"none": [0, 1, 2, 3, 4, 5], "approach": [0, 1, 2, 3, 4], "closing": [0, 1, 2, 3, 5], "any": [0, 1, 2]}
     if free not in rows:
         raise ValueError(f"free must be one of {', '.join(rows)}, got {free!r}")
-    return rows[free]
+    return np.array(rows[free])
 
 
 def _error(pose: pin.SE3, target: pin.SE3, free: FreeAxis) -> np.ndarray:
@@ -243,7 +245,7 @@ def _error(pose: pin.SE3, target: pin.SE3, free: FreeAxis) -> np.ndarray:
         error[3:] = pin.log3(R.T @ target.rotation)
     elif free != "any":
         k = 2 if free == "approach" else 1
-        axis = np.eye(3)[k]
+        axis = _AXES[k]
         wanted = R.T @ target.rotation[:, k]
         product, cosine = cross(axis, wanted), float(wanted[k])
         sine = length(product)

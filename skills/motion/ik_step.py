@@ -10,6 +10,44 @@ from ...sim.compiled import njit
 
 
 @njit()
+def next_posture(
+    jacobian: np.ndarray,
+    rows: np.ndarray,
+    weight: np.ndarray,
+    error: np.ndarray,
+    drift: np.ndarray,
+    damping: float,
+    q: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    rounds: int,
+    max_step: float,
+) -> np.ndarray:
+    """Angles (n,) after a step of `ik_step` from `q`, in which no joint turns by more than `max_step` [rad].
+
+    Args:
+        jacobian: (6, n) of the hand.
+        rows: (k,) of it that the task takes.
+        weight: (k,) of those rows.
+        error: (k,), weighted.
+        drift: as for `ik_step`.
+        damping: the same.
+        q: the same.
+        lower: the same.
+        upper: the same.
+        rounds: the same.
+        max_step: [rad].
+    """
+    J = np.empty((len(rows), len(q)))
+    for k in range(len(rows)):
+        for n in range(len(q)):
+            J[k, n] = weight[k] * jacobian[rows[k], n]
+    step = ik_step(J, error, drift, damping, q, lower, upper, rounds)
+    share = min(1.0, max_step / max(np.max(np.abs(step)), 1e-9))
+    return np.minimum(np.maximum(q + step * share, lower), upper)
+
+
+@njit()
 def ik_step(
     J: np.ndarray,
     error: np.ndarray,

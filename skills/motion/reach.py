@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -84,8 +84,8 @@ def plan_hand_line(
     for side in sides:
         q = np.asarray(arm_positions[SIDES.index(side)], float)
         path = [q]
-        for share in np.linspace(0.0, 1.0, count + 1)[1:]:
-            pose = _between(starts[side], np.asarray(goals[side], float), share)
+        shares = np.linspace(0.0, 1.0, count + 1)[1:]
+        for share, pose in zip(shares, _line(starts[side], np.asarray(goals[side], float), shares), strict=True):
             q = solve_ik(kinematics, side, pose, pose_base_in_map, path[-1], free=free, seeds=1)
             if np.abs(q - path[-1]).max() > tuning.max_joint_step:
                 raise Unreachable(
@@ -239,11 +239,14 @@ def _line_points(start: np.ndarray, goal: np.ndarray, tuning: ReachTuning) -> in
     return max(1, int(np.ceil(max(distance / tuning.line_step, angle / tuning.line_turn))))
 
 
-def _between(start: np.ndarray, goal: np.ndarray, share: float) -> np.ndarray:
+def _line(start: np.ndarray, goal: np.ndarray, shares: np.ndarray) -> Iterator[np.ndarray]:
+    """Poses (4, 4) after shares (k,) of a straight line between two poses, turning evenly."""
     from scipy.spatial.transform import Rotation
 
     turn = Rotation.from_matrix(goal[:3, :3] @ start[:3, :3].T).as_rotvec()
-    pose = np.eye(4)
-    pose[:3, :3] = Rotation.from_rotvec(share * turn).as_matrix() @ start[:3, :3]
-    pose[:3, 3] = (1.0 - share) * start[:3, 3] + share * goal[:3, 3]
-    return pose
+    turns = Rotation.from_rotvec(shares[:, None] * turn).as_matrix()
+    for share, turned in zip(shares, turns, strict=True):
+        pose = np.eye(4)
+        pose[:3, :3] = turned @ start[:3, :3]
+        pose[:3, 3] = (1.0 - share) * start[:3, 3] + share * goal[:3, 3]
+        yield pose

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ...sim.mechanics.collision import CollisionChecker
 from ...sim.mechanics.kinematics import Kinematics
 from ...sim.quantity import Quantities, quantity
+from ...sim.vector import length as vector_length
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked
 
@@ -204,14 +206,7 @@ def _retime(
     length = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     path = toppra.SplineInterpolator(length, points)
     limits = [kinematics.limits[side] for side in sides]
-    velocity = scale * np.concatenate([limit.velocity for limit in limits])
-    acceleration = tuning.limit_margin * scale**2 * np.concatenate([limit.acceleration for limit in limits])
-    constraints: list[Any] = [
-        toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
-        toppra.constraint.JointAccelerationConstraint(
-            np.stack((-acceleration, acceleration), axis=1), toppra.constraint.DiscretizationType.Interpolation
-        ),
-    ]
+    constraints = list(_joint_constraints(kinematics, tuple(sides), scale, tuning.limit_margin))
     if hand_speed is not None:
         constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed, tuning.limit_margin))
     grid = np.linspace(0.0, length[-1], int(np.clip(length[-1] / tuning.grid_step, *tuning.grid_intervals)) + 1)
@@ -225,6 +220,22 @@ def _retime(
     lower = np.concatenate([limit.lower for limit in limits])
     upper = np.concatenate([limit.upper for limit in limits])
     return times, np.clip(samples, lower, upper)
+
+
+@lru_cache(maxsize=64)
+def _joint_constraints(kinematics: Kinematics, sides: tuple[Side, ...], scale: float, margin: float) -> tuple[Any, ...]:
+    """Toppra's constraints of the joints' rates; it writes a description of each, which takes longer than their use."""
+    import toppra
+
+    limits = [kinematics.limits[side] for side in sides]
+    velocity = scale * np.concatenate([limit.velocity for limit in limits])
+    acceleration = margin * scale**2 * np.concatenate([limit.acceleration for limit in limits])
+    return (
+        toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
+        toppra.constraint.JointAccelerationConstraint(
+            np.stack((-acceleration, acceleration), axis=1), toppra.constraint.DiscretizationType.Interpolation
+        ),
+    )
 
 
 def _hand_speed_constraint(
@@ -253,8 +264,8 @@ def _hand_speed_constraint(
                     limit = hand_speed
                     if callable(limit):
                         limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])
-                    moved = np.linalg.norm(kinematics.jacobian_hand_in_base(side, arm)[:3] @ rate)
-                    bounds[n, 1] = min(bounds[n, 1], (margin * float(limit) / max(float(moved), 1e-6)) ** 2)
+                    moved = vector_length(kinematics.jacobian_hand_in_base(side, arm)[:3] @ rate)
+                    bounds[n, 1] = min(bounds[n, 1], (margin * float(limit) / max(moved, 1e-6)) ** 2)
             return None, None, None, None, None, None, bounds
 
     return HandSpeedConstraint()

@@ -17,13 +17,14 @@ def clock(monkeypatch):
 def test_a_part_inside_another_counts_alone(clock):
     watch = Stopwatch()
     clock[0] += 100.0
+    inner = watch.of("inner")
     with watch.of("outer"):
         clock[0] += 1.0
-        with watch.of("inner"):
+        with inner:
             clock[0] += 4.0
         clock[0] += 2.0
     clock[0] += 100.0
-    with watch.of("inner"):
+    with inner:  # entered again
         clock[0] += 8.0
     assert dict(watch.wall) == {"outer": 3.0, "inner": 12.0}
     assert dict(watch.processor) == {"outer": 1.5, "inner": 6.0}

@@ -84,10 +84,10 @@ class KeepClear:
             return
         _, ends = self._motion.along(command, seen)
         rows = np.any([self._motion.rows(side) for side in sides], axis=0)[:, None]
-        least = np.minimum(self._room(ends[0], held)[0], 0.0) - PLANNED_TOLERANCE
+        least = np.where(rows, np.minimum(self._room(ends[0], held)[0], 0.0) - PLANNED_TOLERANCE, -np.inf)
         for after in (*ends[:: max(1, len(ends) // CHECKED)], ends[-1]):
-            short = np.where(rows, least - self._room(after, held)[0], -np.inf)
-            if short.max(initial=-np.inf) > 0.0:
+            if self._clearance.less_left(after, self._zone, held, least):
+                short = least - self._room(after, held)[0]
                 link, part = np.unravel_index(int(short.argmax()), short.shape)
                 name = self._motion.names[link].rstrip("_123456789").replace("_", " ")
                 raise SkillFailure(

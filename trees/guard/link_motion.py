@@ -14,7 +14,8 @@ from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import SIDES, JointTrajectory, Observation, Side
 from .hand_speed import sampled
 
-DAMPING = 0.02  # [m] of the step from a hand's motion to its joints', so that it stays small at a stretched arm
+_DAMPING = 0.02  # [m] of the step from a hand's motion to its joints', so that it stays small at a stretched arm
+_DAMPED = _DAMPING**2 * np.eye(6)
 
 
 class LinkMotion:
@@ -43,6 +44,7 @@ class LinkMotion:
         self._seen: Observation | None = None
         self._seen_ends = np.zeros((0, 2, 3))
         self._went: tuple[JointTrajectory, Observation, tuple[np.ndarray, np.ndarray]] | None = None
+        self._postures: tuple[JointTrajectory, Observation, tuple[np.ndarray, np.ndarray]] | None = None
         self._rows = {side: np.array([name.startswith(side) for name in self.names]) for side in SIDES}
 
     def rows(self, side: Side) -> np.ndarray:
@@ -68,7 +70,7 @@ class LinkMotion:
         """(r, 2, 3) ends once a hand has moved with a twist (6,) for `duration` [s], the base at rest."""
         n, arms = SIDES.index(side), np.array(seen.arm_positions, float)
         jacobian = self._kinematics.jacobian_hand_in_map(side, arms[n], seen.pose_base_in_map)
-        square = jacobian @ jacobian.T + DAMPING**2 * np.eye(6)
+        square = jacobian @ jacobian.T + _DAMPED
         arms[n] += duration * jacobian.T @ np.linalg.solve(square, twist_in_map)
         return self.ends(seen, arms)
 
@@ -89,15 +91,22 @@ class LinkMotion:
         if self._went is not None and self._went[0] is trajectory and self._went[1] is seen:
             return self._went[2]  # asked for once for the speed, once for the person
         times, arms = self.postures(trajectory, seen)
-        way = times, np.array([self.ends(seen, each) for each in arms])
+        if self._links is None:
+            ends = np.array([self._placed(seen, each) for each in arms])
+        else:
+            ends = self._links.ends_along(seen.pose_base_in_map, arms, seen.head_pan, seen.gripper_opening)
+        way = times, ends
         self._went = trajectory, seen, way
         return way
 
     def postures(self, trajectory: JointTrajectory, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
-        """Times (k,) [s] and angles (k, 2, n) [rad] of both arms along a trajectory; joints it leaves out rest."""
+        """Times (k,) [s] and angles (k, 2, n) [rad] of both arms on a trajectory, read-only; other joints rest."""
+        if self._postures is not None and self._postures[0] is trajectory and self._postures[1] is seen:
+            return self._postures[2]  # asked for once by `along`, once for the robot's own links
         times, positions = sampled(trajectory)
         arms = np.tile(np.asarray(seen.arm_positions, float), (len(times), 1, 1))
         for column, joint in enumerate(trajectory.joints):
             if (place := self._robot.place_of(joint)) is not None:
                 arms[:, place[0], place[1]] = positions[:, column]
+        self._postures = trajectory, seen, (times, arms)
         return times, arms

@@ -44,19 +44,16 @@ class Announcer:
     def __init__(self, root: Behaviour, now: Callable[[], float], tell: Callable[[Progress], None]) -> None:
         self._now = now
         self._tell = tell
-        self._shown = {node for node in root.iterate() if isinstance(node, (Skill, Stage))}
+        shown = (node for node in root.iterate() if isinstance(node, (Skill, Stage)))
+        self._above = {node: _stages_above(node) for node in shown}  # stages, outermost first
         self._told: dict[Behaviour, Status] = {}
 
     def visit(self, node: Behaviour) -> None:
         """Tell of a node that was just ticked, if there is anything new."""
-        if node not in self._shown:
+        if node not in self._above:
             return
         assert isinstance(node, (Skill, Stage))
-        above, parent = [], node.parent
-        while parent is not None:
-            above += [parent] if isinstance(parent, Stage) and self._told.get(parent) != Status.RUNNING else []
-            parent = parent.parent
-        for stage in reversed(above):  # py_trees yields children first, an operator reads the stage first
+        for stage in self._above[node]:  # py_trees yields children first, an operator reads the stage first
             self._announce(stage, Status.RUNNING)
         self._announce(node, node.status)
 
@@ -85,3 +82,12 @@ class Announcer:
                 failure.sentence() if failure else node.feedback_message,
             )
         )
+
+
+def _stages_above(node: Behaviour) -> list[Stage]:
+    """The stages that a node belongs to, outermost first."""
+    above, parent = [], node.parent
+    while parent is not None:
+        above += [parent] if isinstance(parent, Stage) else []
+        parent = parent.parent
+    return above[::-1]

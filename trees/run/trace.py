@@ -23,6 +23,7 @@ from ...skills.core.reasons import Failure
 DECIMALS = 4  # 0.1 ms, 0.1 mm, 0.1 mrad: far below what matters, far above rounding noise
 _STATUS = operator.attrgetter("status")
 FREE_TEXT = ("detail",)  # kept in the trace for the reader, left out of the hash
+_written = json.JSONEncoder(sort_keys=True, separators=(",", ":")).encode
 
 
 def paths_of(root: Behaviour) -> dict[Behaviour, str]:
@@ -45,6 +46,8 @@ def rounded(value: Any) -> Any:
     """`value` as plain JSON with floats rounded; -0.0 becomes 0.0."""
     if isinstance(value, (float, np.floating)):
         return round(float(value), DECIMALS) + 0.0
+    if value is None or isinstance(value, (str, int)):  # most are: an abstract class is slow to say no
+        return value
     if isinstance(value, np.ndarray):
         return [rounded(item) for item in value.tolist()]
     if isinstance(value, Mapping):
@@ -56,9 +59,7 @@ def rounded(value: Any) -> Any:
 
 def canonical(event: Mapping[str, Any]) -> str:
     """The text of an event that the hash covers."""
-    return json.dumps(
-        {key: value for key, value in event.items() if key not in FREE_TEXT}, sort_keys=True, separators=(",", ":")
-    )
+    return _written({key: value for key, value in event.items() if key not in FREE_TEXT})
 
 
 def hash_of(events: Iterable[Mapping[str, Any]]) -> str:
@@ -98,13 +99,11 @@ class Trace:
         self, root: Behaviour, now: Callable[[], float], sink: Callable[[dict[str, Any]], None] | None = None
     ) -> None:
         self.paths = paths_of(root)
-        self._nodes = tuple(self.paths)
         self.events: list[dict[str, Any]] = []
         self._now = now
         self._sink = sink
         self._digest = hashlib.sha256()
-        self._last: dict[Behaviour, Status] = {}
-        self._swept: list[Status] = []  # of all nodes, as they are noted; empty where that may not be so
+        self._last: dict[Behaviour, Status] = {}  # of nodes that are not INVALID
 
     def add(self, kind: str, **content: Any) -> None:
         """Append one event, stamped with the world's clock."""
@@ -119,7 +118,8 @@ class Trace:
         if self._last.get(node, Status.INVALID) == node.status:
             return
         self._last[node] = node.status
-        self._swept = []  # it may be stopped again before the next sweep
+        if node.status == Status.INVALID:
+            del self._last[node]
         failure = getattr(node, "failure", None)
         content: dict[str, Any] = {"node": self.paths.get(node, node.name), "status": node.status.name}
         if node.status == Status.FAILURE and isinstance(failure, Failure):
@@ -128,13 +128,11 @@ class Trace:
 
     def sweep(self) -> None:
         """Note every node that changed without being visited (stopped from outside)."""
-        statuses = list(map(_STATUS, self._nodes))  # of all nodes at every tick: compared as a whole
-        if statuses == self._swept:
+        if list(map(_STATUS, self._last)) == list(self._last.values()):  # at every tick: compared as a whole
             return
-        for node in self._nodes:
+        for node in self.paths:
             if self._last.get(node, Status.INVALID) is not node.status:
                 self.visit(node)
-        self._swept = statuses
 
     def command(self, command: Command) -> None:
         """Note a command that was really sent."""

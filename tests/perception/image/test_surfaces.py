@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.perception.image.surfaces import Surface, surfaces
+from caretree.perception.image.surfaces import Surface, surfaces, surfaces_at
 from caretree.sim.render.appearance import draw_appearance
 from caretree.sim.robot.shapes import BLACK, DARK, RED, STEEL
 
@@ -45,3 +45,12 @@ def test_the_robot_is_neither_gown_nor_person(colour, light):
     noise = np.random.default_rng(0).normal(0, 2, (64, 64, 3))
     patch = np.clip(255 * light * np.array(colour) + noise, 0, 255).astype(np.uint8)
     assert (surfaces(patch) == Surface.OTHER).mean() > 0.99
+
+
+def test_some_pixels_are_told_apart_as_in_the_whole_picture():
+    rng = np.random.default_rng(0)
+    rgb = rng.integers(0, 256, (40, 60, 3), dtype=np.uint8)
+    whole = surfaces(rgb)
+    for low, high in ((0, 40), (0, 6), (34, 40), (17, 18)):
+        rows, columns = rng.integers(low, high, 20), rng.integers(low, high, 20)
+        np.testing.assert_array_equal(surfaces_at(rgb, rows, columns), whole[rows, columns])

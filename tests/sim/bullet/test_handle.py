@@ -77,3 +77,15 @@ def test_what_is_carried_quickly_is_felt_without_the_handle_if_asked(world, free
     mean = np.mean(loads[100:], axis=0)
     assert mean[0] == pytest.approx(-felt, rel=0.15)
     assert mean[2] == pytest.approx(-0.3 * GRAVITY, rel=0.05)
+
+
+def test_a_handle_is_told_once_where_to_be_and_anew_after_it_was_put_elsewhere(world):
+    here, there = np.eye(4), np.eye(4)
+    there[:3, 3] = 0.3, 0.1, 0.2  # [m]
+    handle = Handle(world.client, here)
+    for _ in range(2):
+        for _ in range(400):
+            handle.follow(there)
+            world.step()
+        np.testing.assert_allclose(handle.position(), there[:3, 3], atol=0.003)
+        handle.reset(here)

@@ -65,3 +65,10 @@ def test_asking_twice_for_one_posture_gives_two_arrays():
     first += 1.0
     assert (capsules.ends(base, arms) == kept).all()
     assert (capsules.ends(base, arms + 0.1) != kept).any()
+
+
+def test_along_a_way_they_lie_as_in_each_posture_by_itself(robot):
+    turns = np.linspace(-0.5, 0.5, 5)[:, None, None]
+    way = robot.ends_along(BASE, model.READY + turns, 0.3, np.array((0.03, 0.07)))
+    for ends, turn in zip(way, turns, strict=True):
+        np.testing.assert_array_equal(ends, robot.ends(BASE, model.READY + turn, 0.3, np.array((0.03, 0.07))))

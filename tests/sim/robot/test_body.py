@@ -159,3 +159,13 @@ def test_a_hand_that_something_holds_back_presses_with_what_the_motors_may_do_an
     assert 10.0 < force < most
     assert lead < 0.08  # [rad]
     assert np.linalg.norm(rig.robot.pose_hand_in_map("right")[:3, 3] - start) < way
+
+
+def test_what_is_read_holds_until_the_robot_moves_or_is_told_something(rig):
+    first = rig.robot.read()
+    assert rig.robot.read() is first
+    rig.robot.command(BaseVelocity(velocity=np.array((0.2, 0.0, 0.0)), duration=1.0))
+    assert rig.robot.read() is not first
+    rig.run(0.5)
+    assert np.abs(rig.robot.read().pose_base_in_map - first.pose_base_in_map).max() > 0.01
+    np.testing.assert_array_equal(rig.robot.efforts(first), rig.robot.efforts(first))

@@ -13,6 +13,8 @@ def test_places_are_the_joints_and_go_on_past_both_ends():
     np.testing.assert_allclose(BENT.point(-0.5), (-0.15, 0.0, 0.7))
     beyond = BENT.point(4.0) - BENT.points[3]
     np.testing.assert_allclose(beyond, BENT.points[3] - BENT.points[2], atol=1e-12)
+    places = np.linspace(-0.6, 4.6, 53)
+    np.testing.assert_array_equal(BENT.at(places), [BENT.point(place) for place in places.tolist()])
 
 
 def test_directions_turn_evenly_at_a_joint_and_frames_are_right_handed():
