@@ -1,7 +1,8 @@
 """The stage `lay` of the dressing tree: unfold the gown and lay it on the person, outside up, arms bare.
 
 Hands that hold both ends of the neckline can be drawn apart by its length.  Where they cannot, one of them holds
-something else: each lets go in turn and takes an end of the gown that hangs from the other.
+something else: the right one lets go and takes an end of the gown that hangs from the left one; where there is none as
+far from it as a neckline is long, it is the left one that holds none, and both take an end anew.
 """
 
 from __future__ import annotations
@@ -9,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
-from ....sim.world import SIDES, Side
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
@@ -21,7 +21,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
 from .patience import patient
-from .take_down import LEVEL, holds_gown_with, look_and_take
+from .take_down import LEVEL, corners_from, holds_gown_with, look_and_take
 from .tuning import DRESSING
 
 
@@ -39,23 +39,30 @@ def lay(context: Context) -> Stage:
 
 
 def by_both_ends(context: Context, gown: Scope) -> Behaviour:
-    """Stretch the neckline; where it is too short, take an end anew with one hand, then with the other."""
+    """Stretch the neckline; where it is too short, take an end anew with one hand, then with both in turn."""
 
     def stretch(name: str) -> Behaviour:
         return patient(gown, StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline))
 
-    def anew(hand: Side) -> Behaviour:
-        other = SIDES[1 - SIDES.index(hand)]
-        end = Scope(context, f"{hand} end", keys=("views", "holder", "former"))
-        return sequence(
-            f"the {hand} hand anew",
-            Condition(f"the {other} hand holds it too", holds_gown_with, Reason.CLOTH_SLIPPED, hand=other),
-            Retreat("let go", end, hands=hand, ready="never", tuning=LEVEL),
-            look_and_take(end, other, DRESSING.second_corner),
-            stretch(f"stretch it by the new {hand} end"),
-        )
+    def holds(name: str) -> Condition:
+        return Condition(name, holds_gown_with, Reason.CLOTH_SLIPPED, hand="left")
 
-    return fallback("by both ends", stretch("stretch the neckline"), anew("right"))
+    end = Scope(context, "right end", keys=("views", "holder", "former"))
+    right = sequence(
+        "the right hand anew",
+        holds("the left hand holds it too"),
+        Retreat("let go", end, hands="right", ready="never", tuning=LEVEL),
+        look_and_take(end, "left", DRESSING.second_corner),
+        stretch("stretch it by the new right end"),
+    )
+    both = sequence(
+        "both hands anew",
+        holds("the left hand still holds it"),
+        Retreat("let go once more", end, hands="right", ready="never", tuning=LEVEL),
+        corners_from(context, ("first end", "second end"), "left"),
+        stretch("stretch it by both new ends"),
+    )
+    return fallback("by both ends", stretch("stretch the neckline"), right, both)
 
 
 def holds_gown(context: Context) -> bool:
