@@ -65,6 +65,7 @@ class Contact:
         self._robot: list[tuple[float, np.ndarray]] = []  # its last two places: time, ends
         self._seen = self._met = self._clear_until = -np.inf  # the arms, the last forces, and no force before
         self._felt, self._felt_at = np.zeros((2, 6)), 0.0  # wrenches about the map's origin, and when
+        self._feels = False  # whether they are any
         self._part_ways()
 
     def _part_ways(self) -> None:
@@ -129,13 +130,14 @@ class Contact:
 
     def _feel(self, time: float) -> None:
         """The wrists' sensors follow what has touched the hands since the last time."""
-        if self._touching or self._felt.any():
+        if self._touching or self._feels:
             now = np.zeros((2, 6))
             for n, hand in enumerate(self._hand):
                 force, point = self._force[hand[self._pushed]], self._point[hand[self._pushed]]
                 now[n] = (*force.sum(axis=0), *np.cross(point, force).sum(axis=0))
             self._felt += (1.0 - np.exp((self._felt_at - time) / SENSOR_TIME)) * (now - self._felt)
             self._felt[np.abs(self._felt) < 1e-3] = 0.0
+            self._feels = bool(self._felt.any())
         self._felt_at = time
 
     def _robot_at(self, time: float) -> Capsules:
@@ -178,7 +180,7 @@ class Contact:
         The sensors sit between the arms' last link and the grippers, so they do not feel the wrist.
         """
         out = self._felt.copy()
-        if out.any():
+        if self._feels:
             out[:, 3:] -= np.cross(hands[:, :3, 3], out[:, :3])
         return out
 

@@ -250,10 +250,10 @@ class RobotBody:
         return position - 0.5 * PERIOD * velocity, velocity
 
     def _drive(self) -> None:
-        aim = np.repeat(self.servo.gripper_opening / 2, 2)
+        aim = (self.servo.gripper_opening / 2).repeat(2)
         step = self._robot.gripper.speed / 2 * PERIOD
         self._fingers = self._fingers + np.minimum(np.maximum(aim - self._fingers, -step), step)
-        self._forces[-4:] = np.repeat(self.servo.gripper_force_limit, 2)
+        self._forces[-4:] = self.servo.gripper_force_limit.repeat(2)
         positions, velocities = self._targets()
         self._client.setJointMotorControlArray(
             self.body,
