@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import ArmPosture
+from caretree.perception.image.cloud import unit
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.sim.world import HandTwist
 from caretree.skills.core.reasons import Reason
@@ -68,6 +69,17 @@ def test_it_lets_go_only_where_the_arm_lies_and_goes_away():
     assert run.openings("left")[-1] > 0.08
     assert run.way("left")[-1, 2] - taken(run)[-1, 2] == pytest.approx(0.16, abs=0.03)
     assert run.context.guard.grip("left") == "nothing"
+
+
+def test_one_that_is_held_aside_is_not_pressed_against_what_holds_it():
+    outwards = np.append(unit((ArmPath(UP).point(1.25) - SHOULDER)[:2]), 0.0)
+    free, aside = bench(), bench(load=-25.0 * outwards - (0.0, 0.0, 6.0))
+    assert free.ended() is None
+    assert ((taken(free) - taken(free)[0]) @ outwards).max() > 0.03  # [m]
+    assert aside.ended() is None
+    way = taken(aside) - taken(aside)[0]
+    assert (way @ outwards).max() < 0.01  # [m]
+    assert way[-1, 2] < -0.05  # [m]
 
 
 def test_one_that_lies_is_left_alone():
