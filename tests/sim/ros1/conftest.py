@@ -85,3 +85,11 @@ def baxter(ros_here, tmp_path_factory):
     robot = Robot(tmp_path_factory.mktemp("ros"), "--task", "dressing", "--pace", "tree", "--seed", "100")
     yield robot
     robot.end()
+
+
+@pytest.fixture
+def robot_of_its_own(ros_here, tmp_path):
+    """One that a test may break."""
+    robot = Robot(tmp_path, "--task", "wave", "--pace", "tree")
+    yield robot
+    robot.end()

@@ -1,6 +1,7 @@
 """A robot behind a real master keeps the contract, and a tree does there what it does in its own process."""
 
 import json
+import time
 
 import numpy as np
 from caretree.sim.mechanics.kinematics import kinematics_of
@@ -95,3 +96,26 @@ def test_a_hand_that_is_driven_against_a_limit_ends_where_it_does_in_its_own_pro
         ended[world] = np.array(json.loads(done.stdout))
         assert abs(kinematics_of(BAXTER).limits["left"].margin(ended[world])) < 1e-3
     np.testing.assert_allclose(ended["ros1"], ended["scripted"], atol=0.02)
+
+
+SILENT_MASTER = """
+import os
+import signal
+import sys
+import time
+from caretree.sim.ros1.world import Ros1World
+
+world = Ros1World()
+os.kill(int(sys.argv[1]), signal.SIGSTOP)
+began = time.monotonic()
+world.close()
+print(time.monotonic() - began)
+"""
+
+
+def test_a_process_ends_although_its_master_does_not_answer(robot_of_its_own):
+    began = time.monotonic()
+    done = robot_of_its_own.python(SILENT_MASTER, str(robot_of_its_own.master.pid))
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 4.0, "closing asks once [s]"
+    assert time.monotonic() - began < 60.0, "and so does the end of the process; it took for ever"
