@@ -277,4 +277,5 @@ def test_a_run_of_a_shared_robot_that_ended_early_says_how_and_the_next_one_is_t
     first, second = fresh_rows(campaign._maker, {key: campaign.way(*key[:2]) for key in keys})
     assert first.outcome == "not_reached"
     assert "nothing has come on /robot/joint_states" in first.reason
+    assert first.unsafe == "nobody knows whether anything moves: nothing has come on /robot/joint_states"
     assert second.outcome == "success"
