@@ -90,7 +90,7 @@ def robot(arguments: list[str]) -> int:
 @contextlib.contextmanager
 def network() -> Iterator[None]:
     """A network of its own for the tree."""
-    subprocess.run(["ip", "netns", "del", NAMESPACE], stderr=subprocess.DEVNULL, check=False)
+    _remove_network()
     inside = ("netns", "exec", NAMESPACE, "ip")
     try:
         _ip("netns", "add", NAMESPACE)
@@ -102,7 +102,12 @@ def network() -> Iterator[None]:
             _ip(*inside, "link", "set", each, "up")
         yield
     finally:
-        subprocess.run(["ip", "netns", "del", NAMESPACE], check=False)  # and the interfaces with it
+        _remove_network()
+
+
+def _remove_network() -> None:
+    for words in (("link", "del", NAMESPACE[:8]), ("netns", "del", NAMESPACE)):
+        subprocess.run(["ip", *words], stderr=subprocess.DEVNULL, check=False)
 
 
 def _ip(*words: str) -> None:

@@ -86,7 +86,7 @@ class Ros1World(World):
             raise
         self._origin = self._time.now()
         self.clock = (
-            SteppedRos1Clock(self._time, self._origin, self._ask, lambda: self._senses.measured - self._origin)
+            SteppedRos1Clock(self._time, self._origin, self._ask, lambda: self._senses.complete - self._origin)
             if stepped
             else Ros1Clock(self._time, self._origin, self._tell)
         )

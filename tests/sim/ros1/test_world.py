@@ -119,3 +119,37 @@ def test_a_process_ends_although_its_master_does_not_answer(robot_of_its_own):
     assert done.returncode == 0, done.stderr
     assert float(done.stdout) < 4.0, "closing asks once [s]"
     assert time.monotonic() - began < 60.0, "and so does the end of the process; it took for ever"
+
+
+LATE_SENSES = """
+import time
+from caretree.sim.ros1.senses import Senses
+from caretree.sim.ros1.world import Ros1World
+
+heard, count = Senses._heard_wrench, 0
+
+
+def late(self, message, more):
+    global count
+    count += 1
+    if count % 5 == 0:
+        time.sleep(0.3)
+    heard(self, message, more)
+
+
+Senses._heard_wrench = late
+world = Ros1World()
+oldest = 0.0
+for _ in range(30):
+    world.clock.wait_until(world.clock.now() + 1 / 15)
+    oldest = max(oldest, world.clock.now() - world.observe().time)
+print(oldest)
+world.close()
+"""
+
+
+def test_at_the_pace_of_the_tree_time_has_passed_when_everything_is_measured(waving_robot):
+    """On a busy machine the wrenches came so late that a run ended: the robot's time went on without them."""
+    done = waving_robot.python(LATE_SENSES)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 0.001, "[s]"
