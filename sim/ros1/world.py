@@ -62,10 +62,13 @@ class Ros1World(World):
         self.site = read_site(site)
         self._rospy, self._patience = node("caretree", master), patience
         self._rehearsal = Rehearsal(self._rospy)
+        self._closed = True
         self._connect()
 
     def _connect(self) -> None:
         rospy, patience = self._rospy, self._patience
+        # a simulated robot shows its map once the master knows whose time counts: until then `/clock` is not asked for
+        self.room: RoomMap = read_room(rospy, self.site, patience)
         self._closed = False
         self._lost = ""
         self._time = RosTime(rospy, bool(parameter(SIMULATED, False)))
@@ -79,7 +82,6 @@ class Ros1World(World):
         self._alive = publisher(rospy, self.site.alive, ros().std_msgs.Time, at_once=stepped)
         self._told = -np.inf
         try:
-            self.room: RoomMap = read_room(rospy, self.site, patience)
             self._wait_for_robot(patience)
         except WorldError:
             self.close()
@@ -91,7 +93,7 @@ class Ros1World(World):
             else Ros1Clock(self._time, self._origin, self._tell)
         )
         self._watching = threading.Event()
-        threading.Thread(target=self._watch_master, name="master", daemon=True).start()
+        threading.Thread(target=self._watch_master, args=(self._watching,), name="master", daemon=True).start()
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""
@@ -230,9 +232,9 @@ class Ros1World(World):
         self._alive.publish(ros().genpy.Time(0, int((step + self._origin) * 1e9)))
         return step
 
-    def _watch_master(self) -> None:
+    def _watch_master(self, ended: threading.Event) -> None:
         """Without a master nothing new can be connected: the robot is stopped, and its senses count as lost."""
-        while not self._watching.wait(MASTER_LOOK):
+        while not ended.wait(MASTER_LOOK):
             try:
                 ask_master("getPid", patience=MASTER_PATIENCE)
             except WorldError as error:

@@ -1,6 +1,7 @@
 """A robot behind a real master keeps the contract, and a tree does there what it does in its own process."""
 
 import json
+import sys
 import time
 
 import numpy as np
@@ -102,6 +103,7 @@ SILENT_MASTER = """
 import os
 import signal
 import sys
+import sys
 import time
 from caretree.sim.ros1.world import Ros1World
 
@@ -122,6 +124,7 @@ def test_a_process_ends_although_its_master_does_not_answer(robot_of_its_own):
 
 
 LATE_SENSES = """
+import sys
 import time
 from caretree.sim.ros1.senses import Senses
 from caretree.sim.ros1.world import Ros1World
@@ -152,4 +155,28 @@ def test_at_the_pace_of_the_tree_time_has_passed_when_everything_is_measured(wav
     """On a busy machine the wrenches came so late that a run ended: the robot's time went on without them."""
     done = waving_robot.python(LATE_SENSES)
     assert done.returncode == 0, done.stderr
-    assert float(done.stdout) < 0.001, "[s]"
+    assert float(done.stdout) < 0.1, "the state has no stamp, and may count as one tick old [s]"
+
+
+WAITS = """
+from caretree.sim.ros1.ros import ask_master
+from caretree.sim.ros1.world import Ros1World
+
+ask_master("deleteParam", "/use_sim_time")
+print("waits", flush=True)
+world = Ros1World(patience=60.0)
+print(world.clock.now() - world.observe().time)
+world.close()
+"""
+
+
+def test_a_tree_that_is_there_before_its_simulated_robot_takes_the_time_of_that(robot_of_its_own):
+    robot_of_its_own.robot.kill()
+    robot_of_its_own.robot.communicate()
+    tree = robot_of_its_own._begin(sys.executable, "-c", WAITS)
+    assert tree.stdout is not None
+    assert tree.stdout.readline() == "waits\n"
+    time.sleep(2.0)
+    robot_of_its_own.serve("--task", "wave")
+    age = tree.communicate(timeout=90.0)[0]
+    assert float(age) < 10.0, "not the years between a simulation's clock and the wall's [s]"
