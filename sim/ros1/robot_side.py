@@ -180,7 +180,7 @@ class RobotSide:
             self._publish(everything=True, again=True)  # who comes later wants to see something too
             return
         time.sleep(OTHERS)
-        while now < until - 1e-6 and not self._ended.is_set():
+        while now < until - 1e-6 and not self._ended.is_set() and not self._anew:
             now = min(now + self._period, until)
             self._advance(now)
             self._publish(everything=now >= until - 1e-6)
