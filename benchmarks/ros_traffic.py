@@ -151,7 +151,8 @@ def lost(robot: dict[str, Any], tree: dict[str, Any]) -> list[str]:
         asked = max(numbers) - min(numbers) + 1
         rows.append(f"| {topic} | {asked} | {asked - len(set(numbers))} |")
     heard = set(tree["ticks"])
-    asked = [each for each in robot["ticks"] if min(heard) <= each <= max(heard)]
+    first, last = min(heard), max(heard)
+    asked = [each for each in robot["ticks"] if first <= each <= last]
     rows.append(f"| {CLOCK} | {len(asked)} | {len(set(asked) - heard)} |")
     for topic, count in sorted(tree["sent"].items()):
         if topic in robot["got"]:
