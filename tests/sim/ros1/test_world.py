@@ -152,7 +152,7 @@ world.close()
 
 
 def test_at_the_pace_of_the_tree_time_has_passed_when_everything_is_measured(waving_robot):
-    """On a busy machine the wrenches came so late that a run ended: the robot's time went on without them."""
+    """Wrenches come late on a busy machine: time went on without them, to where they counted as stale."""
     done = waving_robot.python(LATE_SENSES)
     assert done.returncode == 0, done.stderr
     assert float(done.stdout) < 0.1, "the state has no stamp, and may count as one tick old [s]"
