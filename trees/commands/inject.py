@@ -98,9 +98,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
                 file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
                 file.flush()
                 rows.append(row)
-                if row.outcome != "not_reached" or row.unsafe or row.reason:
-                    how = "not reached: " + row.reason if row.outcome == "not_reached" else row.outcome
-                    told = f"{row.fault}@{row.node}:{row.phase}: {row.unsafe or how}"
+                if how := _ending(row):
+                    told = f"{row.fault}@{row.node}:{row.phase}: {how}"
                     print(f"[{len(rows)}/{len(wanted)}] {told}", flush=True)
     except OSError as error:
         raise disk_error(error, f"writing {path}") from error
@@ -119,6 +118,13 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         )
         return 1
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
+
+
+def _ending(row: Row) -> str:
+    """How a row ended, in words; empty for one that was not reached and says nothing more."""
+    if row.unsafe or row.outcome != "not_reached":
+        return row.unsafe or row.outcome
+    return f"not reached: {row.reason}" if row.reason else ""
 
 
 def drawn_rows(plan: list[FaultKey], count: int | None, seed: int) -> list[FaultKey]:
