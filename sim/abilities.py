@@ -116,6 +116,19 @@ class SupportsFaults(Protocol):
 
 
 @runtime_checkable
+class SupportsRestart(Protocol):
+    """A world that outlives whoever uses it, such as a simulated robot in another process."""
+
+    def restart(self) -> None:
+        """Bring it back to its beginning, before a run.
+
+        Raises:
+            WorldError: it cannot be brought back, as no real one can.
+        """
+        ...
+
+
+@runtime_checkable
 class SupportsForks(Protocol):
     """A world that is all in this process' memory: after a fork, each of the two processes has one of its own.
 

@@ -102,6 +102,15 @@ def _world_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _senses_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--senses",
+        default="own",
+        choices=("own", "scripted"),
+        help="what sees: the task's own senses, or made up ones, to rehearse on a robot with nothing to see",
+    )
+
+
 def build_parser(command: str = "") -> argparse.ArgumentParser:
     """The parser of all commands; `command` is the one that will be called."""
     parser = CommandParser(prog="caretree", description="Behaviour trees for assistive manipulation.")
@@ -135,12 +144,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         metavar="RECORD@SECONDS",
         help="begin where another run was then, with empty hands and its seed; with --stage, to try again what it lost",
     )
-    run.add_argument(
-        "--senses",
-        default="own",
-        choices=("own", "scripted"),
-        help="what sees: the task's own senses, or made up ones, to rehearse on a robot with nothing to see",
-    )
+    _senses_option(run)
     run.add_argument(
         "--perception",
         default="classical",
@@ -190,6 +194,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         metavar="FAULT",
         help=f"only this one; may be repeated; there are {FAULTS}",
     )
+    _senses_option(inject)
     inject.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
     inject.add_argument("--sample", type=int, metavar="N", help="only N of all, drawn by the seed")
     inject.add_argument(

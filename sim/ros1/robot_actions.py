@@ -33,15 +33,18 @@ class RobotActions:
 
     Args:
         site: names the actions.
-        world: what moves.
+        world: what moves first.
         lock: held while the world is used.
         why_not: says why nothing may move; empty where it may.
+
+    Attributes:
+        world: what moves.
     """
 
     def __init__(self, site: Site, world: World, lock: Any, why_not: Callable[[], str]) -> None:
         ros()
         server = importlib.import_module("actionlib").ActionServer
-        self._site, self._world, self._lock, self._why_not = site, world, lock, why_not
+        self._site, self.world, self._lock, self._why_not = site, world, lock, why_not
         self._goals: dict[str, _Goal] = {}
 
         def serve(name: str, kind: str, start: Callable[[Any], float], key: str, cancelled: Callable[[], None]) -> None:
@@ -84,9 +87,9 @@ class RobotActions:
         if goal is not None:
             goal.handle.set_aborted(None, "replaced by another command")
 
-    def abort(self) -> None:
-        """End all goals but the fingers'."""
-        for key in (*SIDES, "head"):
+    def abort(self, *, fingers: bool = False) -> None:
+        """End all goals, the fingers' only if asked to."""
+        for key in list(self._goals) if fingers else (*SIDES, "head"):
             self.forget(key)
 
     def _take(self, handle: Any, kind: str, key: str, start: Callable[[Any], float]) -> None:
@@ -101,7 +104,7 @@ class RobotActions:
                 return
             self.forget(key)
             handle.set_accepted()
-            self._goals[key] = _Goal(handle, self._world.clock.now() + lasts, kind)
+            self._goals[key] = _Goal(handle, self.world.clock.now() + lasts, kind)
 
     def _cancel(self, handle: Any, key: str, cancelled: Callable[[], None]) -> None:
         with self._lock:
@@ -120,14 +123,14 @@ class RobotActions:
         positions = np.array([point.positions for point in points]) - np.array(arm.zero)[order]
         times = np.array([point.time_from_start.to_sec() for point in points])
         if len(times) and times[0] > 0.0:
-            here = self._world.observe().arm_positions[SIDES.index(side)][order]
+            here = self.world.observe().arm_positions[SIDES.index(side)][order]
             times, positions = np.append(0.0, times), np.vstack((here, positions))
         joints = tuple(arm_joints(side)[n] for n in order)
-        self._world.send(JointTrajectory(joints=joints, times=times, positions=positions))
+        self.world.send(JointTrajectory(joints=joints, times=times, positions=positions))
         return float(times[-1])
 
     def _turn_head(self, goal: Any) -> float:
-        here = self._world.observe().head_pan
+        here = self.world.observe().head_pan
         speed = min(goal.max_velocity or np.inf, self._site.head.speed)
         lasts = max(goal.min_duration.to_sec(), 1.5 * abs(goal.position - here) / speed, SHORTEST)
         self._send_head(here, goal.position, lasts)
@@ -136,17 +139,17 @@ class RobotActions:
     def _send_head(self, here: float, there: float, lasts: float) -> None:
         share = np.linspace(0.0, 1.0, 7)
         path = here + (there - here) * share * share * (3.0 - 2.0 * share)
-        self._world.send(JointTrajectory(joints=(HEAD_JOINT,), times=lasts * share, positions=path[:, None]))
+        self.world.send(JointTrajectory(joints=(HEAD_JOINT,), times=lasts * share, positions=path[:, None]))
 
     def _grip(self, side: Side, goal: Any) -> float:
         command = goal.command
-        self._world.send(GripperOpening(side=side, opening=max(command.position, 0.0), force_limit=command.max_effort))
+        self.world.send(GripperOpening(side=side, opening=max(command.position, 0.0), force_limit=command.max_effort))
         return FINGERS
 
     def _hold(self, side: Side) -> None:
-        moved: Any = self._world
+        moved: Any = self.world
         moved.send_joint_velocities(side, np.zeros(len(self._site.arms[side].joints)), 0.2)
 
     def _hold_head(self) -> None:
-        here = self._world.observe().head_pan
+        here = self.world.observe().head_pan
         self._send_head(here, here, SHORTEST)

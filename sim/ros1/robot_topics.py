@@ -25,15 +25,14 @@ class RobotTopics:
         rospy: the node.
         site: names the topics, and holds the calibration: what is measured here differs by it.
         kinematics: of the robot.
-        start: what `/clock` says when the world's clock is 0 [s].
         camera_rate: of images [Hz].
     """
 
-    def __init__(self, rospy: Any, site: Site, kinematics: Kinematics, start: float, camera_rate: float) -> None:
+    def __init__(self, rospy: Any, site: Site, kinematics: Kinematics, camera_rate: float) -> None:
         there = ros()
-        self._site, self._kinematics, self._start = site, kinematics, start
+        self._site, self._kinematics = site, kinematics
         self._camera_period = 1.0 / camera_rate
-        self._count, self._placed = 0, -np.inf
+        self._count = 0
 
         def topic(name: str, kind: Any, **options: Any) -> Any:
             return rospy.Publisher(name, kind, queue_size=5, tcp_nodelay=True, **options)
@@ -50,8 +49,13 @@ class RobotTopics:
             name: (topic(camera.colour, image), topic(camera.depth, image), topic(camera.info, info))
             for name, camera in site.cameras.items()
         }
-        self._shown: dict[str, tuple[float, tuple[Any, Any, Any]]] = {}  # when [s], and what, of each camera
         self._repeated = 0  # how often the same time has been told again
+        self.begin(0.0)
+
+    def begin(self, start: float) -> None:
+        """Tell of another world from now on, at whose beginning `/clock` says `start` [s]."""
+        self._start, self._placed = start, -np.inf
+        self._shown: dict[str, tuple[float, tuple[Any, Any, Any]]] = {}  # when [s], and what, of each camera
         self._first: np.ndarray | None = None  # where odometry begins, in the map
 
     def publish(self, world: World, pressed: bool, enabled: bool, *, everything: bool, again: bool) -> None:

@@ -35,6 +35,7 @@ MODULES = (
 INSTALL = "`make ros` installs what Debian carries of it"
 MASTER = "http://localhost:11311"
 ANSWER = 1.0  # [s] that a master may take to answer
+ANSWER_TO_NODE = 5.0  # [s] the same for rospy, which would wait for ever, at the end of a process too
 _ONE = threading.Lock()
 _node = ""  # the master to which this process belongs
 
@@ -119,6 +120,9 @@ def node(name: str, master: str = "") -> Any:
         if _node and _node != uri:
             raise WorldError(f"this process is a node of the master at {_node} already, and cannot be one at {uri}")
         if not _node:
+            # the one by which rospy asks: it makes its own where it finds none
+            patient = rospy.core._LockedServerProxy(uri, transport=_Patient(ANSWER_TO_NODE))
+            rospy.core._xmlrpc_cache[uri] = patient
             # stamps are read from /clock by `clock.py`, which knows what to do where it stands still
             rospy.init_node(name, anonymous=True, disable_signals=True, disable_rosout=True, disable_rostime=True)
             _node = uri

@@ -33,7 +33,7 @@ class Senses:
     Args:
         rospy: the node.
         site: names the topics, and holds the calibration.
-        changed: is told of every joint state.
+        changed: is told of everything that is measured.
 
     Attributes:
         joints: positions, velocities, efforts (2, n) and the head's angle.
@@ -87,6 +87,14 @@ class Senses:
         silent |= {site.grippers[side].state: side not in self._fingers for side in SIDES}
         silent |= {site.wrists[side].topic: side not in self._wrenches for side in SIDES}
         return [topic for topic, is_silent in silent.items() if is_silent]
+
+    @property
+    def complete(self) -> float:
+        """Until when everything that has a stamp is measured, and `on_joints` is done [s]."""
+        hands = [each[side] for each in (self._fingers, self._wrenches) for side in SIDES if side in each]
+        if len(hands) < 2 * len(SIDES) or not self._odometry:
+            return -np.inf
+        return min(self.measured, self._odometry[-1].stamp, *(each.stamp for each in hands))
 
     def stopped(self) -> str:
         """Why nothing may move, as the robot's state says it; empty where it may."""
@@ -165,14 +173,14 @@ class Senses:
             return
         self.joints = sample
         self.on_joints(sample)
-        with self._changed:
-            self.measured = sample.stamp
-            self._changed.notify_all()
+        self.measured = sample.stamp
+        self._tell()
 
     def _heard_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         velocity = np.array((twist.linear.x, twist.linear.y, twist.angular.z))
         self._odometry.append(Sample(message.header.stamp.to_sec(), (_planar(message.pose.pose), velocity)))
+        self._tell()
 
     def _heard_pose(self, message: Any) -> None:
         known = list(self._odometry)
@@ -190,11 +198,17 @@ class Senses:
             n = list(message.name).index(joint)
             force = message.effort[n] if len(message.effort) > n else 0.0
             self._fingers[side] = Sample(message.header.stamp.to_sec(), (float(message.position[n]), float(force)))
+            self._tell()
 
     def _heard_wrench(self, message: Any, more: Any) -> None:
         force, torque = message.wrench.force, message.wrench.torque
         measured = np.array((force.x, force.y, force.z, torque.x, torque.y, torque.z))
         self._wrenches[more[0]] = Sample(message.header.stamp.to_sec(), measured)
+        self._tell()
+
+    def _tell(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
 
 
 def _parts(message: Any) -> tuple[Any, Any, Any]:

@@ -22,12 +22,14 @@ from ..world import (
     Observation,
     RoomMap,
     SensorLost,
+    Side,
     World,
     WorldError,
 )
 from .cameras import Cameras, Posture
 from .clock import PACE, SIMULATED, Ros1Clock, RosTime, SteppedRos1Clock, parameter
 from .motions import Motions
+from .rehearsal import BEGINS_WITH, Rehearsal
 from .room import read_room
 from .ros import ask_master, node, publisher, ros
 from .senses import Senses
@@ -50,6 +52,7 @@ class Ros1World(World):
         site: as it was read.
         robot: Baxter.
         kinematics: of that model.
+        initial_states: the one in which a simulated robot begins, by its name; empty where any will do.
 
     Raises:
         WorldError: ROS, the master, or something of the robot is missing; says what.
@@ -57,7 +60,15 @@ class Ros1World(World):
 
     def __init__(self, site: str = DEFAULT, *, master: str = "", patience: float = 5.0) -> None:
         self.site = read_site(site)
-        rospy = node("caretree", master)
+        self._rospy, self._patience = node("caretree", master), patience
+        self._rehearsal = Rehearsal(self._rospy)
+        self._closed = True
+        self._connect()
+
+    def _connect(self) -> None:
+        rospy, patience = self._rospy, self._patience
+        # a simulated robot shows its map once the master knows whose time counts: until then `/clock` is not asked for
+        self.room: RoomMap = read_room(rospy, self.site, patience)
         self._closed = False
         self._lost = ""
         self._time = RosTime(rospy, bool(parameter(SIMULATED, False)))
@@ -71,19 +82,18 @@ class Ros1World(World):
         self._alive = publisher(rospy, self.site.alive, ros().std_msgs.Time, at_once=stepped)
         self._told = -np.inf
         try:
-            self.room: RoomMap = read_room(rospy, self.site, patience)
             self._wait_for_robot(patience)
         except WorldError:
             self.close()
             raise
         self._origin = self._time.now()
         self.clock = (
-            SteppedRos1Clock(self._time, self._origin, self._ask, lambda: self._senses.measured - self._origin)
+            SteppedRos1Clock(self._time, self._origin, self._ask, lambda: self._senses.complete - self._origin)
             if stepped
             else Ros1Clock(self._time, self._origin, self._tell)
         )
         self._watching = threading.Event()
-        threading.Thread(target=self._watch_master, name="master", daemon=True).start()
+        threading.Thread(target=self._watch_master, args=(self._watching,), name="master", daemon=True).start()
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""
@@ -124,10 +134,59 @@ class Ros1World(World):
         """Leave the robot alone; twice is once."""
         if self._closed:
             return
+        self._disconnect(self._rehearsal)
+
+    def restart(self) -> None:
+        """Bring a simulated robot back to its beginning, before a run.
+
+        Raises:
+            WorldError: it is a real one, or does not come back.
+        """
+        self._rehearsal.begin_anew(self._patience)
+        self._disconnect()
+        self._connect()
+
+    @property
+    def initial_states(self) -> tuple[str, ...]:
+        """Of a real robot none is known: its room is as people have left it."""
+        begins = parameter(BEGINS_WITH, "")
+        return (begins,) if begins else ()
+
+    def set_initial_state(self, name: str) -> None:
+        """See that a run can begin there.
+
+        Raises:
+            WorldError: the simulated robot begins elsewhere.
+        """
+        states = self.initial_states
+        if states and name not in states:
+            raise WorldError(
+                f"the simulated robot begins with {states[0]!r}, not {name!r}: caretree serve-robot --stage"
+            )
+
+    @property
+    def person_offset(self) -> np.ndarray:
+        """How far (3,) a made-up person has moved [m]."""
+        return self._rehearsal.person_offset
+
+    def fault_grip_slip(self, side: Side) -> None:
+        """What that hand of a simulated robot holds slides out of it."""
+        self._rehearsal.grip_slip(side)
+
+    def fault_move_person(self) -> None:
+        """The person before a simulated robot stirs."""
+        self._rehearsal.move_person()
+
+    def _disconnect(self, *more: Rehearsal) -> None:
         self._closed = True
         if hasattr(self, "_watching"):
             self._watching.set()
-        for each in (self._motions, self._senses, self._cameras, self._time):
+        self._senses.on_joints = lambda sample: None
+        try:
+            ask_master("getPid", patience=MASTER_PATIENCE)
+        except WorldError:
+            return  # each topic would wait for an answer that does not come
+        for each in (self._motions, self._senses, self._cameras, self._time, *more):
             with contextlib.suppress(Exception):  # the master may have gone
                 each.close()
         with contextlib.suppress(Exception):
@@ -173,9 +232,9 @@ class Ros1World(World):
         self._alive.publish(ros().genpy.Time(0, int((step + self._origin) * 1e9)))
         return step
 
-    def _watch_master(self) -> None:
+    def _watch_master(self, ended: threading.Event) -> None:
         """Without a master nothing new can be connected: the robot is stopped, and its senses count as lost."""
-        while not self._watching.wait(MASTER_LOOK):
+        while not ended.wait(MASTER_LOOK):
             try:
                 ask_master("getPid", patience=MASTER_PATIENCE)
             except WorldError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from ...perception.person.person_facts import PERSON
 from ...perception.senses import Senses
 from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.scripted.world import ScriptedWorld
 from ...sim.world import SIDES, Frame, Observation, Side
 from ..geometry.stances import HEADWARD, outwards
 from .scripted_person import laid_strap, lying_arm, lying_posture
@@ -65,6 +64,14 @@ class Proprioception(Protocol):
     def observe(self) -> Observation:
         """Latest proprioception."""
         ...
+
+
+@runtime_checkable
+class _HasPerson(Protocol):
+    """A world whose made up person may move."""
+
+    @property
+    def person_offset(self) -> np.ndarray: ...
 
 
 class ScriptedSenses(Senses):
@@ -257,7 +264,7 @@ class ScriptedSenses(Senses):
 
     def _moved(self) -> np.ndarray:
         """How far (3,) the person has moved, in worlds where they do [m]."""
-        return self._world.person_offset if isinstance(self._world, ScriptedWorld) else np.zeros(3)
+        return self._world.person_offset if isinstance(self._world, _HasPerson) else np.zeros(3)
 
     def _corner(self, frame: Frame, side: Side) -> GraspPoint:
         """Seen from outside, the wearer's right is on the robot's left."""

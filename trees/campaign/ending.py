@@ -7,7 +7,7 @@ import numpy as np
 from ...sim.faults import FaultyWorld
 from ...sim.record.record import RunResult
 from ...sim.waiting import wait
-from ...sim.world import SIDES
+from ...sim.world import SIDES, WorldError
 from ..run.runner import OPEN, Run
 from .fault_row import FaultKey, Row
 
@@ -44,9 +44,12 @@ def ended(key: FaultKey, result: RunResult, begun: float, unsafe: str) -> Row:
 def unsafe_after(run: Run, outcome: str) -> str:
     """What is still wrong after a run: something moves, an arm is held, fingers are closed; empty when nothing is."""
     world = run.world.inner if isinstance(run.world, FaultyWorld) else run.world
-    before = world.observe()
-    wait(world.clock, world.clock.now() + SETTLE)
-    after = world.observe()
+    try:
+        before = world.observe()
+        wait(world.clock, world.clock.now() + SETTLE)
+        after = world.observe()
+    except WorldError as error:
+        return f"nobody knows whether anything moves: {error}"
     if np.abs(after.arm_positions - before.arm_positions).max() > MOVED:
         return "an arm still moves"
     if np.abs(after.pose_base_in_map - before.pose_base_in_map).max() > MOVED:

@@ -17,7 +17,7 @@ class Row:
     Attributes:
         node, phase, fault: what was injected where.
         outcome: of the run, or `not_reached`.
-        reason: one sentence.
+        reason: one sentence; of one that was not reached, where runs are not all alike, how its run ended.
         unsafe: what was still wrong afterwards; empty when nothing was.
         time_to_safe: world time from the first fault to the end of the run, which stands still [s]; None where the
             fault did not begin.

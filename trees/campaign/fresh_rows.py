@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
+from ...sim.abilities import SupportsRestart
 from ...sim.faults import FaultSpec, FaultyWorld
 from .ending import ended, finished, unsafe_after
 from .fault_row import FaultKey, Row, not_reached
@@ -25,7 +27,10 @@ def fresh_row(maker: RunMaker, key: FaultKey, way: Way) -> Row:
     try:
         result = finished(run)
         if not world.begun:
-            return not_reached(key)
+            if not isinstance(world.inner, SupportsRestart):
+                return not_reached(key)
+            # in another process no two runs are alike: this one says how it ended, and the next one may come there
+            return replace(not_reached(key), reason=result.reason, unsafe=unsafe_after(run, result.outcome))
         return ended(key, result, world.begun[0][1], unsafe_after(run, result.outcome))
     finally:
         world.close()
@@ -39,7 +44,7 @@ def fresh_rows(maker: RunMaker, ways: Mapping[FaultKey, Way]) -> Iterator[Row]:
 
 
 class Missed:
-    """Places that a run of their own did not come to: none will, whatever the fault."""
+    """Places that a run of their own did not come to: where all runs begin alike none will, whatever the fault."""
 
     def __init__(self) -> None:
         self._places: set[Place] = set()
@@ -50,6 +55,6 @@ class Missed:
 
     def note(self, row: Row) -> Row:
         """Take note of a row; hands it on."""
-        if row.outcome == "not_reached":
+        if row.outcome == "not_reached" and not row.reason:
             self._places.add((row.node, row.phase))
         return row

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator, Mapping
 
+from ...sim.abilities import SupportsRestart
 from ...sim.errors import CaretreeError
 from ...sim.faults import FAULTS, PHASES, FaultyWorld
 from ...skills.core.skill import Skill
@@ -40,7 +41,7 @@ class Campaign:
         forks: whether rows share what they have in common, as branches of one run.
 
     Raises:
-        CaretreeError: no job.
+        CaretreeError: no job, or several where all runs share one robot.
     """
 
     def __init__(
@@ -61,6 +62,10 @@ class Campaign:
         self._faults, self._jobs, self._address, self._recipe = faults, jobs, address, recipe
         self._reached: set[Place] = set()
         run = self._maker.run()
+        assert isinstance(run.world, FaultyWorld)
+        if isinstance(run.world.inner, SupportsRestart) and (jobs or 1 if address is None else 2) > 1:
+            run.world.close()
+            raise CaretreeError(f"{type(run.world.inner).__name__} has one robot for all runs: no --jobs, no --address")
         self.nodes = [node.name for node in run.root.iterate() if isinstance(node, Skill)]
         movers = {node.name for node in run.root.iterate() if isinstance(node, Skill) and node.commands}
         self._safe = {
@@ -74,7 +79,6 @@ class Campaign:
         run.context.observers.append(lambda node, phase: self._reached.add((node, phase)))
         run.context.observers.append(lambda node, phase: order.append(node) if phase == "step" else None)
         self.nominal = finished(run)
-        assert isinstance(run.world, FaultyWorld)
         self.forks = forks_on(run.world.inner)
         run.world.close()
         moving = [node for node in order if node in movers]

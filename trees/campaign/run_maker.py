@@ -7,11 +7,12 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ...perception.senses import Senses
+from ...sim.abilities import SupportsRestart
 from ...sim.faults import FaultSpec, FaultyWorld
 from ...sim.world import World
 from ..run.runner import Run
 from ..run.task import Task, load_task
-from ..run.worlds import make_world, prepare_stage, read_world_arguments, tick_rate_of
+from ..run.worlds import make_world, prepare_stage, read_world_arguments, senses_for, tick_rate_of
 
 MakeWorld = Callable[[], tuple[World, Senses | None]]
 
@@ -32,6 +33,8 @@ class RunMaker:
     def world(self) -> tuple[World, Senses | None]:
         """A fresh world where the run begins, and its senses."""
         world, senses = self._make_world()
+        if isinstance(world, SupportsRestart):
+            world.restart()
         prepare_stage(world, self._task, self._stage)
         return world, senses
 
@@ -57,6 +60,7 @@ class RunRecipe:
         world, world_kind, world_arguments: as on the command line.
         seed: of every run.
         stage: run alone; None for the whole task.
+        senses: what sees on a world that brings none, `own` or `scripted`.
     """
 
     task: str
@@ -66,6 +70,7 @@ class RunRecipe:
     world_arguments: Sequence[str] = ()
     seed: int = 0
     stage: str | None = None
+    senses: str = "own"
 
     def maker(self) -> RunMaker:
         """What makes these runs in this process.
@@ -74,9 +79,21 @@ class RunRecipe:
             CaretreeError: a bad task, world or stage.
         """
         task = load_task(self.task, robot=self.robot)
+        return RunMaker(task, self.worlds(task), seed=self.seed, stage=self.stage)
+
+    def worlds(self, task: Task) -> MakeWorld:
+        """What makes the worlds of these runs.
+
+        Raises:
+            CaretreeError: a bad world.
+        """
         arguments = read_world_arguments(self.world, self.world_arguments)
-        options: dict[str, Any] = {"seed": self.seed, "kind": self.world_kind, "arguments": arguments}
-        return RunMaker(task, lambda: make_world(self.world, task, **options), seed=self.seed, stage=self.stage)
+
+        def made() -> tuple[World, Senses | None]:
+            world, senses = make_world(self.world, task, seed=self.seed, kind=self.world_kind, arguments=arguments)
+            return world, senses or senses_for(self.senses, task, world, self.seed)
+
+        return made
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""

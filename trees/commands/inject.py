@@ -24,7 +24,7 @@ from ..campaign.key import campaign_key
 from ..campaign.run_maker import RunRecipe
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
-from ..run.worlds import make_world, read_world_arguments
+from ..run.worlds import read_world_arguments
 
 ROWS = "inject.jsonl"
 
@@ -61,30 +61,32 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
-    arguments = read_world_arguments(options.world, options.world_arg)
+    recipe = RunRecipe(
+        task=options.task,
+        robot=options.robot,
+        world=options.world,
+        world_kind=options.world_kind,
+        world_arguments=tuple(options.world_arg),
+        seed=options.seed,
+        stage=options.stage,
+        senses=options.senses,
+    )
     campaign = Campaign(
         task,
-        lambda: make_world(options.world, task, seed=options.seed, kind=options.world_kind, arguments=arguments),
+        recipe.worlds(task),
         seed=options.seed,
         faults=tuple(options.fault) or FAULTS,
         stage=options.stage,
         jobs=options.jobs,
         address=options.address,
-        recipe=RunRecipe(
-            task=options.task,
-            robot=options.robot,
-            world=options.world,
-            world_kind=options.world_kind,
-            world_arguments=tuple(options.world_arg),
-            seed=options.seed,
-            stage=options.stage,
-        ),
+        recipe=recipe,
     )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
     given = (options.world, options.world_kind, str(options.seed), str(options.stage), *options.world_arg)
     given += () if options.robot is None else (options.robot,)
+    given += () if options.senses == "own" else (options.senses,)
     key = campaign_key(task, given, world=options.world)
     rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
@@ -96,8 +98,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
                 file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
                 file.flush()
                 rows.append(row)
-                if row.outcome != "not_reached" or row.unsafe:
-                    told = f"{row.fault}@{row.node}:{row.phase}: {row.unsafe or row.outcome}"
+                if how := _ending(row):
+                    told = f"{row.fault}@{row.node}:{row.phase}: {how}"
                     print(f"[{len(rows)}/{len(wanted)}] {told}", flush=True)
     except OSError as error:
         raise disk_error(error, f"writing {path}") from error
@@ -116,6 +118,13 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         )
         return 1
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
+
+
+def _ending(row: Row) -> str:
+    """How a row ended, in words; empty for one that was not reached and says nothing more."""
+    if row.unsafe or row.outcome != "not_reached":
+        return row.unsafe or row.outcome
+    return f"not reached: {row.reason}" if row.reason else ""
 
 
 def drawn_rows(plan: list[FaultKey], count: int | None, seed: int) -> list[FaultKey]:

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import argparse
 import signal
+import sys
 
+from ...sim.abilities import SupportsRecording
 from ...sim.command_line import INTERRUPTED, seed
 from ...sim.errors import CaretreeError
+from ...sim.record.record import RunResult
+from ...sim.record.recorder import Recorder
+from ...sim.world import World
 from ..run.task import load_task
 from ..run.worlds import make_world, prepare_stage, read_world_arguments
+
+ENDED = "The robot was told to end; how its tree ended stands in the tree's own record."
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -33,6 +40,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     parser.add_argument("--speed", type=float, default=1.0, metavar="X", help="of time beside the wall clock's (1)")
     parser.add_argument("--rate", type=float, default=100.0, metavar="HZ", help="of the joint states (100)")
+    parser.add_argument("--record", metavar="DIR", help="folder for the truth, which `caretree evaluate` judges")
     parser.add_argument("--camera-rate", type=float, default=5.0, metavar="HZ", help="of the images (5)")
     parser.set_defaults(main=main)
 
@@ -50,23 +58,56 @@ def main(options: argparse.Namespace) -> int:
             raise CaretreeError(f"--{name.replace('_', '-')} is {getattr(options, name)}, but more than 0 is asked for")
     task = load_task(options.task)
     arguments = read_world_arguments(options.world, options.world_arg)
-    world, _ = make_world(options.world, task, seed=options.seed, arguments=arguments)
+
+    def made() -> World:
+        world, _ = make_world(options.world, task, seed=options.seed, arguments=arguments)
+        try:
+            prepare_stage(world, task, options.stage)
+        except CaretreeError:
+            world.close()
+            raise
+        return world
+
+    robot = RobotSide(
+        made,
+        options.site,
+        pace=options.pace,
+        speed=options.speed,
+        rate=options.rate,
+        camera_rate=options.camera_rate,
+        begins_with=task.initial_state(options.stage),
+    )
     try:
-        prepare_stage(world, task, options.stage)
-        robot = RobotSide(
-            world,
-            options.site,
-            pace=options.pace,
-            speed=options.speed,
-            rate=options.rate,
-            camera_rate=options.camera_rate,
-        )
+        recorder = _recorder(options, robot.world) if options.record else None
         signal.signal(signal.SIGTERM, lambda *_: robot.end())
         print(f"serving {options.world} as {options.site}, pace of the {options.pace}", flush=True)
         try:
             robot.serve()
         except KeyboardInterrupt:
             return INTERRUPTED
+        finally:
+            if recorder is not None:
+                recorder.finish(RunResult(outcome="safe_stop", reason=ENDED, sim_time_s=robot.world.clock.now()))
         return 0
     finally:
-        world.close()
+        robot.world.close()
+
+
+def _recorder(options: argparse.Namespace, world: World) -> Recorder:
+    """Of the truth of this world.
+
+    Raises:
+        CaretreeError: it has none, or the folder cannot be written.
+    """
+    if not isinstance(world, SupportsRecording):
+        raise CaretreeError(f"--record needs a world with a ground truth, such as bullet: {options.world} has none")
+    recorder = Recorder(
+        options.record,
+        task=options.task,
+        seed=options.seed,
+        world=options.world,
+        parameters={"stage": options.stage} if options.stage else {},
+        films=False,
+    )
+    world.attach_recorder(recorder, lambda error: print(f"the record is lost: {error}", file=sys.stderr, flush=True))
+    return recorder

@@ -34,6 +34,9 @@ class Robot:
         waits += "for _ in range(300):\n  try: sys.exit(ask_master('getPid') * 0)\n"
         waits += "  except WorldError: time.sleep(0.1)\n"
         assert self.python("import sys\n" + waits).returncode == 0
+        self.serve(*options)
+
+    def serve(self, *options):
         self.robot = self._begin(sys.executable, "-u", "-c", CARETREE, "serve-robot", *options)
         assert self.robot.stdout is not None
         assert self.robot.stdout.readline().startswith("serving"), self.robot.communicate()
@@ -83,5 +86,13 @@ def living_robot(ros_here, tmp_path_factory):
 @pytest.fixture(scope="session")
 def baxter(ros_here, tmp_path_factory):
     robot = Robot(tmp_path_factory.mktemp("ros"), "--task", "dressing", "--pace", "tree", "--seed", "100")
+    yield robot
+    robot.end()
+
+
+@pytest.fixture
+def robot_of_its_own(ros_here, tmp_path):
+    """One that a test may break."""
+    robot = Robot(tmp_path, "--task", "wave", "--pace", "tree")
     yield robot
     robot.end()

@@ -1,6 +1,8 @@
 """A robot behind a real master keeps the contract, and a tree does there what it does in its own process."""
 
 import json
+import sys
+import time
 
 import numpy as np
 from caretree.sim.mechanics.kinematics import kinematics_of
@@ -95,3 +97,86 @@ def test_a_hand_that_is_driven_against_a_limit_ends_where_it_does_in_its_own_pro
         ended[world] = np.array(json.loads(done.stdout))
         assert abs(kinematics_of(BAXTER).limits["left"].margin(ended[world])) < 1e-3
     np.testing.assert_allclose(ended["ros1"], ended["scripted"], atol=0.02)
+
+
+SILENT_MASTER = """
+import os
+import signal
+import sys
+import sys
+import time
+from caretree.sim.ros1.world import Ros1World
+
+world = Ros1World()
+os.kill(int(sys.argv[1]), signal.SIGSTOP)
+began = time.monotonic()
+world.close()
+print(time.monotonic() - began)
+"""
+
+
+def test_a_process_ends_although_its_master_does_not_answer(robot_of_its_own):
+    began = time.monotonic()
+    done = robot_of_its_own.python(SILENT_MASTER, str(robot_of_its_own.master.pid))
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 4.0, "closing asks once [s]"
+    assert time.monotonic() - began < 60.0, "and so does the end of the process; it took for ever"
+
+
+LATE_SENSES = """
+import sys
+import time
+from caretree.sim.ros1.senses import Senses
+from caretree.sim.ros1.world import Ros1World
+
+heard, count = Senses._heard_wrench, 0
+
+
+def late(self, message, more):
+    global count
+    count += 1
+    if count % 5 == 0:
+        time.sleep(0.3)
+    heard(self, message, more)
+
+
+Senses._heard_wrench = late
+world = Ros1World()
+oldest = 0.0
+for _ in range(30):
+    world.clock.wait_until(world.clock.now() + 1 / 15)
+    oldest = max(oldest, world.clock.now() - world.observe().time)
+print(oldest)
+world.close()
+"""
+
+
+def test_at_the_pace_of_the_tree_time_has_passed_when_everything_is_measured(waving_robot):
+    """Wrenches come late on a busy machine: time went on without them, to where they counted as stale."""
+    done = waving_robot.python(LATE_SENSES)
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) < 0.1, "the state has no stamp, and may count as one tick old [s]"
+
+
+WAITS = """
+from caretree.sim.ros1.ros import ask_master
+from caretree.sim.ros1.world import Ros1World
+
+ask_master("deleteParam", "/use_sim_time")
+print("waits", flush=True)
+world = Ros1World(patience=60.0)
+print(world.clock.now() - world.observe().time)
+world.close()
+"""
+
+
+def test_a_tree_that_is_there_before_its_simulated_robot_takes_the_time_of_that(robot_of_its_own):
+    robot_of_its_own.robot.kill()
+    robot_of_its_own.robot.communicate()
+    tree = robot_of_its_own._begin(sys.executable, "-c", WAITS)
+    assert tree.stdout is not None
+    assert tree.stdout.readline() == "waits\n"
+    time.sleep(2.0)
+    robot_of_its_own.serve("--task", "wave")
+    age = tree.communicate(timeout=90.0)[0]
+    assert float(age) < 10.0, "not the years between a simulation's clock and the wall's [s]"

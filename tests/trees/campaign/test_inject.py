@@ -3,12 +3,14 @@
 from dataclasses import replace
 
 import pytest
+from caretree.sim.errors import CaretreeError
 from caretree.sim.faults import FAULTS, FaultyWorld, parse_fault
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.sim.world import GripperOpening
+from caretree.sim.world import GripperOpening, SensorLost
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
 from caretree.trees.campaign.fault_row import Row, table
+from caretree.trees.campaign.fresh_rows import fresh_rows
 from caretree.trees.campaign.inject import Campaign
 from caretree.trees.campaign.ways import triggers_of
 from caretree.trees.nodes.composers import fallback, sequence
@@ -229,3 +231,51 @@ def test_alternatives_and_recoveries_inside_each_other_are_reached():
     campaign = Campaign(task, lambda: (ScriptedWorld(), None), faults=("stale_frame",))
     reached = {row.node for row in campaign.rows() if row.outcome != "not_reached" and row.phase == "start"}
     assert reached == {"a", "b", "c", "d", "recovery", "other recovery", "release"}
+
+
+class Outliving(ScriptedWorld):
+    """One robot for all runs."""
+
+    def __init__(self):
+        super().__init__()
+        self.restarts = 0
+
+    def restart(self):
+        self.restarts += 1
+
+
+def test_a_world_that_outlives_its_runs_begins_anew_before_each():
+    world = Outliving()
+    campaign = Campaign(load_task("wave"), lambda: (world, None), faults=("stale_frame",))
+    assert world.restarts == 1
+    maker = campaign._maker
+    maker.run()
+    assert world.restarts == 2
+
+
+def test_runs_that_share_a_robot_have_no_jobs():
+    with pytest.raises(CaretreeError, match="Outliving has one robot for all runs: no --jobs, no --address"):
+        Campaign(load_task("wave"), lambda: (Outliving(), None), jobs=2)
+
+
+def test_a_run_of_a_shared_robot_that_ended_early_says_how_and_the_next_one_is_tried():
+    """In another process no two runs are alike: one that ends before its fault must not be passed over in silence."""
+    runs = []
+
+    class Dies(Outliving):
+        def observe(self):
+            if runs[-1] is self and len(runs) == 2:  # the first run of a row, not that without a fault
+                raise SensorLost("nothing has come on /robot/joint_states")
+            return super().observe()
+
+    def made():
+        runs.append(Dies())
+        return runs[-1], None
+
+    campaign = Campaign(load_task("wave"), made, faults=("occlusion", "lost_command"))
+    keys = [("hand up", "step", "occlusion"), ("hand up", "step", "lost_command")]
+    first, second = fresh_rows(campaign._maker, {key: campaign.way(*key[:2]) for key in keys})
+    assert first.outcome == "not_reached"
+    assert "nothing has come on /robot/joint_states" in first.reason
+    assert first.unsafe == "nobody knows whether anything moves: nothing has come on /robot/joint_states"
+    assert second.outcome == "success"
