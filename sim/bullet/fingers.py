@@ -25,6 +25,8 @@ class Fingers:
     def __init__(self, grips: Sequence[Grip]) -> None:
         self.grips = list(grips)
         self._force_limit = np.full(len(self.grips), UNASKED_FORCE)
+        self._told = np.zeros(len(self.grips))  # opening [m], which what they hold may keep them from
+        self._kept_apart = [False] * len(self.grips)  # by an arm or an object, the last time they were looked at
 
     def holding(self) -> list[int]:
         """Hands that hold something."""
@@ -46,7 +48,7 @@ class Fingers:
         """Open or close a hand's fingers, no farther than what is between them lets them; returns what was sent."""
         n = SIDES.index(command.side)
         grip = self.grips[n]
-        self._force_limit[n] = command.force_limit
+        self._force_limit[n], self._told[n] = command.force_limit, command.opening
         grip.on_command(command.opening, float(robot.read().gripper_opening[n]))
         if grip.kind in ("arm", "object") and command.opening > grip.thickness + WIDER:
             grip.release()
@@ -70,6 +72,8 @@ class Fingers:
     ) -> bool:
         """Let closed fingers take, opened ones release and squeezed ones stall; tells whether one took something.
 
+        What was between them and has slid out leaves them to close as far as they were told.
+
         Args:
             robot: whose fingers they are.
             reading: of its joints now.
@@ -81,6 +85,9 @@ class Fingers:
         took = False
         for n, grip in enumerate(self.grips):
             opening, force = float(reading.gripper_opening[n]), float(self._force_limit[n])
+            if self._kept_apart[n] and grip.kind == "nothing" and self._told[n] < opening:
+                robot.command(GripperOpening(side=SIDES[n], opening=float(self._told[n]), force_limit=force))
+            self._kept_apart[n] = grip.kind in ("arm", "object")
             if grip.kind == "cloth" and opening > REOPENED:
                 grip.release()
             elif grip.kind == "nothing" and catches(grip, hands[n], opening, force):
