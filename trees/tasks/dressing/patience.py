@@ -14,7 +14,7 @@ from ...nodes.composers import commanding
 from ...nodes.decorators import RecoverBy
 from .tuning import DRESSING
 
-SIGHT = (Reason.SENSOR_LOST, Reason.SENSOR_STALE)
+SIGHT: tuple[Reason, ...] = (Reason.SENSOR_LOST, Reason.SENSOR_STALE)
 FOR_A_MOMENT = (*SIGHT, Reason.COMMAND_LOST)
 
 
