@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from .take_down import TakeDown as TakeDown
     from .unhook import Unhook as Unhook
     from .view_around import ViewAround as ViewAround
-    from .wait_for_sight import WaitForSight as WaitForSight
 
 _HOME = {
     "CarryAcross": ".carry_across",
@@ -89,7 +88,6 @@ _HOME = {
     "TakeDown": ".take_down",
     "Unhook": ".unhook",
     "ViewAround": ".view_around",
-    "WaitForSight": ".wait_for_sight",
 }
 __all__ = sorted(_HOME)  # pyright: ignore[reportUnsupportedDunderAll] filled on first use
 

@@ -1,24 +1,39 @@
-"""Stand still and watch for a while."""
+"""Stand still and watch for a while, or until there is something to watch."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..sim.world import SensorLost
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 
 
 class HoldStill(Skill):
-    """Stands still and looks once per tick; gives up when the camera does."""
+    """Stands still and looks once per tick; gives up when a camera does, and has not come back within its patience."""
 
     commands = False
     seconds = Input(float, unit="s", doc="how long", default=1.0)
+    cameras = Input(tuple, doc="names of those that it looks with", default=("head",))
+    patience = Input(float, unit="s", doc="for which it waits for images of all of them", default=0.0)
     reasons = (Reason.SENSOR_LOST, Reason.SENSOR_STALE)
 
     def steps(self) -> Iterator[None]:
-        """Look once per tick."""
-        end = self.now() + self.seconds
-        while self.now() < end:
-            self.world.look("head")
+        """Look once per tick, and go on as long as nothing is seen."""
+        begun = seen_last = self.now()
+        seen = self.patience <= 0.0
+        while not seen or self.now() < begun + self.seconds:
+            try:
+                for camera in self.cameras:
+                    self.world.look(camera)
+            except SensorLost as lost:
+                if self.now() >= seen_last + self.patience:
+                    raise
+                self.note(f"waits: {lost}")
+                seen = False
+            else:
+                seen, seen_last = True, self.now()
+                if seen_last >= begun + self.seconds:
+                    return
             yield

@@ -33,7 +33,6 @@ from caretree.skills.take_corner import TakeCorner
 from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.skills.view_around import ViewAround, Views
-from caretree.skills.wait_for_sight import WaitForSight
 from caretree.trees.tasks.draw_blanket.draw_up import DrawUp
 from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
@@ -99,7 +98,6 @@ EXAMPLES = {
     TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), min_load=-1.0, min_load_each=-1.0),
     Unhook: lambda context: Unhook("unhook", context, hand="right", height=0.05),
     ViewAround: lambda context: ViewAround("view around", context, hand="right"),
-    WaitForSight: lambda context: WaitForSight("wait for sight", context),
     Wipe: lambda context: Wipe("wipe", context, side="right", hand="right", strokes=1),
     MoveJoint: lambda context: MoveJoint("move joint", context, side="left", joint="w1", angle=0.3),
     HoldStill: lambda context: HoldStill("hold still", context),

@@ -132,3 +132,13 @@ def test_past_the_shoulder_a_pull_that_stands_has_the_sleeve_on():
     run = bench(load=0.5, begin=0.3, goal=-0.6, each_tick=stands)
     assert run.ended() is None
     assert -0.4 < coordinates(run)[-1] < -0.2
+
+
+def test_a_hand_that_is_held_up_just_before_its_goal_has_arrived():
+    def stands(bench):
+        if PATH.coordinate_of(bench.world.observe().pose_hand_in_map[1, :3, 3]) < GOAL + 0.15:
+            bench.world.deaf_to = (HandTwist,)
+
+    run = bench(each_tick=stands)
+    assert run.ended() is None
+    assert GOAL + 0.05 < coordinates(run)[-1] < GOAL + 0.15

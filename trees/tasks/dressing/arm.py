@@ -81,8 +81,8 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         return sequence(
             f"{scope.prefix}begin again",
             let_down("held", scope, "lifting", other="pulling"),
-            sight_again(scope, "then")(),
             free(scope),
+            sight_again(scope, "then")(),
             fallback(
                 f"{scope.prefix}arm and sleeve laid out",
                 CheckLaidOut("bare, its sleeve at hand", scope),
@@ -214,7 +214,7 @@ def let_go(arm: Scope) -> Behaviour:
 def laid_back(arm: Scope) -> Behaviour:
     """A sleeve that is still held is laid on the bed: let go of in the air, it took the gown to the floor (138)."""
     held = Condition(f"{arm.prefix}still held", holds_gown_with, Reason.CLOTH_SLIPPED, hand=arm["pulling"])
-    laid = LaySleeve("lay it back", arm, hand=arm["pulling"])
+    laid = patient(arm, LaySleeve("lay it back", arm, hand=arm["pulling"]))
     return fallback(
         f"{arm.prefix}the sleeve let go",
         sequence(f"{arm.prefix}laid back", held, laid, let_go(Scope(arm, "laid"))),
@@ -275,7 +275,7 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
         f"the {side} sleeve from the other side",
         back_off("free the way", arm),
         Navigate("go to the other side", arm, goal=f"bed_{other}"),
-        carried_across("the sleeve", arm, side),
+        carried_across("it", arm, side),
         Navigate("go back to its side", arm, goal=f"bed_{side}"),
     )
 

@@ -53,14 +53,14 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
         holds("the left hand holds it too"),
         Retreat("let go", end, hands="right", ready="never", tuning=LEVEL),
         look_and_take(end, "left", DRESSING.second_corner),
-        stretch("stretch it by the new right end"),
+        stretch("stretch by the new right end"),
     )
     both = sequence(
         "both hands anew",
         holds("the left hand still holds it"),
         Retreat("let go once more", end, hands="right", ready="never", tuning=LEVEL),
         corners_from(context, ("first end", "second end"), "left"),
-        stretch("stretch it by both new ends"),
+        stretch("stretch by both new ends"),
     )
     return fallback("by both ends", stretch("stretch the neckline"), right, both)
 

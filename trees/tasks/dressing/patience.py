@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 from py_trees.behaviour import Behaviour
 
+from ....sim.world import CAMERAS
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
-from ....skills.wait_for_sight import WaitForSight
+from ....skills.hold_still import HoldStill
 from ...nodes.composers import commanding
 from ...nodes.decorators import RecoverBy
 from .tuning import DRESSING
@@ -22,10 +23,11 @@ def patient(context: Context | Scope, body: Behaviour) -> RecoverBy:
     """The body, once more when the cameras show again, where they or a command were lost; nothing is let go of."""
     reasons = FOR_A_MOMENT if commanding(body) else SIGHT
     again = dict.fromkeys(reasons, sight_again(context, body.name))
-    return RecoverBy(f"{body.name}, with patience", body, again, attempts=DRESSING.patient_attempts)
+    return RecoverBy(f"{body.name}, again", body, again, attempts=DRESSING.patient_attempts)
 
 
 def sight_again(context: Context | Scope, name: str) -> Callable[[], Behaviour]:
     """Builds the leaf that waits for the cameras, for a node of that name."""
     scope = Scope.of(context)
-    return lambda: WaitForSight(f"{name.removeprefix(scope.prefix)}: see again", scope)
+    what = {"seconds": 0.0, "cameras": CAMERAS, "patience": DRESSING.patience}
+    return lambda: HoldStill(f"see: {name.removeprefix(scope.prefix)}", scope, **what)

@@ -49,6 +49,9 @@ class DressingTuning(Quantities):
         "at what a camera or a command was lost in, the first one included",
         "choice: each waits for half a minute",
     )
+    patience: float = quantity(
+        30.0, "s", "for cameras to show again", "design requirement: cameras that are dead for 20 s end no run"
+    )
     # taking the gown down
     neckline: tuple[float, float] = quantity(
         (0.70, 0.98),

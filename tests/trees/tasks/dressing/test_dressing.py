@@ -58,8 +58,9 @@ def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_t
     # the left sleeve after the right arm, and where it does not show after the person has moved and after all else
     assert len(carries) == 3
     for carry in carries:
-        steps = carry.parent.children
-        assert isinstance(steps[steps.index(carry) + 1], Retreat)
+        once_more = carry.parent
+        steps = once_more.parent.children
+        assert isinstance(steps[steps.index(once_more) + 1], Retreat)
 
 
 def test_the_second_sleeve_is_drawn_less_hard_than_the_first(nodes):
@@ -114,7 +115,7 @@ def test_a_sleeve_that_is_still_held_is_laid_back_unless_the_person_has_moved(no
     for side in ("left", "right"):
         again = next(node for node in nodes if isinstance(node, RecoverBy) and node.name == f"dress the {side} arm")
         for reason, branch in again.recoveries.items():
-            laid = [node.name for node in branch.iterate() if node.name.endswith("lay it back")]
+            laid = [node.name for node in branch.iterate() if node.name.endswith("/lay it back")]
             assert laid == ([] if reason is Reason.PERSON_MOVED else [f"{side} arm/again/lay it back"])
 
 
