@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...sim.vector import length
-
 
 def surface_normal(points: np.ndarray, towards: np.ndarray) -> np.ndarray:
     """Unit normal (3,) of the plane through `points` (n, 3), on the side of the point `towards` (3,)."""
@@ -22,7 +20,7 @@ def main_direction(points: np.ndarray) -> np.ndarray:
 
 def unit(vector: np.ndarray) -> np.ndarray:
     """`vector` (3,) with length one; zeros stay zeros."""
-    return vector / max(length(vector), 1e-12)
+    return vector / max(float(np.linalg.norm(vector)), 1e-12)
 
 
 def across(edge: np.ndarray, approach: np.ndarray) -> np.ndarray:

@@ -54,7 +54,7 @@ class Hung:
             handle.follow(pose)
             world._hook.before_step()
             world._client.stepSimulation()
-        world._vertices = world._cloth.vertices()
+        world._look_anew()
         return length
 
     def taken(self, grasp, opening: float, depth: float) -> tuple[int, int]:
