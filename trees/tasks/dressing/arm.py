@@ -187,7 +187,10 @@ def let_down(name: str, arm: Scope, hand: str, *, other: str | None = None) -> B
 
 
 def put_down(name: str, arm: Scope) -> Behaviour:
-    """An arm that is up and that nobody holds is swung down: from where the robot stands, else from beside the arm."""
+    """An arm that is up and that nobody holds is swung down: from where the robot stands, else from beside the arm.
+
+    One that is not where it was taken to be, as its owner has moved since, may be seen to lie from farther off.
+    """
     free = Scope(arm, name)
     return fallback(
         free.prefix + "put it down",
@@ -202,6 +205,12 @@ def put_down(name: str, arm: Scope) -> Behaviour:
             Navigate("go there", free, goal=stance(arm["side"], "lift")),
             LookAtPerson("look there", free),
             LowerArm("lower there", free, hand=arm["lifting"]),
+        ),
+        sequence(
+            free.prefix + "from farther off",
+            back_off("step back", free, DRESSING.back_off_distance),
+            LookAtPerson("look from there", free),
+            LowerArm("lower from there", free, hand=arm["pulling"]),
         ),
     )
 

@@ -7,6 +7,7 @@ from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
 from caretree.skills.lift_arm import LiftArm
 from caretree.skills.look_at_person import LookAtPerson
+from caretree.skills.lower_arm import LowerArm
 from caretree.skills.navigate import Navigate
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
@@ -95,3 +96,29 @@ def test_a_first_sleeve_that_is_low_is_pulled_up_again_before_the_other_arm_is_l
     assert run.run().outcome == "success"
     assert done[: done.index("left arm/lift")].count("first sleeve/pull up") == pulls
     assert 0.0 < looked[0] < 0.7
+
+
+def test_an_arm_that_is_not_where_it_was_taken_to_be_up_is_looked_at_from_farther_off(monkeypatch):
+    lower, missed = LowerArm.steps, []
+
+    def misses(self):
+        if self.name in ("right arm/in the end/lower", "right arm/in the end/lower there"):
+            missed.append(self.name)
+            raise SkillFailure(Reason.GRASP_MISSED, "")
+        yield from lower(self)
+
+    monkeypatch.setattr(LowerArm, "steps", misses)
+    task, said = load_task("dressing"), []
+    world, senses = task.scripted(1)
+    run = Run(
+        task,
+        world,
+        seed=1,
+        senses=senses,
+        params=task.parameters("dress"),
+        on_progress=lambda progress: said.append((progress.name, progress.status)),
+    )
+    assert run.run().outcome == "success"
+    assert len(missed) == 2
+    assert ("right arm/in the end/lower from there", "success") in said
+    assert not any(name.startswith("right arm/again/") for name, _ in said), "the sleeve stays on the arm"
