@@ -78,7 +78,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         )
 
     def begin_again(scope: Scope, free: Callable[[Scope], Behaviour]) -> Behaviour:
-        return sequence(
+        begun = sequence(
             f"{scope.prefix}begin again",
             let_down("held", scope, "lifting", other="pulling"),
             free(scope),
@@ -90,6 +90,10 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
                 *([fetch_sleeve(scope, side)] if strays else []),
                 back_off("leave it as it lies", scope),
             ),
+        )
+        # chance ends it too: an elbow that swung out beside the person, as the hands drew back (173)
+        return RecoverBy(
+            f"{scope.prefix}at any rate", begun, {Reason.SPEED_LIMIT: lambda: let_go(Scope(scope, "slow"))}
         )
 
     up = RecoverBy(

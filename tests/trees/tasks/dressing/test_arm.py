@@ -5,10 +5,12 @@ from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
+from caretree.skills.grasp_sleeve import GraspSleeve
 from caretree.skills.lift_arm import LiftArm
 from caretree.skills.look_at_person import LookAtPerson
 from caretree.skills.lower_arm import LowerArm
 from caretree.skills.navigate import Navigate
+from caretree.skills.retreat import Retreat
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
@@ -122,3 +124,26 @@ def test_an_arm_that_is_not_where_it_was_taken_to_be_up_is_looked_at_from_farthe
     assert len(missed) == 2
     assert ("right arm/in the end/lower from there", "success") in said
     assert not any(name.startswith("right arm/again/") for name, _ in said), "the sleeve stays on the arm"
+
+
+def test_an_arm_is_begun_again_although_the_guard_stopped_the_hands_as_they_drew_back(monkeypatch):
+    retreat, grasp, said = Retreat.steps, GraspSleeve.steps, []
+
+    def too_fast(self):
+        said.append(self.name)
+        if self.name == "left arm/again/free both hands" and said.count(self.name) == 1:
+            raise SkillFailure(Reason.SPEED_LIMIT, "left forearm at 0.34 m/s")
+        yield from retreat(self)
+
+    def out_of_reach(self):
+        said.append(self.name)
+        if self.name == "left arm/grasp the sleeve" and said.count(self.name) == 1:
+            raise SkillFailure(Reason.UNREACHABLE, "")
+        yield from grasp(self)
+
+    monkeypatch.setattr(Retreat, "steps", too_fast)
+    monkeypatch.setattr(GraspSleeve, "steps", out_of_reach)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    assert Run(task, world, seed=1, senses=senses, params=task.parameters("dress")).run().outcome == "success"
+    assert said.count("left arm/again/free both hands") == 2

@@ -106,7 +106,7 @@ def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
     }
     for side in ("left", "right"):
         again = next(node for node in nodes if isinstance(node, RecoverBy) and node.name == f"dress the {side} arm")
-        first = again.recoveries[Reason.PERSON_MOVED].children[0]
+        first = again.recoveries[Reason.PERSON_MOVED].body.children[0]
         assert first.name == f"{side} arm/held/let down"
         assert first.children[0].lower
 
