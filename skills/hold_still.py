@@ -15,17 +15,17 @@ class HoldStill(Skill):
 
     commands = False
     seconds = Input(float, unit="s", doc="how long", default=1.0)
-    cameras = Input(tuple, doc="names of those that it looks with", default=("head",))
-    patience = Input(float, unit="s", doc="for which it waits for images of all of them", default=0.0)
+    all_cameras = Input(bool, doc="whether it looks with those of the hands too", default=False)
+    patience = Input(float, unit="s", doc="for which it waits for images", default=0.0)
     reasons = (Reason.SENSOR_LOST, Reason.SENSOR_STALE)
 
     def steps(self) -> Iterator[None]:
         """Look once per tick, and go on as long as nothing is seen."""
         begun = seen_last = self.now()
-        seen = self.patience <= 0.0
+        seen, cameras = self.patience <= 0.0, self.world.robot.cameras if self.all_cameras else ("head",)
         while not seen or self.now() < begun + self.seconds:
             try:
-                for camera in self.cameras:
+                for camera in cameras:
                     self.world.look(camera)
             except SensorLost as lost:
                 if self.now() >= seen_last + self.patience:

@@ -1,7 +1,7 @@
 """The robot stands, looks on every tick, and gives up when its camera does."""
 
 import pytest
-from caretree.sim.world import CAMERAS, SensorLost
+from caretree.sim.world import SensorLost
 from caretree.skills.core.reasons import Reason
 from caretree.skills.hold_still import HoldStill
 
@@ -25,7 +25,7 @@ def bench(seconds, dies_at=None):
 
 def patient_bench(dead, until):
     """A robot that waits for all cameras, of which one gives no image `until` a time [s]."""
-    wait = {"seconds": 0.0, "cameras": CAMERAS, "patience": 30.0}
+    wait = {"seconds": 0.0, "all_cameras": True, "patience": 30.0}
     run = LeafBench(lambda context: HoldStill("wait", context, **wait), beside_bed())
     look, begins = run.world.look, run.world.clock.now()
 

@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from py_trees.behaviour import Behaviour
 
-from ....sim.world import CAMERAS
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
@@ -29,5 +28,5 @@ def patient(context: Context | Scope, body: Behaviour) -> RecoverBy:
 def sight_again(context: Context | Scope, name: str) -> Callable[[], Behaviour]:
     """Builds the leaf that waits for the cameras, for a node of that name."""
     scope = Scope.of(context)
-    what = {"seconds": 0.0, "cameras": CAMERAS, "patience": DRESSING.patience}
+    what = {"seconds": 0.0, "all_cameras": True, "patience": DRESSING.patience}
     return lambda: HoldStill(f"see: {name.removeprefix(scope.prefix)}", scope, **what)
