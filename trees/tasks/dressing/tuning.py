@@ -229,6 +229,13 @@ class DressingTuning(Quantities):
     safe_back_off: float = quantity(
         0.2, "m", "of the base whenever a stage fails", "choice: a small way, as nothing is planned"
     )
+    safe_pause: float = quantity(0.5, "s", "after the guard has stopped the hands", "choice: until they stand")
+    safe_attempts: int = quantity(
+        4,
+        "1",
+        "at letting go in the safe branch, the first included",
+        "choice: each goes on from where the arms are by then",
+    )
     arms_back: float = quantity(
         0.05, "m", "by which the hands draw back from the gown that is laid", "choice: clear of it"
     )

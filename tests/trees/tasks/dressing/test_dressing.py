@@ -86,13 +86,13 @@ def test_both_arms_lie_before_a_sleeve_is_drawn_up_again(nodes):
 def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_come_last(nodes):
     safe = next(node for node in nodes if node.name == "make safe")
     assert [child.name for child in safe.children] == [
-        "safe/left hand/let down",
-        "safe/right hand/let down",
-        "safe/let go and back off",
+        "safe/left hand/let down, again",
+        "safe/right hand/let down, again",
+        "safe/let go and back off, again",
         "safe: left arm",
         "safe: right arm",
     ]
-    assert all(branch.children[0].lower for branch in safe.children[:2])
+    assert all(branch.body.children[0].lower for branch in safe.children[:2])
     assert all(isinstance(branch.children[-1], Retreat) for branch in safe.children[3:]), "no arm is owed at any price"
 
 

@@ -5,6 +5,8 @@ from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
 from caretree.skills.lower_arm import LowerArm
 from caretree.skills.navigate import Navigate
+from caretree.skills.release_arm import ReleaseArm
+from caretree.skills.retreat import Retreat
 from caretree.trees.nodes.decorators import FailSafe
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
@@ -47,3 +49,23 @@ def test_it_does_not_drive_to_one_that_it_does_not_see(monkeypatch, reason):
     driven, lowered = ended(monkeypatch, reason)
     assert not driven
     assert lowered == ["right"]
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_both_arms_are_put_down_although_the_guard_stops_the_hands_first(monkeypatch, times):
+    release, retreat, stopped = ReleaseArm.steps, Retreat.steps, []
+
+    def too_fast(steps):
+        def some(self):
+            if self.name.startswith("safe/") and stopped.count(self.name) < times:
+                stopped.append(self.name)
+                raise SkillFailure(Reason.SPEED_LIMIT, "right elbow at 0.42 m/s")
+            yield from steps(self)
+
+        return some
+
+    monkeypatch.setattr(ReleaseArm, "steps", too_fast(release))
+    monkeypatch.setattr(Retreat, "steps", too_fast(retreat))
+    _, lowered = ended(monkeypatch, Reason.UNREACHABLE)
+    assert "safe/let go and back off" in stopped
+    assert lowered == ["left", "right"]
