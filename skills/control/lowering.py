@@ -216,7 +216,7 @@ def _about_shoulder(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning
 
 def _not_against(along: np.ndarray, load: np.ndarray, tuning: LoweringTuning) -> np.ndarray:
     """The way (3,) without as much of it as goes level against what pushes (3,) [N]: the arm is held aside there."""
-    level = load * (1.0, 1.0, 0.0)
+    level = load - (load @ UP) * UP
     push = unit(level)
     size = float(np.linalg.norm(level))
     share = float(np.clip((size - tuning.slow_from) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))

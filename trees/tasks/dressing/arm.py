@@ -38,7 +38,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
 from .draw_flat import DrawFlat
-from .patience import FOR_A_MOMENT, patient, sight_again
+from .patience import FOR_A_MOMENT, patient, sight_again, unhurried
 from .take_down import holds_gown_with
 from .tuning import DRESSING, SECOND_SLEEVE, SleeveTuning
 
@@ -78,7 +78,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         )
 
     def begin_again(scope: Scope, free: Callable[[Scope], Behaviour]) -> Behaviour:
-        begun = sequence(
+        return sequence(
             f"{scope.prefix}begin again",
             let_down("held", scope, "lifting", other="pulling"),
             free(scope),
@@ -90,10 +90,6 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
                 *([fetch_sleeve(scope, side)] if strays else []),
                 back_off("leave it as it lies", scope),
             ),
-        )
-        # chance ends it too: an elbow that swung out beside the person, as the hands drew back (173)
-        return RecoverBy(
-            f"{scope.prefix}at any rate", begun, {Reason.SPEED_LIMIT: lambda: let_go(Scope(scope, "slow"))}
         )
 
     up = RecoverBy(
@@ -183,11 +179,12 @@ def let_down(name: str, arm: Scope, hand: str, *, other: str | None = None) -> B
     A sleeve that was caught on the arm kept it 0.23 m up (134).
     """
     held = Scope(arm, name, hand=arm[hand])
-    ways: list[Behaviour] = [ReleaseArm("lower", held, lower=True)]
+    ways: list[Behaviour] = [unhurried(held, ReleaseArm("lower", held, lower=True))]
     if other is not None:
-        free = Retreat("let the sleeve go", held, hands=arm[other], ready="never")
-        ways.append(sequence(f"{held.prefix}without it", free, ReleaseArm("lower it then", held, lower=True)))
-    return fallback(f"{held.prefix}let down", *ways, ReleaseArm("open", held))
+        free = unhurried(held, Retreat("let it go", held, hands=arm[other], ready="never"))
+        then = unhurried(held, ReleaseArm("lower then", held, lower=True))
+        ways.append(sequence(f"{held.prefix}without it", free, then))
+    return fallback(f"{held.prefix}let down", *ways, unhurried(held, ReleaseArm("open", held)))
 
 
 def put_down(name: str, arm: Scope) -> Behaviour:
@@ -221,7 +218,7 @@ def put_down(name: str, arm: Scope) -> Behaviour:
 
 def let_go(arm: Scope) -> Behaviour:
     """Of all that is held, where it is."""
-    return back_off("free both hands", arm)
+    return unhurried(arm, back_off("free hands", arm))
 
 
 def laid_back(arm: Scope) -> Behaviour:

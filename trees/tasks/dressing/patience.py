@@ -1,4 +1,4 @@
-"""What was lost for a moment is waited for, and then done once more."""
+"""What was lost for a moment is waited for, what the guard stopped stands still, and then it is done once more."""
 
 from __future__ import annotations
 
@@ -23,6 +23,17 @@ def patient(context: Context | Scope, body: Behaviour) -> RecoverBy:
     reasons = FOR_A_MOMENT if commanding(body) else SIGHT
     again = dict.fromkeys(reasons, sight_again(context, body.name))
     return RecoverBy(f"{body.name}, again", body, again, attempts=DRESSING.patient_attempts)
+
+
+def unhurried(hands: Scope, node: Behaviour) -> RecoverBy:
+    """The node, once more from where the arms stand, when the guard has stopped them as an elbow swung out.
+
+    Where a joint comes to its limit an elbow does so, at up to 0.4 m/s (173, 225): ended there, the fingers opened with
+    an arm 0.34 m up.
+    """
+    name = node.name.removeprefix(hands.prefix)
+    again = {Reason.SPEED_LIMIT: lambda: HoldStill(f"stand: {name}", hands, seconds=DRESSING.stopped_pause)}
+    return RecoverBy(f"{node.name}, again", node, again, attempts=DRESSING.stopped_attempts)
 
 
 def sight_again(context: Context | Scope, name: str) -> Callable[[], Behaviour]:

@@ -9,13 +9,13 @@ from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
 from ....skills.geometry.stances import stance
-from ....skills.hold_still import HoldStill
 from ....skills.lower_arm import LowerArm
 from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
 from ...nodes.decorators import RecoverBy
 from .arm import arm_scope, let_down
+from .patience import unhurried
 from .tuning import DRESSING
 
 
@@ -24,17 +24,10 @@ def make_safe(context: Context) -> Behaviour:
     hands = Scope(context, "safe", left="left", right="right")
     return sequence(
         "make safe",
-        *(stopped_once(hands, let_down(f"{side} hand", hands, side)) for side in SIDES),
-        stopped_once(hands, Retreat("let go and back off", hands, base_distance=DRESSING.safe_back_off, ready="never")),
+        *(let_down(f"{side} hand", hands, side) for side in SIDES),
+        unhurried(hands, Retreat("let go and back off", hands, base_distance=DRESSING.safe_back_off, ready="never")),
         *(put_down_if_possible(context, side) for side in SIDES),
     )
-
-
-def stopped_once(hands: Scope, node: Behaviour) -> Behaviour:
-    """What the guard stopped, as an elbow swung out, is done again: ended there, the run left an arm 0.34 m up."""
-    name = node.name.removeprefix(hands.prefix)
-    again = {Reason.SPEED_LIMIT: lambda: HoldStill(f"stand: {name}", hands, seconds=DRESSING.safe_pause)}
-    return RecoverBy(f"{node.name}, again", node, again, attempts=DRESSING.safe_attempts)
 
 
 def put_down_if_possible(context: Context, side: Side) -> Behaviour:

@@ -229,11 +229,11 @@ class DressingTuning(Quantities):
     safe_back_off: float = quantity(
         0.2, "m", "of the base whenever a stage fails", "choice: a small way, as nothing is planned"
     )
-    safe_pause: float = quantity(0.5, "s", "after the guard has stopped the hands", "choice: until they stand")
-    safe_attempts: int = quantity(
+    stopped_pause: float = quantity(0.5, "s", "after the guard has stopped the hands", "choice: until they stand")
+    stopped_attempts: int = quantity(
         4,
         "1",
-        "at letting go in the safe branch, the first included",
+        "at lowering and letting go, the first included",
         "choice: each goes on from where the arms are by then",
     )
     arms_back: float = quantity(

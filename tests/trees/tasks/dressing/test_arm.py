@@ -15,6 +15,17 @@ from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
 
+def rehearsed(*faults):
+    """Names and status of all that the stage told, in turn, rehearsed with these faults until it succeeds."""
+    task, told = load_task("dressing"), []
+    inner, senses = task.scripted(1)
+    world = FaultyWorld(inner, [parse_fault(fault) for fault in faults])
+    told_of = {"on_progress": lambda progress: told.append((progress.name, progress.status))}
+    run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), **told_of)
+    assert run.run().outcome == "success"
+    return told
+
+
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_an_arm_that_is_lost_is_looked_for_from_farther_off(monkeypatch, side):
     said, look, drive, lift = [], LookAtPerson.steps, Navigate.steps, LiftArm.steps
@@ -36,9 +47,7 @@ def test_an_arm_that_is_lost_is_looked_for_from_farther_off(monkeypatch, side):
 
     for skill, steps in ((LookAtPerson, lost_at_first), (Navigate, told), (LiftArm, lifts)):
         monkeypatch.setattr(skill, "steps", steps)
-    task = load_task("dressing")
-    world, senses = task.scripted(1)
-    assert Run(task, world, seed=1, senses=senses, params=task.parameters("dress")).run().outcome == "success"
+    rehearsed()
     names = [name for name, _ in said]
     first = names.index(f"{side} arm/look")
     expected = ["look", "far/go off", "far/look", "far/come back", "look"]
@@ -50,20 +59,8 @@ def test_an_arm_that_is_lost_is_looked_for_from_farther_off(monkeypatch, side):
 
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_an_arm_that_meets_the_hand_that_lowers_it_is_lowered_on_and_its_sleeve_pulled_up(side):
-    task = load_task("dressing")
-    inner, senses = task.scripted(1)
     leaf = f"{side} arm/lower it and let go"
-    world = FaultyWorld(inner, [parse_fault(f"force_spike@{leaf}:step")])
-    ended = []
-    run = Run(
-        task,
-        world,
-        seed=1,
-        senses=senses,
-        params=task.parameters("dress"),
-        on_progress=lambda progress: ended.append((progress.name, progress.status)),
-    )
-    assert run.run().outcome == "success"
+    ended = rehearsed(f"force_spike@{leaf}:step")
     failed = ended.index((leaf, "failure"))
     rest = [name for name, status in ended[failed + 1 :] if status == "success"]
     assert rest[:3] == [f"{side} arm/lower it on", leaf, f"{side} arm/pull up"]
@@ -84,18 +81,7 @@ def test_a_first_sleeve_that_is_low_is_pulled_up_again_before_the_other_arm_is_l
         yield from look(self)
 
     monkeypatch.setattr(CheckSleeve, "steps", low_at_first)
-    task = load_task("dressing")
-    world, senses = task.scripted(1)
-    done = []
-    run = Run(
-        task,
-        world,
-        seed=1,
-        senses=senses,
-        params=task.parameters("dress"),
-        on_progress=lambda progress: done.append(progress.name) if progress.status == "success" else None,
-    )
-    assert run.run().outcome == "success"
+    done = [name for name, status in rehearsed() if status == "success"]
     assert done[: done.index("left arm/lift")].count("first sleeve/pull up") == pulls
     assert 0.0 < looked[0] < 0.7
 
@@ -110,17 +96,7 @@ def test_an_arm_that_is_not_where_it_was_taken_to_be_up_is_looked_at_from_farthe
         yield from lower(self)
 
     monkeypatch.setattr(LowerArm, "steps", misses)
-    task, said = load_task("dressing"), []
-    world, senses = task.scripted(1)
-    run = Run(
-        task,
-        world,
-        seed=1,
-        senses=senses,
-        params=task.parameters("dress"),
-        on_progress=lambda progress: said.append((progress.name, progress.status)),
-    )
-    assert run.run().outcome == "success"
+    said = rehearsed()
     assert len(missed) == 2
     assert ("right arm/in the end/lower from there", "success") in said
     assert not any(name.startswith("right arm/again/") for name, _ in said), "the sleeve stays on the arm"
@@ -131,7 +107,7 @@ def test_an_arm_is_begun_again_although_the_guard_stopped_the_hands_as_they_drew
 
     def too_fast(self):
         said.append(self.name)
-        if self.name == "left arm/again/free both hands" and said.count(self.name) == 1:
+        if self.name == "left arm/again/free hands" and said.count(self.name) == 1:
             raise SkillFailure(Reason.SPEED_LIMIT, "left forearm at 0.34 m/s")
         yield from retreat(self)
 
@@ -143,7 +119,5 @@ def test_an_arm_is_begun_again_although_the_guard_stopped_the_hands_as_they_drew
 
     monkeypatch.setattr(Retreat, "steps", too_fast)
     monkeypatch.setattr(GraspSleeve, "steps", out_of_reach)
-    task = load_task("dressing")
-    world, senses = task.scripted(1)
-    assert Run(task, world, seed=1, senses=senses, params=task.parameters("dress")).run().outcome == "success"
-    assert said.count("left arm/again/free both hands") == 2
+    rehearsed()
+    assert said.count("left arm/again/free hands") == 2

@@ -68,4 +68,6 @@ def test_both_arms_are_put_down_although_the_guard_stops_the_hands_first(monkeyp
     monkeypatch.setattr(Retreat, "steps", too_fast(retreat))
     _, lowered = ended(monkeypatch, Reason.UNREACHABLE)
     assert "safe/let go and back off" in stopped
+    assert {"safe/left hand/lower", "safe/right hand/lower"} <= set(stopped)
+    assert not any(name.endswith("/open") for name in stopped), "no fingers open with an arm in the air"
     assert lowered == ["left", "right"]
