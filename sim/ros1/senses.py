@@ -190,7 +190,8 @@ class Senses:
             self._place = _planar(message.pose.pose), nearest.value[0]
 
     def _heard_state(self, message: Any) -> None:
-        self._state = Sample(self.now(), message)  # it has no stamp of its own
+        if (now := self.now()) > 0.0:  # it has no stamp of its own, and may come before `/clock` has told the time
+            self._state = Sample(now, message)
 
     def _heard_fingers(self, message: Any, more: Any) -> None:
         side = more[0]
