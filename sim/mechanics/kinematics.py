@@ -127,6 +127,12 @@ class Kinematics:
         pin.computeJointJacobians(arm, data, q)  # also places the joints, which computeFrameJacobian does not
         return pin.updateFramePlacement(arm, data, frame), pin.getFrameJacobian(arm, data, frame, pin.LOCAL)
 
+    def hand_and_joints(self, side: Side, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Hand pose (4, 4) in `base`, Jacobian (6, n) along the hand's axes, places (n, 3) of the joints in `base`."""
+        pose, jacobian = self.pose_and_jacobian_local(side, q)
+        placed = self._arms[side][1].oMi
+        return pose.homogeneous, jacobian, np.array([placed[n + 1].translation for n in range(len(q))])
+
     def configuration(
         self,
         pose_base_in_map: np.ndarray,

@@ -9,7 +9,7 @@ from ..world import SIDES, HandTwist, Side
 from .damped_rates import damped_rates
 from .kinematics import Kinematics
 from .planar import planar_pose
-from .twist_law import lead, pace, ramp
+from .twist_law import lead, pace, ramp, swing, swing_allowed
 
 _CENTRING = 0.4  # pull of the null space towards the ready posture at full pace [1/s]
 _STILL = np.zeros(6)
@@ -63,9 +63,9 @@ class TwistTracker:
         if not self._active:
             return None
         dt, self._time = time - self._time, time
-        hand_in_base, jacobian = self._kinematics.pose_and_jacobian_local(self._side, q)
+        hand_in_base, jacobian, places = self._kinematics.hand_and_joints(self._side, q)
         base = planar_pose(pose_base_in_map)
-        hand = base @ hand_in_base.homogeneous
+        hand = base @ hand_in_base
         if self._pose is None:
             self._pose = hand.copy()
             self._twist[:3] = hand[:3, :3] @ (jacobian[:3] @ dq)  # start from what the hand is doing
@@ -76,7 +76,8 @@ class TwistTracker:
             self.cancel()
             return None
         rates = np.empty(len(q))
-        _follow(self._pose, self._twist, dt, base, twist_base, hand, jacobian, q, self._joints, rates)
+        behind = (places - hand_in_base[:3, 3]) @ hand_in_base[:3, :3]
+        _follow(self._pose, self._twist, dt, base, twist_base, hand, jacobian, behind, q, self._joints, rates)
         return rates
 
 
@@ -89,13 +90,18 @@ def _follow(
     twist_base: np.ndarray,
     hand: np.ndarray,
     jacobian: np.ndarray,
+    places: np.ndarray,
     q: np.ndarray,
     joints: np.ndarray,
     rates: np.ndarray,
 ) -> None:
-    """Put the joint rates (n,) in place that follow the pose; see `lead`, `pace` and `damped_rates`.
+    """Put the joint rates (n,) in place that follow the pose; see `lead`, `pace`, `damped_rates` and `swing`.
 
     One call, as it is made at every step, and an array that a compiled function returns costs as much as the call.
     """
     velocity = lead(goal, twist, dt, base, twist_base, hand)
     rates[:] = damped_rates(jacobian, velocity, q, joints, _CENTRING * pace(twist), dt)
+    fastest = swing(jacobian, places, rates)
+    allowed = swing_allowed(twist, base, twist_base, hand)
+    if fastest > allowed:
+        rates *= allowed / fastest

@@ -10,6 +10,9 @@ from ..compiled import njit
 from .rotation_vector import rotation, rotation_vector
 
 _GAIN = 8.0  # of the position feedback that takes out the drift of integrating joint rates [1/s]
+# How fast a joint may go through the room: so many times as fast as the hand is to go, a turn of it counting as that of
+# a hand so long, and never less, for the feedback.  With joints at their limits an elbow went four times as fast.
+_SWING, _SWING_TURN, _SWING_LEAST = 1.25, 0.3, 0.05  # [1, m, m/s]
 _FULL_PACE = (0.1, 0.5)  # [m/s, rad/s]
 _MAX_LAG = (0.01, 0.06)  # the pose to follow never runs further ahead than this [m, rad]
 
@@ -76,6 +79,41 @@ def pace(twist: np.ndarray) -> float:
     not see that link go on by itself.
     """
     return min(1.0, _length(twist[:3]) / _FULL_PACE[0] + _length(twist[3:]) / _FULL_PACE[1])
+
+
+@njit()
+def swing_allowed(twist: np.ndarray, base: np.ndarray, twist_base: np.ndarray, hand: np.ndarray) -> float:
+    """How fast a joint may go [m/s], seen from the base, while the hand follows a twist; arguments as in `lead`."""
+    x, y = hand[0, 3] - base[0, 3], hand[1, 3] - base[1, 3]
+    wanted = _length(twist[:3]) + _SWING_TURN * _length(twist[3:])
+    carried = math.sqrt(twist_base[0] ** 2 + twist_base[1] ** 2) + abs(twist_base[2]) * math.sqrt(x * x + y * y)
+    return max(_SWING_LEAST, _SWING * (wanted + carried))
+
+
+@njit()
+def swing(jacobian: np.ndarray, places: np.ndarray, rates: np.ndarray) -> float:
+    """How fast the fastest of an arm's joints goes [m/s], seen from the base.
+
+    Args:
+        jacobian: (6, n) of the hand, linear before angular.
+        places: (n, 3) of the joints, seen from the hand along the same axes [m].
+        rates: (n,) of the joints [rad/s].
+    """
+    fastest, v, w = 0.0, np.zeros(3), np.zeros(3)  # of the hand, were it moved by the joints so far alone
+    for n in range(len(rates) - 1):
+        for k in range(3):
+            v[k] += jacobian[k, n] * rates[n]
+            w[k] += jacobian[3 + k, n] * rates[n]
+        x, y, z = places[n + 1]
+        fastest = max(
+            fastest,
+            math.sqrt(
+                (v[0] + w[1] * z - w[2] * y) ** 2
+                + (v[1] + w[2] * x - w[0] * z) ** 2
+                + (v[2] + w[0] * y - w[1] * x) ** 2
+            ),
+        )
+    return fastest
 
 
 @njit(inline="always")

@@ -3,8 +3,10 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from caretree.sim.mechanics.kinematics import Kinematics
 from caretree.sim.mechanics.planar import planar_pose
-from caretree.sim.mechanics.twist_law import lead, ramp
+from caretree.sim.mechanics.twist_law import lead, ramp, swing
+from caretree.sim.robot.baxter import BAXTER
 
 
 def ramped(twist, wanted, limits):
@@ -67,3 +69,14 @@ def test_twists_are_ramped_alike():
             expected = ramped(twist, wanted, (0.005, 0.02))
             assert ramp(twist, wanted, 0.005, 0.02) == pytest.approx(np.abs(expected).max(), abs=1e-16)
             np.testing.assert_allclose(twist, expected, rtol=0, atol=1e-16)
+
+
+def test_the_fastest_joint_is_what_moving_the_joints_shows():
+    kinematics, rng, step = Kinematics(BAXTER), np.random.default_rng(4), 1e-6
+    for _ in range(20):
+        q, rates = rng.uniform(-1.0, 1.0, (2, 7))
+        hand, jacobian, places = kinematics.hand_and_joints("right", q)
+        later = kinematics.hand_and_joints("right", q + step * rates)[2]
+        fastest = np.linalg.norm((later - places) / step, axis=1).max()
+        seen_from_hand = (places - hand[:3, 3]) @ hand[:3, :3]
+        assert swing(jacobian, seen_from_hand, rates) == pytest.approx(fastest, abs=1e-4)
