@@ -1,4 +1,4 @@
-"""Carry the second arm's sleeve back to its own side of the bed, from which the first pull has drawn it."""
+"""Carry a sleeve to where its arm can take it: from the other side of the bed, or from off the trunk."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
-from .belief.person_tracking import careful
+from .belief.person_tracking import bare_share, careful, watch_arm
 from .belief.sleeve_search import SleeveMemory
 from .control.base import drive_to
 from .control.fingers import open_gripper
@@ -23,7 +23,7 @@ from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP
-from .geometry.stances import HEADWARD, LIFTING, STANCES, outwards
+from .geometry.stances import HEADWARD, LIFTING, PULLING, STANCES, outwards
 from .motion.errors import MotionError
 
 
@@ -43,6 +43,21 @@ class CarryAcrossTuning(Quantities):
         "beyond the middle of the bed, from which on a sleeve is on the wrong side",
         "choice: more than noise",
     )
+    trunk_place: tuple[float, float] = quantity(
+        (0.12, 0.2), "m", "about where one on the trunk lies: outwards, feetward", "seen at 0.13 and 0.13 (166)"
+    )
+    trunk_distance: float = quantity(
+        0.2, "m", "from the middle of the bed, up to which a sleeve lies on the trunk", "choice: `LaySleeve` has 0.26"
+    )
+    headward_distance: float = quantity(
+        0.2, "m", "from there towards the head, up to which a sleeve lies beside forearm and hand", "choice: the elbow"
+    )
+    min_bare: float = quantity(
+        0.7,
+        "1",
+        "share of the arm that has to show skin, or its sleeve lies over it",
+        "measured: of arms of which 0.22 to 0.75 was bare, 0 of 4 were dressed at once; of bare ones 7 of 9",
+    )
     opening: float = quantity(
         0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
     )
@@ -60,11 +75,24 @@ class CarryAcrossTuning(Quantities):
     laid_place: tuple[float, float] = quantity(
         (0.33, 0.16), "m", "where it is laid down: outwards, feetward", "choice: beyond the arm's hand"
     )
+    laid_feetward: float = quantity(
+        0.30,
+        "m",
+        "of where it is laid down that has been on the arm, or on the trunk",
+        "choice: a hand's length farther, so that the gown comes off the hand",
+    )
     laid_heights: tuple[float, ...] = quantity(
         (0.06, 0.14, 0.22),
         "m",
         "of the hand above the mattress when it lets go, the first that is free",
         "choice: an arm that reaches across keeps off the trunk",
+    )
+    laid_from: tuple[float, float] = quantity(
+        (0.16, 0.12),
+        "m",
+        "outwards and feetward of there, from where it is laid down",
+        "as `LaySleeve`: what hangs below the strap touches the bed first, so that the cuff comes to lie outwards; let "
+        "down straight, it came to lie inwards (179, 183)",
     )
     back_off_distance: float = quantity(
         0.3, "m", "of the base from the sleeve it has laid down", "choice: the arms then turn freely"
@@ -74,11 +102,16 @@ class CarryAcrossTuning(Quantities):
 class CarryAcross(Skill):
     """Looks for the sleeve beyond the middle of the bed; takes it there from above and lays it beyond the arm's hand.
 
-    The robot stands on the other side of the bed.  A sleeve that does not lie there is no failure; it fails where the
-    sleeve is out of reach, where the fingers close on nothing, and where something is in the way.
+    The robot stands on the other side of the bed.  From the sleeve's own side it carries one that lies on the trunk,
+    where a hand that comes from beside meets the body (166), that lies at the shoulder, or under which the arm does not
+    show: that could neither be lifted nor found again (179).
+
+    A sleeve that does not lie there is no failure; it fails where the sleeve is out of reach, where the fingers close
+    on nothing, and where something is in the way.
     """
 
     side = Input(Side, doc="arm of the person that the sleeve belongs to")
+    own_side = Input(bool, default=False, doc="whether the robot stands on that side of the bed")
     tuning = Input(CarryAcrossTuning, default=CarryAcrossTuning(), doc="numbers of this skill")
     reasons = (
         Reason.PATH_BLOCKED,
@@ -91,14 +124,16 @@ class CarryAcross(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look; drive, take, carry, let go, drive back."""
-        self.note(f"looks whether the {self.side} sleeve is on its side")
+        where = "beside its arm" if self.own_side else "on its side"
+        self.note(f"looks whether the {self.side} sleeve is {where}")
         yield from look_towards(self, self._stray_place())
         seen = self._stray()
         if seen is None:
             return
-        self.note(f"carries the {self.side} sleeve across")
-        hand, place = LIFTING[self.side], seen.position_in_map
-        lane = np.array((-STANCES.lane * outwards(self.side)[0], place[1] + STANCES.ahead, STANCES.heading))
+        self.note(f"carries the {self.side} sleeve {'out' if self.own_side else 'across'}")
+        hand, place = (PULLING if self.own_side else LIFTING)[self.side], seen.position_in_map
+        beside = STANCES.lane * outwards(self.side)[0] * (1.0 if self.own_side else -1.0)
+        lane = np.array((beside, place[1] + STANCES.ahead, STANCES.heading))
         yield from drive_to(self, lane)
         opening, speed = self.tuning.opening, self.tuning.reaching_speed
         yield from reach_in(self, hand, place, -UP, seen.closing_in_map, opening=opening, speed=speed)
@@ -122,30 +157,52 @@ class CarryAcross(Skill):
 
     def _stray_place(self) -> np.ndarray:
         """(3,) where a stray sleeve is looked for [m]."""
-        beyond, feetward = self.tuning.stray_place
-        return self._place(-beyond, feetward, 0.0)
+        if not self.own_side:
+            beyond, feetward = self.tuning.stray_place
+            return self._place(-beyond, feetward, 0.0)
+        last = self.context.memory.of(SleeveMemory, SleeveMemory).last
+        return last.get(self.side, self._place(*self.tuning.trunk_place, 0.0))
 
     def _stray(self) -> SleeveOpening | None:
-        """The sleeve, where it lies beyond the middle of the bed."""
+        """The sleeve, where it lies beyond the middle of the bed; from its own side, where its arm cannot take it."""
         near = self._stray_place()
         try:
             seen = self.context.senses.sleeve_opening(self.world.look("head"), side=self.side, near_in_map=near)
         except PerceptionFailure:
             return None
-        out = float((seen.position_in_map - self._place(0.0, 0.0, 0.0)) @ outwards(self.side))
-        return seen if out < -self.tuning.stray_distance else None
+        from_middle = seen.position_in_map - self._place(0.0, 0.0, 0.0)
+        out, headward = float(from_middle @ outwards(self.side)), float(from_middle @ HEADWARD)
+        if not self.own_side:
+            return seen if out < -self.tuning.stray_distance else None
+        beside = out > self.tuning.trunk_distance and headward < self.tuning.headward_distance
+        return None if beside and not self._arm_covered() else seen
+
+    def _arm_covered(self) -> bool:
+        try:
+            posture = watch_arm(self, self.side)
+        except PerceptionFailure:
+            return True
+        return bare_share(self.world.look("head"), posture) < self.tuning.min_bare
+
+    def _laid(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where it is let down from, and where it comes to lie, each (2,) outwards and feetward [m]."""
+        tuning = self.tuning
+        if not self.own_side:
+            return np.array(tuning.laid_place), np.array(tuning.laid_place)
+        place = np.array((tuning.laid_place[0], tuning.laid_feetward))
+        return place + tuning.laid_from, place
 
     def _carry(self, hand: Side) -> Iterator[None]:
         """Up, across, down, as far as the sleeve goes; let go of it and rise."""
         memory = self.context.memory.of(SleeveMemory, SleeveMemory)
         memory.sleeves.pop(self.side, None)
         tuning = self.tuning
-        place = tuning.laid_place
+        first, last = self._laid()
         yield from self._go(hand, hand_now(self, hand)[:3, 3] + tuning.height * UP)
-        yield from self._go(hand, self._place(*place, tuning.laid_heights[0] + tuning.height))
+        yield from self._go(hand, self._place(*first, tuning.laid_heights[0] + tuning.height))
         for above in tuning.laid_heights:
             with suppress(MotionError):
-                yield from self._go(hand, self._place(*place, above))
+                yield from self._go(hand, self._place(*last, above))
                 break
         memory.last[self.side] = hand_now(self, hand)[:3, 3]
         yield from open_gripper(self, hand)

@@ -234,6 +234,13 @@ def visible_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTu
     return float((inside & (skin | (seen > depth - tuning.hidden_behind))).mean())
 
 
+def bare_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> float:
+    """Share of an arm where a picture shows skin: cloth that lies right on it hides nothing by its depth."""
+    axis = ArmPath.of(posture).at(np.linspace(tuning.visible_from, tuning.visible_to, tuning.visible_points))
+    rows, columns, _, inside = pixels_of(frame, axis)
+    return float((inside & (surfaces_at(frame.rgb, rows, columns) == Surface.SKIN)).mean())
+
+
 def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> list[Side]:
     """Look once and tell the guard of everything that is seen; returns the arms found.
 

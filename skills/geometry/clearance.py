@@ -34,6 +34,13 @@ class ClearanceTuning(Quantities):
     link_head: float = quantity(0.03, "m", "of other links to head and neck", "choice: they have no business there")
     link_trunk: float = quantity(0.02, "m", "of other links to trunk and legs", "choice: they have no business there")
     link_arm: float = quantity(0.005, "m", "of other links to arms", "choice: an arm is tracked to 1 or 2 cm")
+    lifted_arm: float = quantity(
+        0.01,
+        "m",
+        "of the robot's other arm to an arm that is held up, where a way is searched",
+        "measured: a finger that might come 2 cm nearer than that met forearm and hand with 35 and 27 N, which was "
+        "taken for a motion of the person (183, 179); a held arm is tracked to 1 cm",
+    )
     planned: float = quantity(
         0.005, "m", "more than that where a way is searched", "choice: a smooth motion cuts the corners of its path"
     )
@@ -84,12 +91,13 @@ class LinkClearance:
             self._asked, self._gaps = asked, self.least_gaps(*asked)
         return self._gaps
 
-    def least_gaps(self, parts: tuple[str, ...], held: Mapping[Side, str]) -> np.ndarray:
+    def least_gaps(self, parts: tuple[str, ...], held: Mapping[Side, str], *, planned: bool = False) -> np.ndarray:
         """Least gaps (r, m) [m].
 
         Args:
             parts: (m,) of the person that capsules belong to.
             held: hand -> the arm that it holds, which its fingers and palm may touch.
+            planned: a way is searched, and may lead round an arm that is held up; a sleeve is pulled along it closer.
         """
         tuning = self.tuning
         table = {
@@ -102,9 +110,12 @@ class LinkClearance:
             len(self.names), len(parts)
         )
         for side, arm in held.items():
+            column = [part == arm for part in parts]
             for row, name in enumerate(self.names):
                 if name.startswith(side) and self._kinds[row] != "link":
-                    least[row, [part == arm for part in parts]] = MAY_TOUCH
+                    least[row, column] = MAY_TOUCH
+                elif planned and not name.startswith(side):
+                    least[row, column] = np.maximum(least[row, column], tuning.lifted_arm)
         return least
 
 

@@ -38,13 +38,13 @@ class ClearOfPerson(CollisionChecker):
         begins: Observation,
     ) -> None:
         self.robot = checker.robot
-        self._checker, self._links, self._zone, self._held = checker, links, zone, held
-        self._clearance, self._opening = LinkClearance(links.names, links.radii), begins.gripper_opening
-        self.head_pan = begins.head_pan
+        self._checker, self._links, self._zone = checker, links, zone
+        self._gaps = LinkClearance(links.names, links.radii).least_gaps(zone.names, held, planned=True)
+        self._opening, self.head_pan = begins.gripper_opening, begins.head_pan
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
         self._least = np.minimum(room, 0.0) - EPSILON
         planned = self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)
-        self._least_gaps = self._clearance.least_gaps(zone.names, held) + planned
+        self._least_gaps = self._gaps + planned
 
     def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None) -> bool:
         """Whether arms (2, n) at these angles touch nothing and come near nobody, with room for a smooth motion."""
@@ -66,4 +66,4 @@ class ClearOfPerson(CollisionChecker):
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:
         ends = self._links.ends(base, arms, head_pan, self._opening)
-        return self._clearance.room(ends, self._zone, self._held)[0]
+        return self._zone.gaps(ends, self._links.radii)[0] - self._gaps

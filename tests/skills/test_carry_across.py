@@ -14,6 +14,7 @@ from caretree.sim.world import SIDES
 from caretree.skills.belief.sleeve_search import SleeveMemory
 from caretree.skills.carry_across import CarryAcross
 from caretree.skills.core.context import Context
+from caretree.skills.geometry.person_zone import WHOLE
 from caretree.skills.geometry.stances import stance
 from caretree.skills.scripted.scripted_person import laid_strap
 from caretree.trees.guard.guard import GuardedWorld
@@ -22,33 +23,37 @@ from py_trees.common import Status
 from .fake_senses import fake_senses
 
 
-def ran(sleeve, load=(0.0, 0.0, -1.0)):
-    """Skill, world and memory after a run from beside the right shoulder, where the first arm was left."""
-    room = scripted_room()
-    room.waypoints["start"] = tuple(stance("right", "shoulder") + (0.25, 0.0, 0.0))
+def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False):
+    """Skill, world and memory after a run from beside the right shoulder, where the first arm was left, or the left."""
+    room, hand = scripted_room(), "left" if own_side else "right"
+    start = (
+        stance("left", "shoulder") - (0.25, 0.0, 0.0) if own_side else stance("right", "shoulder") + (0.25, 0.0, 0.0)
+    )
+    room.waypoints["start"] = tuple(start)
     room.bed[1, 2] = 0.64  # low enough for hands that are ready to pass over the person
     world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
+    guard.update_person(np.array(((0.0, -0.4, 0.66), (0.0, 0.6, 0.66))), part=WHOLE, radius=0.02)  # out of the way
     context = Context(
         world=guard,
         guard=guard,
         seed=1,
         senses=fake_senses(sleeve_opening=sleeve, gripped_cloth=Estimate(stamp=0.0, confidence=0.9)),
     )
-    skill = CarryAcross("across", context, side="left")
+    skill = CarryAcross("across", context, side="left", own_side=own_side)
     for _ in range(6000):
         context.lease.advance()
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)
-        if "carries" in skill.feedback_message and not world.observe().gripper_opening[SIDES.index("right")] > 0.01:
-            world.load["right"] = np.append(load, np.zeros(3))
+        if "carries" in skill.feedback_message and not world.observe().gripper_opening[SIDES.index(hand)] > 0.01:
+            world.load[hand] = np.append(load, np.zeros(3))
         if skill.status != Status.RUNNING:
             break
     return skill, world, context.memory.of(SleeveMemory, SleeveMemory)
 
 
-def at(x, y):
-    return replace(laid_strap("left"), position_in_map=np.array((x, y, 0.68)))
+def at(x, y, z=0.68):
+    return replace(laid_strap("left"), position_in_map=np.array((x, y, z)))
 
 
 @pytest.mark.parametrize("sleeve", [at(-0.3, 0.2), PerceptionFailure(Problem.OUT_OF_REACH, "armhole")])
@@ -72,3 +77,33 @@ def test_it_goes_no_farther_than_the_other_sleeve_lets_it():
     skill, _, memory = ran(at(0.28, 0.44), load=(5.0, 0.0, -2.0))
     assert skill.status == Status.SUCCESS, skill.failure
     assert memory.last["left"][0] > 0.0
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """Tells how much of the arm shows."""
+
+    def tell(share):
+        monkeypatch.setattr("caretree.skills.carry_across.watch_arm", lambda skill, side: None)
+        monkeypatch.setattr("caretree.skills.carry_across.bare_share", lambda frame, posture: share)
+
+    return tell
+
+
+ON_THE_TRUNK, AT_THE_SHOULDER, OVER_THE_ARM = at(-0.13, 0.13), at(-0.3, -0.4), at(-0.3, 0.05)
+
+
+@pytest.mark.parametrize(("sleeve", "share"), [(ON_THE_TRUNK, 1.0), (AT_THE_SHOULDER, 1.0), (OVER_THE_ARM, 0.5)])
+def test_from_its_own_side_a_sleeve_that_its_arm_cannot_take_is_carried_out(sleeve, share, shown):
+    shown(share)
+    skill, world, memory = ran(sleeve, own_side=True)
+    assert skill.status == Status.SUCCESS, skill.failure
+    middle = world.room.bed[:, :2].mean(axis=0)
+    assert np.allclose(memory.last["left"][:2], middle + (-0.33, 0.30), atol=0.03)
+
+
+def test_from_its_own_side_one_beside_an_arm_that_shows_is_left_alone(shown):
+    shown(1.0)
+    skill, _, memory = ran(at(-0.3, 0.13), own_side=True)
+    assert skill.status == Status.SUCCESS, skill.failure
+    assert not memory.last

@@ -44,6 +44,15 @@ def test_a_hand_may_touch_the_arm_that_it_holds_and_no_other_part():
     assert (room_at((1.0, 0.0, 0.05), held={"left": "right arm"})[0][:, 1] < 0.0).all()
 
 
+def test_a_way_leads_round_an_arm_that_the_other_hand_holds_up():
+    """A finger that was let 2 cm nearer met it with 35 N."""
+    clearance, parts, held = LinkClearance(NAMES, RADII), ("head", "right arm"), {"left": "right arm"}
+    acting, planned = (clearance.least_gaps(parts, held, planned=which) for which in (False, True))
+    assert planned[3, 1] == CLEARANCE.lifted_arm > acting[3, 1] == CLEARANCE.fingers_arm
+    assert (planned[:3] == acting[:3]).all(), "the arm that holds it stays where it is"
+    assert (planned[:, 0] == acting[:, 0]).all(), "the head"
+
+
 @pytest.mark.parametrize(
     ("name", "kind"),
     [("left_finger_2", "fingers"), ("right_wrist_2", "palm"), ("right_wrist_1", "link"), ("torso_1", "link")],

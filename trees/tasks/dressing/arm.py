@@ -87,6 +87,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
                 f"{scope.prefix}arm and sleeve laid out",
                 CheckLaidOut("bare, its sleeve at hand", scope),
                 lay_out(scope),
+                off_trunk(scope, side),
                 *([fetch_sleeve(scope, side)] if strays else []),
                 back_off("leave it as it lies", scope),
             ),
@@ -278,6 +279,17 @@ def lay_out(arm: Scope) -> Behaviour:
     )
 
 
+def off_trunk(arm: Scope, side: Side) -> Behaviour:
+    """Carry a sleeve that lies on the trunk, or on the arm, out to beyond the hand: taken from above."""
+    return sequence(
+        f"the {side} sleeve out of the way",
+        back_off("make room", arm),
+        Navigate("go where it is carried out", arm, goal=f"bed_{side}"),
+        carried_across("the sleeve", arm, side, own_side=True),
+        Navigate("go back from there", arm, goal=f"bed_{side}"),
+    )
+
+
 def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
     """From the other side of the bed, carry a sleeve back that lies there, and come back."""
     other = SIDES[1 - SIDES.index(side)]
@@ -290,9 +302,10 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
     )
 
 
-def carried_across(name: str, scope: Scope, side: Side) -> Behaviour:
+def carried_across(name: str, scope: Scope, side: Side, *, own_side: bool = False) -> Behaviour:
     """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
-    across = CarryAcross(f"carry {name} across", scope, side=side)
+    where = "out" if own_side else "across"
+    across = CarryAcross(f"carry {name} {where}", scope, side=side, own_side=own_side)
     return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"clear of {name}", scope))
 
 

@@ -28,6 +28,11 @@ def dress(context: Context) -> Stage:
         # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
         not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
+        fallback(
+            "the left sleeve beside its arm",
+            carried_across("the sleeve", bed, "left", own_side=True),
+            back_off("leave it there", bed),
+        ),
         dress_arm(context, "left", SECOND_SLEEVE, strays=True),
         flat(arm_scope(context, "front", "left")),
         seconds=DRESSING.dress_timeout,
