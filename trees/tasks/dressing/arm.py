@@ -279,6 +279,20 @@ def lay_out(arm: Scope) -> Behaviour:
     )
 
 
+def at_hand(arm: Scope) -> Behaviour:
+    """Before an arm is lifted, carry its sleeve out where it cannot be taken, or covers the arm; else it may do.
+
+    One that hangs over the edge of the bed is taken from beside: no hand comes down to it (180).
+    """
+    side = arm["side"]
+    return fallback(
+        f"the {side} sleeve at its hand",
+        carried_across("the sleeve", arm, side, own_side=True),
+        lay_out(arm),
+        back_off("leave it there", arm),
+    )
+
+
 def off_trunk(arm: Scope, side: Side) -> Behaviour:
     """Carry a sleeve that lies on the trunk, or on the arm, out to beyond the hand: taken from above."""
     return sequence(

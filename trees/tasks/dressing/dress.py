@@ -8,7 +8,7 @@ from ....skills.navigate import Navigate
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback
 from ...nodes.decorators import Stage, timed_stage
-from .arm import arm_scope, back_off, carried_across, dress_arm, flat, not_slipped
+from .arm import arm_scope, at_hand, back_off, carried_across, dress_arm, flat, not_slipped
 from .tuning import DRESSING, FIRST_SLEEVE, SECOND_SLEEVE
 
 
@@ -28,11 +28,7 @@ def dress(context: Context) -> Stage:
         # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
         not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
-        fallback(
-            "the left sleeve beside its arm",
-            carried_across("the sleeve", bed, "left", own_side=True),
-            back_off("leave it there", bed),
-        ),
+        at_hand(arm_scope(context, "second sleeve", "left")),
         dress_arm(context, "left", SECOND_SLEEVE, strays=True),
         flat(arm_scope(context, "front", "left")),
         seconds=DRESSING.dress_timeout,
