@@ -287,8 +287,8 @@ def at_hand(arm: Scope) -> Behaviour:
     side = arm["side"]
     return fallback(
         f"the {side} sleeve at its hand",
-        carried_across("the sleeve", arm, side, own_side=True),
-        lay_out(arm),
+        carried_across("it", arm, side, own_side=True),
+        sequence(f"the {side} sleeve from beside", back_off("draw back", arm), lay_out(arm)),
         back_off("leave it there", arm),
     )
 
@@ -298,8 +298,8 @@ def off_trunk(arm: Scope, side: Side) -> Behaviour:
     return sequence(
         f"the {side} sleeve out of the way",
         back_off("make room", arm),
-        Navigate("go where it is carried out", arm, goal=f"bed_{side}"),
-        carried_across("the sleeve", arm, side, own_side=True),
+        Navigate("go to carry it out", arm, goal=f"bed_{side}"),
+        carried_across("it", arm, side, own_side=True),
         Navigate("go back from there", arm, goal=f"bed_{side}"),
     )
 
@@ -318,9 +318,9 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
 
 def carried_across(name: str, scope: Scope, side: Side, *, own_side: bool = False) -> Behaviour:
     """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
-    where = "out" if own_side else "across"
-    across = CarryAcross(f"carry {name} {where}", scope, side=side, own_side=own_side)
-    return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"clear of {name}", scope))
+    how, clear = ("out", "off") if own_side else ("across", "clear of")
+    across = CarryAcross(f"carry {name} {how}", scope, side=side, own_side=own_side)
+    return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"{clear} {name}", scope))
 
 
 def flat(front: Scope) -> Behaviour:
