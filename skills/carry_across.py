@@ -81,17 +81,18 @@ class CarryAcrossTuning(Quantities):
     laid_place: tuple[float, float] = quantity(
         (0.33, 0.16), "m", "where it is laid down: outwards, feetward", "choice: beyond the arm's hand"
     )
-    laid_feetward: float = quantity(
-        0.30,
-        "m",
-        "of where it is laid down that has been on the arm, or on the trunk",
-        "choice: a hand's length farther, so that the gown comes off the hand",
-    )
     laid_heights: tuple[float, ...] = quantity(
         (0.06, 0.14, 0.22),
         "m",
         "of the hand above the mattress when it lets go, the first that is free",
         "choice: an arm that reaches across keeps off the trunk",
+    )
+    laid_beyond: tuple[float, float] = quantity(
+        (0.26, 0.30),
+        "m",
+        "where it is laid down from its own side: outwards, feetward",
+        "choice: as far out as `LaySleeve`, or what hangs over the edge draws the gown after it, and a hand's length "
+        "farther feetward than it, so that the gown comes off the hand",
     )
     laid_from: tuple[float, float] = quantity(
         (0.16, 0.12),
@@ -198,8 +199,7 @@ class CarryAcross(Skill):
         tuning = self.tuning
         if not self.own_side:
             return np.array(tuning.laid_place), np.array(tuning.laid_place)
-        place = np.array((tuning.laid_place[0], tuning.laid_feetward))
-        return place + tuning.laid_from, place
+        return np.add(tuning.laid_beyond, tuning.laid_from), np.array(tuning.laid_beyond)
 
     def _carry(self, hand: Side) -> Iterator[None]:
         """Up, across, down, as far as the sleeve goes; let go of it and rise."""

@@ -52,6 +52,15 @@ class PersonTrackingTuning(Quantities):
     )
     visible_to: float = quantity(3.0, "1", "arm coordinate up to which it has to be", "choice: the fingertip")
     visible_points: int = quantity(28, "1", "points of the arm's axis that are looked at", "choice: some cm apart")
+    sure_deviation: float = quantity(
+        0.035, "m", "of any joint, up to which an arm is known well", "choice: well enough to take the arm"
+    )
+    agrees_within: tuple[float, float] = quantity(
+        (3.0, 0.12),
+        "1, m",
+        "of what is known well: deviations, and distance, of every joint of an arm that is seen less well",
+        "measured: half hidden, an arm that had not moved was seen with its hand 0.11 m aside, and begun again (175)",
+    )
     hidden_behind: float = quantity(
         0.06, "m", "behind what is seen, from which a point of the arm's axis is hidden", "choice: just over its radius"
     )
@@ -288,14 +297,29 @@ def _take(skill: Skill, frame: Frame, side: Side, hold: Hold | None, tuning: Per
         posture = skill.context.senses.arm(
             frame, side=side, grip_in_map=_held_at(skill, hold), arm_coordinate=hold.coordinate
         )
-    _keep(skill, side, posture, tuning)
+    _keep(skill, side, posture, tuning, moves=hold is not None)
 
 
-def _keep(skill: Skill, side: Side, posture: ArmPosture, tuning: PersonTrackingTuning) -> None:
-    """Remember one arm as it was seen now and tell the guard."""
+def _keep(skill: Skill, side: Side, posture: ArmPosture, tuning: PersonTrackingTuning, *, moves: bool = False) -> None:
+    """Remember one arm as it was seen now and tell the guard.
+
+    Where too little of an arm shows, and what does agrees with how it was known, it has stayed: its owner cannot move
+    it, and no hand `moves` it.
+    """
     watch = watch_of(skill)
+    known = watch.arms.get(side)
+    if known is not None and not moves and _only_seen_less_well(known, posture, tuning):
+        posture = replace(known, stamp=posture.stamp)
     watch.arms[side], watch.seen[side] = posture, skill.now()
     skill.context.guard.update_person(posture.points_in_map, part=f"{side} arm", radius=tuning.arm_radius)
+
+
+def _only_seen_less_well(known: ArmPosture, seen: ArmPosture, tuning: PersonTrackingTuning) -> bool:
+    if float(known.deviation.max()) > tuning.sure_deviation or float(seen.deviation.max()) <= tuning.sure_deviation:
+        return False
+    deviations, most = tuning.agrees_within
+    off = np.linalg.norm(seen.points_in_map - known.points_in_map, axis=1)
+    return bool((off <= np.minimum(deviations * np.maximum(seen.deviation, known.deviation), most)).all())
 
 
 def _turned(skill: Skill, posture: ArmPosture, hold: Hold) -> ArmPosture:

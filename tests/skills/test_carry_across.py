@@ -99,7 +99,7 @@ def test_from_its_own_side_a_sleeve_that_its_arm_cannot_take_is_carried_out(slee
     skill, world, memory = ran(sleeve, own_side=True)
     assert skill.status == Status.SUCCESS, skill.failure
     middle = world.room.bed[:, :2].mean(axis=0)
-    assert np.allclose(memory.last["left"][:2], middle + (-0.33, 0.30), atol=0.03)
+    assert np.allclose(memory.last["left"][:2], middle + (-0.26, 0.30), atol=0.03)
 
 
 def test_from_its_own_side_one_beside_an_arm_that_shows_is_left_alone(shown):

@@ -112,6 +112,18 @@ def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
     assert lost.value.problem == Problem.ARM_LOST
 
 
+@pytest.mark.parametrize(("off", "deviation", "stays"), [(0.1, 0.05, True), (0.1, 0.02, False), (0.14, 0.09, False)])
+def test_an_arm_that_is_seen_less_well_where_it_was_known_well_has_stayed(off, deviation, stays):
+    """Half hidden, its hand was seen 0.11 m aside, and the arm that lay in its sleeve was begun again (175)."""
+    there = lying_posture("right")
+    aside = there.points_in_map + np.array(((0, 0, 0), (0, 0, 0), (0, 0, 0), (off, 0, 0)))
+    seen = [there, replace(there, points_in_map=aside, deviation=np.full(4, deviation))]
+    skill, _ = make(lambda frame, side: seen.pop(0))
+    watch_arm(skill, "right", period=0.0)
+    again = watch_arm(skill, "right", period=0.0)
+    np.testing.assert_array_equal(again.points_in_map, there.points_in_map if stays else aside)
+
+
 def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():
     there = lying_posture("right")
     elsewhere = replace(there, points_in_map=there.points_in_map + (0.2, 0.0, 0.0))
