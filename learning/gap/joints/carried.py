@@ -75,23 +75,27 @@ def with_payloads(blocks: list[Block], found: Carried, model: RigidModel) -> lis
 
 
 def alike(found: Carried, search: Search, chosen: Sequence[int]) -> tuple[int, int] | None:
-    """Two payloads of a named set that could as well be one, beside all that was named; None where there are none."""
-    free = search.columns(tuple(chosen))
-    at: dict[int, np.ndarray] = {}
+    """Two payloads of a named set whose masses could as well be one, beside all that was named; None if there are none.
+
+    Centres alone may part: a joint's load that depends on where it is, as no effect does, moves them about.
+    """
+    columns = np.sort(search.columns(tuple(chosen)))
+    mass: dict[int, int] = {}  # of each payload that is named, where its mass stands
     for i in chosen:
         term = search.blocks[i].term
         if term is not None and term.during is not None:
-            at[found.during.index(term.during)] = np.searchsorted(np.sort(free), search.columns((i,)))
-    free = np.sort(free)
+            mass[found.during.index(term.during)] = int(np.searchsorted(columns, search.columns((i,))[0]))
     wide = max((search.widening[i] for i in chosen), default=1.0)
+    whole = _misfit(search, columns, np.eye(len(columns)))
     best: tuple[float, tuple[int, int] | None] = (np.inf, None)
-    for a, b in combinations(sorted(at), 2):
-        keep = np.setdiff1d(np.arange(len(free)), at[b])
-        tie = np.eye(len(free))
-        tie[at[b], at[a]] = 1.0
-        loss = _misfit(search, free, tie[:, keep]) - _misfit(search, free, np.eye(len(free)))
+    for a, b in combinations(range(len(found.during)), 2):
+        tie = np.eye(len(columns))
+        if a in mass and b in mass:
+            tie[mass[b], mass[a]] = 1.0
+        gone = mass.get(b, mass.get(a))  # beside one that is not named, a payload has to weigh something
+        loss = 0.0 if gone is None else _misfit(search, columns, np.delete(tie, gone, axis=1)) - whole
         best = min(best, (loss, (a, b)), key=lambda x: x[0])
-    return best[1] if best[0] < indistinct(search, wide) else None
+    return best[1] if best[0] < indistinct(search, wide, 1) else None
 
 
 def _misfit(search: Search, columns: np.ndarray, tie: np.ndarray) -> float:

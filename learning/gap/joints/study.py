@@ -23,7 +23,7 @@ from .intervals import Intervals, intervals, value_within
 from .localise import places
 from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
-from .outcome import Outcome, inadequacy, judge, makes_worse
+from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplained
 from .placebo import placebos
 from .rigid import RigidModel
 from .rivals import parting, rivals
@@ -78,10 +78,14 @@ class JointStudy(Study):
     def _searched(self) -> tuple[Named, str]:
         """The search's result, and what it had named where that made the held-out logs worse and was given up."""
         named = confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
-        if named.carried:
+        constant = named.constant
+        if named.carried and constant:
             weight = named.search.weight
             known, blocks = told_in(named.carried, named.blocks, named.theta, weight, self.model, self.heldout)
             named = replace(named, carried=known, blocks=blocks)
+            constant = confident(constant, self.fitted)
+            left = [unexplained(n, self.heldout) for n in (constant, named)]
+            named = constant if farther(left[0], left[1], named.noise.rms) else named
         if not named.chosen or not makes_worse(named, self.heldout):
             return named, ""
         worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks)

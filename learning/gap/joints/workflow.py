@@ -31,6 +31,7 @@ class Named:
         search: the last search, for questions about alternatives.
         chosen: indices of `blocks` in it.
         carried: the payloads, where they change.
+        constant: what was found without a change, where there is one.
     """
 
     blocks: tuple[Block, ...]
@@ -39,6 +40,7 @@ class Named:
     search: Search
     chosen: tuple[int, ...]
     carried: Carried | None = None
+    constant: Named | None = None
 
     @property
     def score(self) -> float:
@@ -126,7 +128,7 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
         again = _settled(assemble(with_payloads(blocks, found, model), logs), noise, model, logs, strict)
         one = alike(found, again.search, again.chosen)
         if one is None:
-            again = replace(again, carried=found)
+            again = replace(again, carried=found, constant=named)
             return again if again.score < named.score else named
         found = found.joined(*one)
     return named
