@@ -42,6 +42,22 @@ class Where:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Change:
+    """A payload that is another one from some instant of a recording on.
+
+    Attributes:
+        episode: name of the recording.
+        t: when [s].
+        before, after: mass, beyond what the model carries [kg].
+    """
+
+    episode: str
+    t: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Value:
     """A fitted number with its 95 % interval.
 
@@ -70,6 +86,7 @@ class EffectFinding:
         size: root mean square of its load over the floor, in the channel it changes most.
         smallest: smallest size of this effect this data could have shown, as a factor of the size found.
         confidence: part of the bootstrap resamples in which it keeps paying its price; NaN where none were drawn.
+        when: recording, from and to [s], of every stretch in which it acts; empty where that is all the time.
     """
 
     name: str
@@ -80,6 +97,7 @@ class EffectFinding:
     size: float = 0.0
     smallest: float = float("nan")
     confidence: float = float("nan")
+    when: tuple[tuple[str, float, float], ...] = ()
 
 
 def doubted(finding: EffectFinding, why: str) -> EffectFinding:
@@ -203,6 +221,7 @@ class Verdict:
     rivals: tuple[Rival, ...] = ()
     follow_up: tuple[FollowUp, ...] = ()
     forward: Gap | None = None
+    changes: tuple[Change, ...] = ()
     detectable: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     seconds: float = 0.0

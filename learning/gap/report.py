@@ -113,6 +113,11 @@ def _what(v: Verdict) -> str:
         out.append(_effects(v.recalibration, "change of " if v.system in ("arm", "axis") else ""))
     if v.effects:
         out.append(_effects(v.effects))
+    if v.changes:
+        each = "; ".join(
+            f"at {c.t:.2f} s of {escape(c.episode)} from {c.before:.3g} to {c.after:.3g} kg" for c in v.changes
+        )
+        out.append(f"<p>The payload changes {each}.</p>")
     if v.rivals:
         sets = "; ".join(_words(" + ".join(n for n, _ in r.effects)) for r in v.rivals)
         out.append(f"<p>This data is explained as well by: {sets}.  The set above is the likelier one.</p>")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from typing import Any
 
-from .findings import EffectFinding, FollowUp, Gap, Placebo, Rival, Verdict, VerdictName, Where, doubted
+from .findings import Change, EffectFinding, FollowUp, Gap, Placebo, Rival, Verdict, VerdictName, Where, doubted
 from .measurement import MeasurementSet
 from .pictures import Curve
 
@@ -53,6 +53,10 @@ class Study(abc.ABC):
         """Other whole sets of effects this data cannot rule out, likeliest first."""
         return ()
 
+    def changes(self) -> tuple[Change, ...]:
+        """Instants at which a payload changes within a recording."""
+        return ()
+
     def follow_up(self) -> tuple[FollowUp, ...]:
         """Recordings to make next, for the workflow to be run on again."""
         return ()
@@ -80,6 +84,7 @@ class Study(abc.ABC):
             rivals=self.rivals(),
             follow_up=self.follow_up(),
             forward=forward,
+            changes=self.changes(),
             detectable=detectable,
             notes=tuple(dict.fromkeys(self.notes)),
             seconds=seconds,

@@ -22,8 +22,8 @@ from ..fall.recording import drop_of
 from ..joints.block import effect_blocks
 from ..joints.gram import assemble
 from ..joints.log import read_logs
+from ..joints.opening import columns_of, rigid_model
 from ..joints.search import bounded_solve
-from ..joints.study import columns_of, rigid_model
 from ..joints.workflow import one_shape_each
 from ..measurement import MeasurementSet, load_set
 from .score import interval

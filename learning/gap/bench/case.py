@@ -25,6 +25,7 @@ class Truth:
         note: form of an effect outside the registry.
         apart: how far the truth is from the nearest other set of up to two effects [standard deviations], or None
             where it was not worked out.
+        changes: [episode, t, mass before, mass after] where a payload changed within a recording.
     """
 
     system: str
@@ -35,6 +36,7 @@ class Truth:
     robot: str | None = None
     note: str = ""
     apart: float | None = None
+    changes: list[list[Any]] = field(default_factory=list)
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""

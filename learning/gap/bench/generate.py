@@ -10,6 +10,7 @@ from typing import Any
 from .case import Truth
 from .fall_case import drop_again, write_fall_case
 from .joint_case import write_joint_case
+from .payload_case import write_payload_case
 
 
 def generate(system: str, seed: int, folder: Path) -> Truth:
@@ -21,6 +22,8 @@ def generate(system: str, seed: int, folder: Path) -> Truth:
         truth = write_joint_case(system, seed, where)
     elif system == "fall":
         truth = write_fall_case(seed, where)
+    elif system == "payload":
+        truth = write_payload_case(seed, where)
     else:
         from .cloth_case import write_cloth_case
 

@@ -93,6 +93,22 @@ def _derive(t: np.ndarray, q: np.ndarray):
 
 
 def _arm(rng, robot, t, episodes, kind, truth):
+    motions, names, (pin, model) = arm_motions(rng, robot, t, episodes)
+    actual = model.copy()
+    if kind == "recalibration":
+        j = int(rng.choice([i for i in range(2, model.njoints - 1) if model.inertias[i].mass > 0.3]))
+        factor = 1.0 + rng.choice([-1, 1]) * rng.uniform(0.15, 0.4)
+        actual.inertias[j] = pin.Inertia(
+            model.inertias[j].mass * factor, model.inertias[j].lever, model.inertias[j].inertia * factor
+        )
+        truth.effects = [_mass(names[j - 1], model.inertias[j].mass * (factor - 1.0))]
+    loads = [inverse_dynamics(pin, actual, m) for m in motions]
+    truth.note = str(len(names))
+    return motions, loads, names, (pin, model)
+
+
+def arm_motions(rng: np.random.Generator, robot: str, t: np.ndarray, episodes: int):
+    """Motions (q, dq, ddq), each (T, n), of a robot of `ROBOTS`; its joints' names; pinocchio and its model."""
     import sys
 
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
@@ -127,18 +143,7 @@ def _arm(rng, robot, t, episodes, kind, truth):
             axis=1,
         )
         motions.append(_derive(t, q))
-    names = list(model.names)[1:]
-    actual = model.copy()
-    if kind == "recalibration":
-        j = int(rng.choice([i for i in range(2, model.njoints - 1) if model.inertias[i].mass > 0.3]))
-        factor = 1.0 + rng.choice([-1, 1]) * rng.uniform(0.15, 0.4)
-        actual.inertias[j] = pin.Inertia(
-            model.inertias[j].mass * factor, model.inertias[j].lever, model.inertias[j].inertia * factor
-        )
-        truth.effects = [_mass(names[j - 1], model.inertias[j].mass * (factor - 1.0))]
-    loads = [_rnea(pin, actual, m) for m in motions]
-    truth.note = str(n)
-    return motions, loads, names, (pin, model)
+    return motions, list(model.names)[1:], (pin, model)
 
 
 def _mass(target: str, change: float) -> dict[str, Any]:
@@ -146,7 +151,8 @@ def _mass(target: str, change: float) -> dict[str, Any]:
     return {"name": "mass", "target": target, "size": float("nan"), "values": {"mass": float(change)}}
 
 
-def _rnea(pin, model, motion):
+def inverse_dynamics(pin, model, motion) -> np.ndarray:
+    """Loads of a pinocchio model along a motion, (T, n)."""
     data = model.createData()
     return np.array([pin.rnea(model, data, np.ascontiguousarray(a), b, c) for a, b, c in zip(*motion, strict=True)])
 
@@ -230,6 +236,6 @@ def _body(rng, name, arm, motions):
             model.inertias[last].mass * 0.5, model.inertias[last].lever, model.inertias[last].inertia * 0.5
         )
         part, lever = -0.5 * model.inertias[last].mass, model.inertias[last].lever
-    load = [_rnea(pin, changed, m) - _rnea(pin, model, m) for m in motions]
+    load = [inverse_dynamics(pin, changed, m) - inverse_dynamics(pin, model, m) for m in motions]
     moments = {f"mass_com_{a}": part * x for a, x in zip("xyz", lever, strict=True)}
     return Drawn(load, {"mass": part, **moments})

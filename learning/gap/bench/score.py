@@ -45,25 +45,48 @@ def judge_case(truth: Row, verdict: Row) -> Row:
         "seconds": verdict.get("seconds", 0.0),
         "apart": truth.get("apart"),
         "intervals": [] if verdict["verdict"] == "unknown" else _intervals(truth, verdict),
+        "changes_told": _changes_told(truth.get("changes", []), verdict.get("changes", [])),
     }
 
 
+SOON, NEAR = 2.0, 0.2  # [s], [kg]; how well a payload's change has to be told
+
+
+def _changes_told(hidden: Sequence[Sequence[Any]], said: Sequence[Row]) -> bool:
+    """Whether every change of a payload is told, with its time and both masses, and no other is."""
+    return len(hidden) == len(said) and all(
+        any(
+            s["episode"] == episode
+            and abs(s["t"] - t) <= SOON
+            and abs(s["before"] - before) <= NEAR
+            and abs(s["after"] - after) <= NEAR
+            for s in said
+        )
+        for episode, t, before, after in hidden
+    )
+
+
 def _intervals(truth: Row, verdict: Row) -> list[Row]:
-    """Every stated number of an effect that is really there: its name, the truth, what was said of it."""
-    real = {(e["name"], e["target"]): e.get("values", {}) for e in truth["effects"]}
+    """Every stated number of an effect that is really there: its name, the truth, what was said of it.
+
+    Of several payloads, one after the other, the nearest is meant.
+    """
+    real: dict[tuple[str, str, str], list[float]] = {}
+    for e in truth["effects"]:
+        for name, value in e.get("values", {}).items():
+            real.setdefault((e["name"], e["target"], name), []).append(value)
     said = [*verdict["effects"], *verdict.get("recalibration", ())]
     return [
         {
             "effect": f["name"],
             "parameter": p["name"],
-            "truth": real[f["name"], f["target"]][p["name"]],
+            "truth": min(real[f["name"], f["target"], p["name"]], key=lambda x: abs(x - p["value"])),
             **{k: p[k] for k in ("value", "low", "high")},
             "doubt": p.get("doubt", ""),
         }
         for f in said
-        if (f["name"], f["target"]) in real
         for p in f["parameters"]
-        if p["name"] in real[f["name"], f["target"]]
+        if (f["name"], f["target"], p["name"]) in real
     ]
 
 
@@ -185,7 +208,14 @@ def _verdict_questions(rows: list[Row]) -> list[Question]:
         ("unknown on effects outside the registry", outside, "unknown"),
         (f"unknown, outside the registry, apart >= {APART:g} sd", _distinct(outside), "unknown"),
     )
-    return [(text, where, lambda r, good=good: r["verdict"] == good) for text, where, good in asked]
+    changed = [r for r in rows if r["kind"] == "change"]
+    kept = [r for r in rows if r["kind"] == "constant"]
+    return [
+        *((text, where, lambda r, good=good: r["verdict"] == good) for text, where, good in asked),
+        (f"payload changes, all told within {SOON:g} s and {NEAR:g} kg", changed, lambda r: r["changes_told"]),
+        ("payload changes, verdict not unknown", changed, lambda r: r["verdict"] != "unknown"),
+        ("payload stays, a change said all the same", kept, lambda r: not r["changes_told"]),
+    ]
 
 
 def _interval_questions(rows: list[Row]) -> list[Question]:
@@ -193,7 +223,13 @@ def _interval_questions(rows: list[Row]) -> list[Question]:
     local = [r for r in rows if r["overlap"] is not None and r["size"] >= 2.0]
     known = [i for r in rows for i in r["intervals"]]
     sure = [i for i in known if not i["doubt"]]
-    named = [i for r in rows if r["exact"] or r["kind"] == "recalibration" for i in r["intervals"] if not i["doubt"]]
+    named = [
+        i
+        for r in rows
+        if r["exact"] or r["kind"] in ("recalibration", "change", "constant")
+        for i in r["intervals"]
+        if not i["doubt"]
+    ]
     return [
         ("interval overlap at least 0.7, size >= 2", local, lambda r: r["overlap"] >= 0.7),
         ("95 % interval holds the truth", sure, holds),

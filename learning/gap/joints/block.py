@@ -53,6 +53,11 @@ class Block:
         return self.name, self.target
 
     @property
+    def body(self) -> str:
+        """Joint or body it acts on; `target` also says from when on, where that is not all the time."""
+        return self.target if self.term is None else self.term.target
+
+    @property
     def size(self) -> int:
         """Number of free values, nonlinear ones included."""
         return len(self.parameters) + sum(p.name != "side" for p in self.shape_parameters)
@@ -87,13 +92,16 @@ def body_block(term: BodyTerm, model: RigidModel) -> Block:
 
     def build(log: JointLog) -> np.ndarray:
         if log.name not in kept:
-            kept[log.name] = log.shared(model.body_columns(term, log.q, log.dq, log.ddq))
+            columns = model.body_columns(term, log.q, log.dq, log.ddq)
+            if term.during is not None:
+                columns = columns * term.during.acts(log.name, log.t)[:, None, None]
+            kept[log.name] = log.shared(columns, sharp=term.during is not None)
         return kept[log.name]
 
     special = {"payload": frozenset({"wrong_tool"}), "wrong_tool": frozenset({"payload"})}
     return Block(
         name=term.name,
-        target=term.target,
+        target=_since(term),
         recalibration=term.recalibration,
         channels=tuple(range(len(model.joints))),
         parameters=term.parameters,
@@ -102,6 +110,14 @@ def body_block(term: BodyTerm, model: RigidModel) -> Block:
         term=term,
         contains=special.get(term.name, frozenset()),
     )
+
+
+def _since(term: BodyTerm) -> str:
+    """The body, and where the term does not act all the time, since when."""
+    if term.during is None:
+        return term.target
+    name, spells = next((n, s) for n, s in term.during.spells.items() if s)
+    return f"{term.target} from {max(spells[0][0], 0.0):.4g} s of {name}"
 
 
 def effect_blocks(model: RigidModel, logs: list[JointLog], system: str) -> list[Block]:

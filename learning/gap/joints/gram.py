@@ -23,6 +23,7 @@ class Gram:
         yy: (F, C) residual times itself.
         rows: (F, C) rows.
         acf: per channel, (lags, K) autocorrelation of the columns (0 where a column does not touch the channel).
+        edges: rows (fold, start, stop) per log.
         tables: per channel and log, the columns themselves (T, K_c), and `index` (K_c,) where they stand among K.
     """
 
@@ -33,6 +34,7 @@ class Gram:
     yy: np.ndarray
     rows: np.ndarray
     acf: list[np.ndarray]
+    edges: list[list[tuple[int, int, int]]]
     tables: list[list[np.ndarray]]
     index: list[np.ndarray]
 
@@ -46,9 +48,19 @@ def column_spans(blocks: list[Block]) -> tuple[list[slice], int]:
     return spans, at
 
 
-def fold_edges(logs: list[JointLog], folds: int) -> list[list[tuple[int, int, int]]]:
-    """Rows (fold, start, stop) of each log: whole episodes where there are enough of them, else stretches of time."""
+def fold_edges(logs: list[JointLog], folds: int, mixed: bool = False) -> list[list[tuple[int, int, int]]]:
+    """Rows (fold, start, stop) of each log: whole episodes where there are enough of them, else stretches of time.
+
+    Args:
+        logs: to be divided.
+        folds: how many.
+        mixed: every log into every fold, in short stretches, for what acts in a part of one log alone.
+    """
     lengths = [len(log.t[log.inner]) for log in logs]
+    if mixed:
+        count = SHORT * folds
+        edges = [np.linspace(0, n, count + 1).astype(int) for n in lengths]
+        return [[(k % folds, int(e[k]), int(e[k + 1])) for k in range(count)] for e in edges]
     if len(logs) >= folds:
         return [[(i % folds, 0, n)] for i, n in enumerate(lengths)]
     each = int(np.ceil(folds / len(logs)))
@@ -59,10 +71,13 @@ def fold_edges(logs: list[JointLog], folds: int) -> list[list[tuple[int, int, in
     return out
 
 
+SHORT = 3  # stretches of one fold in one log, where logs are mixed
+
+
 def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6) -> Gram:
     """Build every column once and sum products per fold and channel."""
     spans, k = column_spans(blocks)
-    edges = fold_edges(logs, folds)
+    edges = fold_edges(logs, folds, mixed=any(b.term is not None and b.term.during is not None for b in blocks))
     count = 1 + max(f for episode in edges for f, _, _ in episode)
     channels = logs[0].residual.shape[1]
     G, b = np.zeros((count, channels, k, k)), np.zeros((count, channels, k))
@@ -87,13 +102,14 @@ def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6) -> Gram:
         acf.append(whole)
         every.append(tables)
         places.append(index)
-    return Gram(blocks=blocks, spans=spans, G=G, b=b, yy=yy, rows=rows, acf=acf, tables=every, index=places)
+    return Gram(
+        blocks=blocks, spans=spans, G=G, b=b, yy=yy, rows=rows, acf=acf, edges=edges, tables=every, index=places
+    )
 
 
-def exchange(gram: Gram, changed: dict[int, Block], logs: list[JointLog], folds: int = 6) -> Gram:
+def exchange(gram: Gram, changed: dict[int, Block], logs: list[JointLog]) -> Gram:
     """The same sums with some blocks replaced by others of the same size; only their products are computed."""
     blocks = [changed.get(i, block) for i, block in enumerate(gram.blocks)]
-    edges = fold_edges(logs, folds)
     for c, index in enumerate(gram.index):
         mine = [i for i, block in changed.items() if c in block.channels]
         if not mine:
@@ -103,7 +119,7 @@ def exchange(gram: Gram, changed: dict[int, Block], logs: list[JointLog], folds:
         gram.G[:, c, columns[:, None], index[None, :]] = 0.0
         gram.G[:, c, index[:, None], columns[None, :]] = 0.0
         gram.b[:, c, columns] = 0.0
-        for log, X, parts in zip(logs, gram.tables[c], edges, strict=True):
+        for log, X, parts in zip(logs, gram.tables[c], gram.edges, strict=True):
             X[:, at] = np.concatenate([changed[i].build(log)[:, changed[i].channels.index(c), :] for i in mine], axis=1)
             y = log.residual[log.inner, c]
             for fold, start, stop in parts:

@@ -131,14 +131,16 @@ def _of_effect(
     region = "contact" if block.name == "contact" else _region(load[:, k] ** 2, log, c)
     span = float(t[-1] - t[0])
     found = [(float(t[0]), float(t[-1]))]
-    if block.name == "contact" or (
+    if block.term is not None and block.term.during is not None:
+        found = [(max(a, float(log.t[0])), min(b, float(log.t[-1]))) for a, b in block.term.during.of(log.name)]
+    elif block.name == "contact" or (
         active.mean() < LOCAL and block.name not in ("coulomb_friction", "viscous_friction")
     ):
         found = intervals(active, t, 0.004 * span, 2.0 * log.dt)
     return [
         Where(
             channel=channels[c],
-            target=block.target,
+            target=block.body,
             episode=log.name,
             t0=a,
             t1=b,

@@ -67,9 +67,9 @@ def judge(
         model_error: (C,) what the model leaves although nothing is missing, root mean square, or None.
     """
     error2 = np.zeros(logs[0].residual.shape[1]) if model_error is None else model_error**2
-    left = _unexplained(named, logs)
+    left = unexplained(named, logs)
     broad = [log.wide() for log in logs]
-    wide = _unexplained(named, broad)
+    wide = unexplained(named, broad)
     found = _contact_bursts(logs, broad, wide)
     calm, calm_wide = _without(logs, left, found), _without(logs, wide, found)
     remainders = tuple(leftover(logs, calm, calm_wide, c) for c in range(left[0].shape[1]))
@@ -102,7 +102,7 @@ def judge(
 
 def makes_worse(named: Named, heldout: list[JointLog]) -> bool:
     """Whether held-out logs are farther from the model with the effects, in the load's unit or against the noise."""
-    return farther([log.residual[log.inner] for log in heldout], _unexplained(named, heldout), named.noise.rms)
+    return farther([log.residual[log.inner] for log in heldout], unexplained(named, heldout), named.noise.rms)
 
 
 def farther(before: list[np.ndarray], after: list[np.ndarray], noise: np.ndarray) -> bool:
@@ -126,7 +126,7 @@ def inadequacy(named: Named, outcome: Outcome, alpha: float) -> float:
     return float(min([*single, outcome.p_value]))
 
 
-def _unexplained(named: Named, logs: list[JointLog]) -> list[np.ndarray]:
+def unexplained(named: Named, logs: list[JointLog]) -> list[np.ndarray]:
     """Residual the named effects leave, (T_inner, C) per log."""
     blocks = list(named.blocks)
     return [log.residual[log.inner] - explained(blocks, named.theta, log) for log in logs]
@@ -173,7 +173,7 @@ def _bursts_in_held_out(named: Named, heldout: list[JointLog], found: list[Burst
     if not channels:
         return []
     broad = [log.wide() for log in heldout]
-    wide = _unexplained(named, broad)
+    wide = unexplained(named, broad)
     return [b for c in channels for b in _bursts_of_channel(broad, wide, c)]
 
 
@@ -263,7 +263,7 @@ def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray], er
     """
     blocks = list(named.blocks)
     before = [log.residual[log.inner] for log in heldout]
-    after = _unexplained(named, heldout)
+    after = unexplained(named, heldout)
     given = np.mean(np.concatenate(before) ** 2, axis=0)
     left = np.mean(np.concatenate(after) ** 2, axis=0)
     rest = np.maximum(np.max([np.mean(x**2, axis=0) for x in fitted], axis=0), error2)
@@ -271,7 +271,7 @@ def _strange(named: Named, heldout: list[JointLog], fitted: list[np.ndarray], er
     if not len(loud):
         return 0.0
     broad = [log.wide() for log in heldout]
-    wide = _unexplained(named, broad)
+    wide = unexplained(named, broad)
     again = np.mean(np.concatenate(_refitted(blocks, heldout, after, rest)) ** 2, axis=0)
     excess = np.zeros(len(rest))
     for c in loud:

@@ -9,6 +9,34 @@ import numpy as np
 
 from ....sim.effects.effect import Parameter
 
+Spell = tuple[float, float]  # from when, to before when [s of the recording's clock]
+
+
+@dataclass(frozen=True, kw_only=True)
+class During:
+    """When something that is not there all the time acts.
+
+    Attributes:
+        spells: of each recording, in order; the first begins and the last ends at infinity where a recording's end cuts
+            it off.
+        last: whether it acts at the end of the last recording that was fitted, and so in one nobody has looked at.
+    """
+
+    spells: dict[str, tuple[Spell, ...]]
+    last: bool
+
+    def of(self, recording: str) -> tuple[Spell, ...]:
+        """Its spells in one recording, also of the copy that went through no filter."""
+        always = ((-np.inf, np.inf),) if self.last else ()
+        return self.spells.get(recording.rstrip("~"), always)
+
+    def acts(self, recording: str, t: np.ndarray) -> np.ndarray:
+        """Whether it acts at some times [s], (T,)."""
+        out = np.zeros(len(t), dtype=bool)
+        for a, b in self.of(recording):
+            out |= (t >= a) & (t < b)
+        return out
+
 
 @dataclass(frozen=True, kw_only=True)
 class BodyTerm:
@@ -21,6 +49,7 @@ class BodyTerm:
         parameters: what is fitted, in the order of the columns.
         shape: values that enter nonlinearly.
         deviation: how far the (first) parameter may plausibly be off, one standard deviation; inf where anything goes.
+        during: when it acts; None for all the time.
     """
 
     name: str
@@ -29,6 +58,7 @@ class BodyTerm:
     parameters: tuple[Parameter, ...]
     shape: dict[str, float]
     deviation: float = float("inf")
+    during: During | None = None
 
 
 class RigidModel(abc.ABC):

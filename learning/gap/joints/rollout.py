@@ -6,6 +6,7 @@ effect.  Windows restarted from the log do.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,6 +63,19 @@ def patched_joints(model: RigidModel, blocks: tuple[Block, ...], theta: np.ndarr
         elif JOINT_EFFECTS[block.name].memoryless:
             effects.append((block.name, block.channels[0], {**values, **block.shape}))
     return PatchedJoints(model=model, effects=tuple(effects), slow=slow)
+
+
+def acting(blocks: Sequence[Block], theta: np.ndarray, log: JointLog) -> tuple[tuple[Block, ...], np.ndarray]:
+    """Blocks that act in most of a log, and their numbers: one model stands for all of its windows."""
+    kept, numbers, at = [], [], 0
+    for block in blocks:
+        n = len(block.parameters)
+        during = None if block.term is None else block.term.during
+        if during is None or during.acts(log.name, log.t).mean() > 0.5:
+            kept.append(block)
+            numbers.append(theta[at : at + n])
+        at += n
+    return tuple(kept), np.concatenate(numbers) if numbers else np.zeros(0)
 
 
 def rollout_gap(patched: PatchedJoints, log: JointLog) -> np.ndarray:

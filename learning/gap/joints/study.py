@@ -8,128 +8,27 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Rival, VerdictName, Where, told_apart
-from ..measurement import SHOWN, Episode, MeasurementSet, require_columns
+from ..findings import Change, EffectFinding, Gap, Placebo, Rival, VerdictName, Where, told_apart
 from ..pictures import Curve
 from ..study import Study
 from .alternatives import alternatives, best_experiment, experiments, mass_twins
-from .arm_model import GRAVITY, ArmModel
+from .arm_model import ArmModel
 from .axis_model import AxisModel
 from .block import Block
 from .bootstrap import confident, kept_part
+from .carried import carried_at_first, changes_of, told_in
 from .detect import smallest_found
+from .heldout_gap import gap_of
 from .intervals import Intervals, intervals, value_within
 from .localise import places
-from .log import JointColumns, JointLog, read_logs
-from .outcome import Outcome, inadequacy, judge, makes_worse
+from .log import JointLog, read_logs
+from .opening import check_load, columns_of, rigid_model
+from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplained
 from .placebo import placebos
 from .rigid import RigidModel
 from .rivals import parting, rivals
-from .robot_files import find_urdf
-from .rollout import patched_joints, rollout_gap
+from .rollout import acting, patched_joints, rollout_gap
 from .workflow import Named, explained, name_effects
-
-WRONG_UNIT = 20.0  # numbers this many times too large or too small are in another unit
-STRONGEST_GRAVITY = 1e3  # [m/s^2]
-LIKE = 0.9  # correlation from which on a speed column is the slope of the position
-
-
-def columns_of(measured: MeasurementSet) -> JointColumns:
-    """Which columns hold position, velocity and load, checked in every episode.
-
-    Raises:
-        GapError: one is missing, or its numbers cannot be in the unit the format asks for.
-    """
-    if measured.system == "axis":
-        names = JointColumns(q=("q",), dq=("dq",), load=("force",))
-    else:
-        first = measured.episodes[0].columns
-        n = 0
-        while f"q{n + 1}" in first:
-            n += 1
-        if n == 0:
-            require_columns(measured.episodes[0], ["q1"])
-        names = JointColumns(
-            q=tuple(f"q{i + 1}" for i in range(n)),
-            dq=tuple(f"dq{i + 1}" for i in range(n)),
-            load=tuple(f"tau{i + 1}" for i in range(n)),
-        )
-    for episode in measured.episodes:
-        require_columns(episode, [*names.q, *names.load])
-        step = float(np.median(np.diff(episode.t)))
-        if step > 0.5:
-            raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
-        for name in names.q:
-            x = episode.columns[name]
-            row = int(np.argmax(np.abs(x)))
-            if np.abs(x[row]) > (50.0 if measured.system == "axis" else 40.0):
-                unit = "metres" if measured.system == "axis" else "radians"
-                raise GapError(f"{episode.file}: column '{name}', row {row + 2} is {x[row]:g}, it must be in {unit}")
-            if np.ptp(x) == 0 and len(names.q) == 1:
-                raise GapError(
-                    f"{episode.file}: column '{name}' never changes (rows 2 to {len(x) + 1}), nothing can be learnt"
-                )
-        _check_speed(episode, names, "metres" if measured.system == "axis" else "radians")
-    return names
-
-
-def _check_speed(episode: Episode, names: JointColumns, unit: str) -> None:
-    """Refuse a speed that is the slope of the position in another unit."""
-    for q, dq in zip(names.q, names.dq, strict=True):
-        if dq not in episode.columns:
-            continue
-        slope, speed = np.gradient(episode.columns[q], episode.t), episode.columns[dq]
-        if slope.std() == 0 or speed.std() == 0 or np.corrcoef(slope, speed)[0, 1] < LIKE:
-            continue
-        ratio = float(speed.std() / slope.std())
-        if not 1.0 / WRONG_UNIT < ratio < WRONG_UNIT:
-            row = int(np.argmax(np.abs(speed)))
-            raise GapError(
-                f"{episode.file}: column '{dq}', row {row + 2} is {speed[row]:.4g}, the column is {ratio:.3g} times "
-                f"the slope of '{q}', it must be in {unit} per second"
-            )
-
-
-def _check_load(measured: MeasurementSet, names: JointColumns, model: RigidModel) -> None:
-    """Refuse loads no joint of this robot can have."""
-    unit = "N" if measured.system == "axis" else "N m"
-    for episode in measured.episodes:
-        for name, most in zip(names.load, model.strongest, strict=True):
-            x = episode.columns[name]
-            row = int(np.argmax(np.abs(x)))
-            if abs(x[row]) > WRONG_UNIT * most:
-                raise GapError(
-                    f"{episode.file}: column '{name}', row {row + 2} is {x[row]:.4g}, it must be in {unit} "
-                    f"(this joint is made for {most:.3g})"
-                )
-
-
-def rigid_model(measured: MeasurementSet, joints: int) -> RigidModel:
-    """The model the set names.
-
-    Raises:
-        GapError: no such robot, or it has fewer joints than the columns.
-    """
-    if measured.system == "axis":
-        return AxisModel(measured.number("mass"))
-    robot = measured.settings.get("robot")
-    file = measured.folder / "measurement.yaml"
-    if not isinstance(robot, str) or not robot:
-        raise GapError(f"{file}: `robot` is {robot!r}, an arm needs a URDF file or a name such as ur10 or panda")
-    try:
-        gravity = measured.settings.get("gravity", GRAVITY)
-        if not (
-            isinstance(gravity, list | tuple)
-            and len(gravity) == 3
-            and all(isinstance(g, int | float) and abs(g) < STRONGEST_GRAVITY for g in gravity)
-        ):
-            raise GapError(f"gravity is {str(gravity)[:SHOWN]}, three numbers [m/s^2] are needed")
-        return ArmModel.from_urdf(
-            find_urdf(robot, measured.folder), joints, (float(gravity[0]), float(gravity[1]), float(gravity[2]))
-        )
-    except GapError as error:
-        raise GapError(f"{file}: {error}") from None
 
 
 class JointStudy(Study):
@@ -139,7 +38,7 @@ class JointStudy(Study):
     def _logs(self) -> tuple[RigidModel, list[JointLog]]:
         columns = columns_of(self.measured)
         model = rigid_model(self.measured, len(columns.q))
-        _check_load(self.measured, columns, model)
+        check_load(self.measured, columns, model)
         logs = read_logs(list(self.measured.episodes), columns, model)
         if isinstance(model, AxisModel) and not model.mass_known:
             fit = [log for log in logs if log.role != "heldout"]
@@ -179,6 +78,14 @@ class JointStudy(Study):
     def _searched(self) -> tuple[Named, str]:
         """The search's result, and what it had named where that made the held-out logs worse and was given up."""
         named = confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
+        constant = named.constant
+        if named.carried and constant:
+            weight = named.search.weight
+            known, blocks = told_in(named.carried, named.blocks, named.theta, weight, self.model, self.heldout)
+            named = replace(named, carried=known, blocks=blocks)
+            constant = confident(constant, self.fitted)
+            left = [unexplained(n, self.heldout) for n in (constant, named)]
+            named = constant if farther(left[0], left[1], named.noise.rms) else named
         if not named.chosen or not makes_worse(named, self.heldout):
             return named, ""
         worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks)
@@ -226,7 +133,7 @@ class JointStudy(Study):
             (recalibration if block.recalibration else effects).append(finding)
         for event in self.outcome.contacts:
             effects.append(event)
-        return self.outcome.verdict, tuple(effects), tuple(recalibration), self.outcome.guess
+        return self.outcome.verdict, tuple(effects), tuple(recalibration), self._guess
 
     def _finding(self, k: int, block: Block, theta: np.ndarray, span: slice) -> EffectFinding:
         prismatic = self.model.prismatic[block.channels[0]]
@@ -251,14 +158,54 @@ class JointStudy(Study):
         smallest = smallest_found(search, chosen, chosen[k], theta)
         return EffectFinding(
             name=block.name,
-            target=block.target,
+            target=block.body,
             parameters=tuple(values),
             experiment=experiment,
+            when=self._when(block),
             equivalent=(*(" + ".join(a.names) for a in others), *mass_twins(block)),
             size=size,
             smallest=smallest,
             confidence=float(self.kept[k]),
         )
+
+    def _when(self, block: Block) -> tuple[tuple[str, float, float], ...]:
+        """In which stretches of which recordings it acts; () for all."""
+        if block.term is None or block.term.during is None:
+            return ()
+        during, ends = block.term.during, {log.name: log.t[[0, -1]] for log in self._logs[1]}
+        return tuple(
+            (name, float(max(a, start)), float(min(b, stop)))
+            for name, (start, stop) in ends.items()
+            for a, b in during.of(name)
+        )
+
+    def changes(self) -> tuple[Change, ...]:
+        """See `Study.changes`."""
+        n = self._everywhere or self.named
+        return tuple(changes_of(n.carried, n.blocks, n.theta, [x.name for x in self._logs[1]])) if n.carried else ()
+
+    @cached_property
+    def _everywhere(self) -> Named | None:
+        """What a search of all logs says, where it says that a payload changes and that of the fitted ones does not.
+
+        It tells why effects do not hold on logs held out; nothing of it is added to the model.
+        """
+        if self.outcome.verdict != "unknown" or self.named.carried or not isinstance(self.model, ArmModel):
+            return None
+        named = name_effects(self.model, [*self.fitted, *self.heldout], self.measured.system)
+        return named if named.carried else None
+
+    @property
+    def _guess(self) -> str:
+        """What is missing, where it has no name, or why what has one does not hold."""
+        n = self._everywhere
+        if n is None or n.carried is None:
+            return self.outcome.guess
+        told = [f"{c.before:.2f} to {c.after:.2f} kg at {c.t:.1f} s of {c.episode}" for c in self.changes()]
+        if not told:
+            begun = carried_at_first(n.carried, n.blocks, n.theta, [x.name for x in self._logs[1]])
+            told = [f"{mass:.2f} kg in {name}" for name, mass in begun]
+        return f"the payload is not the same all the time ({', '.join(told)}); fit to recordings that have all of it"
 
     def rivals(self) -> tuple[Rival, ...]:
         """See `Study.rivals`."""
@@ -300,13 +247,16 @@ class JointStudy(Study):
         at = 0
         for block in self.named.blocks:
             n = len(block.parameters)
+            if block.term is not None and block.term.during is not None and not block.term.during.last:
+                at += n  # what was put down or exchanged since is no part of the arm any more
+                continue
             values = {p.name: float(v) for p, v in zip(block.parameters, self.named.theta[at : at + n], strict=True)}
             at += n
             if block.term is not None and not block.recalibration and isinstance(self.model, ArmModel):
                 values = self.model.moments(block.term, values)
             elif block.term is None:
                 values |= block.shape
-            entry = {"name": block.name, "target": block.target, "parameters": {k: float(v) for k, v in values.items()}}
+            entry = {"name": block.name, "target": block.body, "parameters": {k: float(v) for k, v in values.items()}}
             (recalibration if block.recalibration else effects).append(entry)
         base: dict[str, Any] = {"system": self.measured.system}
         if isinstance(self.model, AxisModel):
@@ -325,8 +275,13 @@ class JointStudy(Study):
         forward = None
         if blocks:
             given = patched_joints(self.model, (), np.zeros(0), self.heldout[0].slow)
-            with_it = patched_joints(self.model, tuple(blocks), theta, self.heldout[0].slow)
-            pairs = [(rollout_gap(given, log), rollout_gap(with_it, log)) for log in self.heldout[:3]]
+            pairs = [
+                (
+                    rollout_gap(given, log),
+                    rollout_gap(patched_joints(self.model, *acting(blocks, theta, log), log.slow), log),
+                )
+                for log in self.heldout[:3]
+            ]
             b, a = (np.sqrt(np.mean([p[i] ** 2 for p in pairs], axis=0)) for i in (0, 1))
             forward = Gap(
                 unit="m" if all(self.model.prismatic) else "rad",
@@ -395,33 +350,6 @@ class JointStudy(Study):
                 )
             )
         return out
-
-
-def gap_of(
-    before: list[np.ndarray], after: list[np.ndarray], floor: np.ndarray, channels: tuple[str, ...], unit: str
-) -> Gap:
-    """The gap over all held-out rows, with an interval of after / before from resampled stretches."""
-    b, a = np.concatenate(before), np.concatenate(after)
-    rows = np.array_split(np.arange(len(b)), 20)
-    sums = np.array([[np.sum(b[r] ** 2), np.sum(a[r] ** 2)] for r in rows])
-    rng = np.random.default_rng(0)
-    ratios = [
-        np.sqrt(s[1] / max(s[0], 1e-30)) for s in (sums[rng.integers(20, size=20)].sum(axis=0) for _ in range(400))
-    ]
-    low, high = np.quantile(ratios, [0.025, 0.975])
-    rb, ra = (np.sqrt(np.mean(x**2, axis=0)) for x in (b, a))
-    return Gap(
-        unit=unit,
-        floor=float(np.sqrt(np.mean(floor**2))),
-        before=float(np.sqrt(np.mean(b**2))),
-        after=float(np.sqrt(np.mean(a**2))),
-        low=float(low),
-        high=float(high),
-        channels={
-            name: {"floor": float(floor[i]), "before": float(rb[i]), "after": float(ra[i])}
-            for i, name in enumerate(channels)
-        },
-    )
 
 
 def _start_mass(logs: list[JointLog]) -> float:

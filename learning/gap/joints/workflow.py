@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .block import Block, effect_blocks
+from .carried import PAYLOAD, Carried, alike, asked_again, with_payloads
 from .generic import generic_columns, scales
 from .gram import Gram, assemble, exchange
 from .lag import lagged
 from .log import JointLog
 from .noise import NoiseModel, estimate_noise, repeat_difference
+from .payload_cells import carried
 from .refine import refined
 from .rigid import RigidModel
 from .search import Search
@@ -28,6 +30,8 @@ class Named:
         noise: the floor and its colour.
         search: the last search, for questions about alternatives.
         chosen: indices of `blocks` in it.
+        carried: the payloads, where they change.
+        constant: what was found without a change, where there is one.
     """
 
     blocks: tuple[Block, ...]
@@ -35,6 +39,13 @@ class Named:
     noise: NoiseModel
     search: Search
     chosen: tuple[int, ...]
+    carried: Carried | None = None
+    constant: Named | None = None
+
+    @property
+    def score(self) -> float:
+        """The search's criterion, the places of the changes paid for; smaller is better."""
+        return self.search.score(self.chosen) + (self.carried.cost if self.carried else 0.0)
 
     @property
     def gram(self) -> Gram:
@@ -97,13 +108,47 @@ def explained(blocks: list[Block], theta: np.ndarray, log: JointLog) -> np.ndarr
 
 
 def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: float = 1.0) -> Named:
-    """Floor, search, refine, search again until the set stands still."""
+    """Floor, search, refine, search again until the set stands still; once more where a payload changes."""
     blocks = effect_blocks(model, logs, system)
     noise = first_noise(blocks, logs)
     gram = assemble(blocks, logs)
+    found = _payloads(gram, noise, logs)
+    named = _settled(gram, noise, model, logs, strict)
+    if found is None:
+        return named
+    while len(found.during) > 1:
+        parted = with_payloads(blocks, found, model)
+        noise = first_noise(parted, logs)
+        again = _settled(assemble(parted, logs), noise, model, logs, strict, rounds=1)
+        known = asked_again(found, again.blocks, again.theta, again.search.weight, model, logs)
+        fewer = len(known.during) < len(found.during)
+        found = known
+        if fewer:
+            continue
+        again = _settled(assemble(with_payloads(blocks, found, model), logs), noise, model, logs, strict)
+        one = alike(found, again.search, again.chosen)
+        if one is None:
+            again = replace(again, carried=found, constant=named)
+            return again if again.score < named.score else named
+        found = found.joined(*one)
+    return named
+
+
+def _payloads(gram: Gram, noise: NoiseModel, logs: list[JointLog]) -> Carried | None:
+    """The payloads of an arm, where they change."""
+    at = {id(b): i for i, b in enumerate(gram.blocks)}
+    base = sorted(at[id(b)] for b in one_shape_each(gram.blocks))
+    payload = next((i for i in base if gram.blocks[i].name == PAYLOAD), None)
+    return None if payload is None else carried(Search(gram=gram, noise=noise), base, payload, logs)
+
+
+def _settled(
+    gram: Gram, noise: NoiseModel, model: RigidModel, logs: list[JointLog], strict: float, rounds: int = ROUNDS
+) -> Named:
+    """Search, refine the shapes and take the noise anew until the set stands still."""
     chosen: tuple[int, ...] = ()
     seen: list[set] = []
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         chosen, gram = _settle(gram, model, logs, noise, strict, chosen)
         blocks = gram.blocks
         found = {(*blocks[i].key, tuple(blocks[i].shape.items())) for i in chosen}

@@ -12,12 +12,12 @@ from ..errors import GapError
 from ..findings import EffectFinding, Gap, Placebo, VerdictName, Where, told_apart
 from ..joints.bootstrap import kept_part
 from ..joints.detect import smallest_found
+from ..joints.heldout_gap import gap_of
 from ..joints.intervals import intervals, value_within
 from ..joints.localise import places
 from ..joints.log import JointLog
 from ..joints.outcome import Outcome, farther, inadequacy, judge
 from ..joints.placebo import shifted
-from ..joints.study import gap_of
 from ..measurement import MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
