@@ -25,6 +25,10 @@ class WithdrawTuning(Quantities):
         "upward part of the way back; where it is less, the hand goes straight up",
         "choice: a hand that lies flat clears the person upwards only",
     )
+    patience: float = quantity(
+        2.0, "1", "times what that takes, for a hand that is slower", "choice: near a joint's limit it is"
+    )
+    tolerance: float = quantity(0.015, "m", "of the way that may be left", "choice: hands start and stop smoothly")
     settle_time: float = quantity(0.3, "s", "waited in the end", "choice: the last command runs out")
 
 
@@ -39,14 +43,21 @@ def withdraw(
         distance: of the way back [m].
         tuning: how they are drawn back.
     """
-    directions = {}
+    directions, starts = {}, {}
     for side in sides:
-        back = -hand_now(skill, side)[:3, 2]
+        pose = hand_now(skill, side)
+        back, starts[side] = -pose[:3, 2], pose[:3, 3]
         directions[side] = back if back[2] > tuning.min_rise else UP
-    end = skill.now() + distance / tuning.speed
-    while skill.now() < end:
-        for side, back in directions.items():
-            twist = np.append(tuning.speed * back, np.zeros(3))
+    takes = distance / tuning.speed
+    end, latest = skill.now() + takes, skill.now() + tuning.patience * takes
+
+    def goes_on(side: Side) -> bool:
+        way = float((hand_now(skill, side)[:3, 3] - starts[side]) @ directions[side])
+        return skill.now() < end or (skill.now() < latest and way < distance - tuning.tolerance)
+
+    while going := [side for side in directions if goes_on(side)]:
+        for side in going:
+            twist = np.append(tuning.speed * directions[side], np.zeros(3))
             skill.world.send(HandTwist(side=side, twist_in_map=twist), retreat=True)
         yield
     yield from skill.wait(tuning.settle_time)
