@@ -194,12 +194,13 @@ class CarryAcross(Skill):
         bare = bare_share(self.world.look("head"), posture)
         return headward < self.tuning.headward_distance and bare > self.tuning.min_bare
 
-    def _laid(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where it is let down from, and where it comes to lie, each (2,) outwards and feetward [m]."""
+    def _laid(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Where it is let down from, and where it comes to lie, each outwards and feetward [m]."""
         tuning = self.tuning
         if not self.own_side:
-            return np.array(tuning.laid_place), np.array(tuning.laid_place)
-        return np.add(tuning.laid_beyond, tuning.laid_from), np.array(tuning.laid_beyond)
+            return tuning.laid_place, tuning.laid_place
+        (out, feetward), (more_out, more_feetward) = tuning.laid_beyond, tuning.laid_from
+        return (out + more_out, feetward + more_feetward), tuning.laid_beyond
 
     def _carry(self, hand: Side) -> Iterator[None]:
         """Up, across, down, as far as the sleeve goes; let go of it and rise."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -151,7 +152,7 @@ def _mass(target: str, change: float) -> dict[str, Any]:
     return {"name": "mass", "target": target, "size": float("nan"), "values": {"mass": float(change)}}
 
 
-def inverse_dynamics(pin, model, motion) -> np.ndarray:
+def inverse_dynamics(pin: Any, model: Any, motion: Sequence[np.ndarray]) -> np.ndarray:
     """Loads of a pinocchio model along a motion, (T, n)."""
     data = model.createData()
     return np.array([pin.rnea(model, data, np.ascontiguousarray(a), b, c) for a, b, c in zip(*motion, strict=True)])

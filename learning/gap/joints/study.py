@@ -16,7 +16,6 @@ from .arm_model import ArmModel
 from .axis_model import AxisModel
 from .block import Block
 from .bootstrap import confident, kept_part
-from .carried import carried_at_first, changes_of, told_in
 from .detect import smallest_found
 from .heldout_gap import gap_of
 from .intervals import Intervals, intervals, value_within
@@ -24,6 +23,7 @@ from .localise import places
 from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
 from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplained
+from .payloads.carried import carried_at_first, changes_of, told_in
 from .placebo import placebos
 from .rigid import RigidModel
 from .rivals import parting, rivals

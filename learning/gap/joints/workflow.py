@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .block import Block, effect_blocks
-from .carried import PAYLOAD, Carried, alike, asked_again, with_payloads
 from .generic import generic_columns, scales
 from .gram import Gram, assemble, exchange
 from .lag import lagged
 from .log import JointLog
 from .noise import NoiseModel, estimate_noise, repeat_difference
-from .payload_cells import carried
+from .payloads.carried import PAYLOAD, Carried, alike, asked_again, with_payloads
+from .payloads.cells import carried
 from .refine import refined
 from .rigid import RigidModel
 from .search import Search

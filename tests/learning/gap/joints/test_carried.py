@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import yaml
 from caretree.learning.gap.bench.joint_case import arm_motions, inverse_dynamics
-from caretree.learning.gap.joints.carried import Carried
+from caretree.learning.gap.joints.payloads.carried import Carried
 from caretree.learning.gap.joints.rigid import During
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study

@@ -1,6 +1,6 @@
 import numpy as np
-from caretree.learning.gap.joints.course import told
 from caretree.learning.gap.joints.log import JointLog
+from caretree.learning.gap.joints.payloads.course import told
 
 T = np.arange(0.0, 20.0, 0.05)
 RNG = np.random.default_rng(2)

@@ -14,11 +14,11 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import chi2
 
+from ..log import JointLog
+from ..search import Search
+from ..thresholds import ALPHA, MATERIAL
 from .carried import NUMBERS, Carried, indistinct, inverse
 from .course import LEAST, Span, during_of, lengths, told
-from .log import JointLog
-from .search import Search
-from .thresholds import ALPHA, MATERIAL
 
 CELL = 0.5  # [s]
 MOST_CELLS = 200  # of a recording

@@ -9,14 +9,14 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.stats import chi2
 
-from ....sim.effects.joint.link_inertia import BODY_TERMS
-from ..findings import Change
-from .block import Block, body_block
+from .....sim.effects.joint.link_inertia import BODY_TERMS
+from ...findings import Change
+from ..block import Block, body_block
+from ..log import JointLog
+from ..rigid import During, RigidModel, Spell
+from ..search import Search
+from ..thresholds import MATERIAL
 from .course import LEAST, Span, during_of, lengths, told
-from .log import JointLog
-from .rigid import During, RigidModel, Spell
-from .search import Search
-from .thresholds import MATERIAL
 
 PAYLOAD = "payload"
 RIDGE = 1e-6  # of a column's own square: what the registry says twice is shared out

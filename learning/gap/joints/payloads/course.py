@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .log import JointLog
-from .rigid import During, Spell
+from ..log import JointLog
+from ..rigid import During, Spell
 
 LEAST = 1.5  # [s] that something is carried; what is carried more briefly is the change itself
 Span = tuple[int, int, int]  # which payload, first row, row after the last
