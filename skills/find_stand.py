@@ -23,7 +23,7 @@ from .core.reasons import Reason
 from .core.skill import Skill
 from .geometry.arm_path import UP, ArmPath
 from .geometry.stances import HEADWARD, outwards, stance
-from .lift_arm import LiftGoal, lifted
+from .lift_arm import LiftGoal, goal_for, lifted
 from .motion.errors import Unreachable
 from .motion.ik import half_turned, hand_pose, solve_ik
 from .motion.path import is_free
@@ -101,7 +101,7 @@ class FindStand(Skill):
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""
         arms = self.world.robot.ready.copy()
         bed = self.world.room.bed
-        tuning, lift = self.tuning, self.tuning.lift
+        tuning, lift = self.tuning, goal_for(self, self.side, self.tuning.lift)
         shoulder, held = posture.points_in_map[0], ArmPath.of(posture).point(lift.grip_coordinate)
         up = lifted(posture, self.side, lift)
         end = over_arm(posture, lift.grip_coordinate, lift=0.0)

@@ -13,6 +13,7 @@ from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
+from .belief.short_gown import short_gown
 from .belief.strap_grasp import STRAP_GRASP, presenting_position
 from .belief.strap_turn import strap_turns, turned_strap
 from .control.compliant_hold import while_holding
@@ -208,6 +209,7 @@ class PresentSleeve(Skill):
             yield from while_holding(self, self.hold, until_load(self, hand, tuning.caught_load, motion))
             if (load := float(np.linalg.norm(cloth_load(self, hand)))) <= tuning.caught_load:
                 return
+        short_gown(self).add(self.grip.arm)
         raise SkillFailure(Reason.SLEEVE_CAUGHT, f"the gown pulls with {load:.1f} N")
 
     def _folded(self, path: ArmPath) -> Generator[None, None, _Folded | None]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from caretree.perception.estimates import SleeveHeading
+from caretree.skills.belief.short_gown import short_gown
 from caretree.skills.core.reasons import Reason
 from caretree.skills.present_sleeve import PresentSleeve
 from caretree.skills.scripted.scripted_person import lying_arm, lying_posture
@@ -97,5 +98,6 @@ def test_one_that_keeps_pointing_elsewhere_is_given_up():
 
 @pytest.mark.parametrize("load", [5.0, 7.0])
 def test_a_gown_that_is_caught_is_not_torn_off(load):
-    _, reason, _ = ran([heading(0.09)], load=load)  # [N]
+    run, reason, _ = ran([heading(0.09)], load=load)  # [N]
     assert reason == Reason.SLEEVE_CAUGHT
+    assert short_gown(run.skill) == {"right"}, "whose arm is spread less next time"
