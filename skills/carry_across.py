@@ -46,7 +46,7 @@ class CarryAcrossTuning(Quantities):
         "choice: more than noise",
     )
     trunk_place: tuple[float, float] = quantity(
-        (0.12, 0.2), "m", "about where one on the trunk lies: outwards, feetward", "measured: seen at 0.13 and 0.13 (166)"
+        (0.12, 0.2), "m", "about where one on the trunk lies: outwards, feetward", "measured: at 0.13, 0.13 (166)"
     )
     trunk_distance: float = quantity(
         0.2, "m", "from the middle of the bed, up to which a sleeve lies on the trunk", "choice: `LaySleeve` has 0.26"
@@ -98,8 +98,8 @@ class CarryAcrossTuning(Quantities):
         (0.16, 0.12),
         "m",
         "outwards and feetward of there, from where it is laid down",
-        "choice: as `LaySleeve`; what hangs below the strap touches the bed first, so that the cuff comes to lie outwards; let "
-        "down straight, it came to lie inwards (179, 183)",
+        "choice: as `LaySleeve`; what hangs below the strap touches the bed first, so that the cuff comes to lie "
+        "outwards; let down straight, it came to lie inwards (179, 183)",
     )
     back_off_distance: float = quantity(
         0.3, "m", "of the base from the sleeve it has laid down", "choice: the arms then turn freely"
