@@ -13,6 +13,7 @@ import sys
 import threading
 import warnings
 import xmlrpc.client
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -127,6 +128,18 @@ def node(name: str, master: str = "") -> Any:
             rospy.init_node(name, anonymous=True, disable_signals=True, disable_rosout=True, disable_rostime=True)
             _node = uri
     return rospy
+
+
+def others_have(names: Iterable[str]) -> set[str]:
+    """Which of these topics and actions another node gives or takes, as the master knows it.
+
+    Raises:
+        WorldError: it does not answer.
+    """
+    here = ros().rospy.get_name()
+    given, taken, _ = ask_master("getSystemState")
+    known = {topic for topic, nodes in (*given, *taken) if set(nodes) - {here}}
+    return {name for name in names if name in known or f"{name}/goal" in known}
 
 
 def publisher(rospy: Any, topic: str, kind: Any, *, at_once: bool = False) -> Any:

@@ -31,7 +31,7 @@ from .clock import PACE, SIMULATED, Ros1Clock, RosTime, SteppedRos1Clock, parame
 from .motions import Motions
 from .rehearsal import BEGINS_WITH, Rehearsal
 from .room import read_room
-from .ros import ask_master, node, publisher, ros
+from .ros import ask_master, node, others_have, publisher, ros
 from .senses import Senses
 from .site import DEFAULT, read_site
 
@@ -202,7 +202,9 @@ class Ros1World(World):
             if not missing:
                 return
             if wall.monotonic() > ends:
-                raise WorldError(f"the robot is not whole: nothing on {', '.join(missing)}; `caretree robot doctor`")
+                # on a busy computer some of it may only be late; what nobody has is the cause
+                absent = sorted(set(missing) - others_have(missing), key=missing.index) or missing
+                raise WorldError(f"the robot is not whole: nothing on {', '.join(absent)}; `caretree robot doctor`")
             self._alive.publish(ros().genpy.Time(0, int(self._time.now() * 1e9)))
             wall.sleep(0.02)
 

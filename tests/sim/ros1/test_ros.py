@@ -3,10 +3,11 @@
 import importlib
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 from caretree.sim.ros1 import ros as module
-from caretree.sim.ros1.ros import RosMissing, ask_master, ros
+from caretree.sim.ros1.ros import RosMissing, ask_master, others_have, ros
 from caretree.sim.world import WorldError
 
 
@@ -32,3 +33,10 @@ def test_a_master_that_is_not_there_is_told(monkeypatch, uri):
     with pytest.raises(WorldError, match=f"no ROS master answers at {uri}: "):
         ask_master("getPid")
     assert module.master_uri() == uri
+
+
+def test_a_topic_that_only_this_process_asks_for_is_had_by_nobody(monkeypatch):
+    state = ([["/state", ["/robot"]]], [["/alone", ["/me"]], ["/arm/goal", ["/robot"]], ["/state", ["/me"]]], [])
+    monkeypatch.setattr(module, "ros", lambda: SimpleNamespace(rospy=SimpleNamespace(get_name=lambda: "/me")))
+    monkeypatch.setattr(module, "ask_master", lambda what: state)
+    assert others_have(["/state", "/alone", "/arm", "/nowhere"]) == {"/state", "/arm"}
