@@ -10,7 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .carry_across import CarryAcross as CarryAcross
+    from .carry_sleeve import CarrySleeve as CarrySleeve
     from .check_laid_out import CheckLaidOut as CheckLaidOut
     from .check_sleeve import CheckSleeve as CheckSleeve
     from .core.context import Context as Context
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from .view_around import ViewAround as ViewAround
 
 _HOME = {
-    "CarryAcross": ".carry_across",
+    "CarrySleeve": ".carry_sleeve",
     "CheckLaidOut": ".check_laid_out",
     "CheckSleeve": ".check_sleeve",
     "Context": ".core.context",

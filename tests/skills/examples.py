@@ -2,7 +2,7 @@
 
 import numpy as np
 from caretree.sim.robot import model
-from caretree.skills.carry_across import CarryAcross
+from caretree.skills.carry_sleeve import CarrySleeve
 from caretree.skills.check_laid_out import CheckLaidOut
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.find_corner import FindCorner
@@ -59,7 +59,7 @@ def pre_grasp_manipulate(context):
 
 
 EXAMPLES = {
-    CarryAcross: lambda context: CarryAcross("carry across", context, side="left"),
+    CarrySleeve: lambda context: CarrySleeve("carry across", context, side="left"),
     CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import SIDES, Side
-from ....skills.carry_across import CarryAcross
+from ....skills.carry_sleeve import CarrySleeve
 from ....skills.check_laid_out import CheckLaidOut
 from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
 from ....skills.core.context import Context
@@ -319,7 +319,7 @@ def fetch_sleeve(arm: Scope, side: Side) -> Behaviour:
 def carried_across(name: str, scope: Scope, side: Side, *, own_side: bool = False) -> Behaviour:
     """A stray sleeve, from the other side of the bed; arms back, as no base drives on with a hand above the person."""
     how, clear = ("out", "off") if own_side else ("across", "clear of")
-    across = CarryAcross(f"carry {name} {how}", scope, side=side, own_side=own_side)
+    across = CarrySleeve(f"carry {name} {how}", scope, side=side, own_side=own_side)
     return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"{clear} {name}", scope))
 
 

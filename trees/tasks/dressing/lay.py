@@ -21,7 +21,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
 from .patience import patient
-from .take_down import LEVEL, corners_from, holds_gown_with, look_and_take
+from .take_down import LEVEL, corner_by_corner, holds_gown_with, look_and_take
 from .tuning import DRESSING
 
 
@@ -59,7 +59,7 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
         "both hands anew",
         holds("the left hand still holds it"),
         Retreat("let go once more", end, hands="right", ready="never", tuning=LEVEL),
-        corners_from(context, ("first end", "second end"), "left"),
+        corner_by_corner(context, ("an end", "an end again", "an end once more"), "left"),
         stretch("stretch by both new ends"),
     )
     return fallback("by both ends", stretch("stretch the neckline"), right, both)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
+
 import numpy as np
 from py_trees.behaviour import Behaviour
 
@@ -25,9 +28,10 @@ from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
-from .patience import patient
+from .patience import patient, sight_again
 from .tuning import DRESSING
 
+TOUCHED = (Reason.MULTI_LAYER, Reason.GRASP_MISSED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED)
 LEVEL = RetreatTuning(withdraw=WithdrawTuning(min_rise=-1.0))  # back the way the hand points: nobody lies below it
 
 
@@ -103,30 +107,35 @@ def take_ends(rail: Scope) -> Behaviour:
 
 
 def from_one_hand(context: Context) -> Behaviour:
-    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner.
-
-    What was taken for the first corner may have been none; then it is looked for once more, from the hand that holds
-    the gown by now.
-    """
-    first, hold = Scope(context, "one hand"), Condition("the left hand has it", holds_gown_with, hand="left")
+    """Where the ends do not show on the hook: off it with one hand, turned before the camera, corner by corner."""
+    first = Scope(context, "one hand")
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", first),
         patient(first, SegmentAndGrasp("take it near the hook", first, hand="right")),
         Unhook("lift it off", first, hand="right"),
-        fallback(
-            "corner by corner",
-            corners_from(context, ("one hand", "other hand"), "right"),
-            sequence("from where it hangs now", hold, corners_from(context, ("again", "again the other"), "left")),
-        ),
+        corner_by_corner(context, ("one hand", "again", "a third time", "a fourth time"), "right"),
     )
 
 
-def corners_from(context: Context, names: tuple[str, str], hand: Side) -> Behaviour:
+def corner_by_corner(context: Context, names: Sequence[str], hand: Side) -> Behaviour:
+    """Both corners of a gown that hangs from one `hand`, as often as there are names.
+
+    What was taken for the first corner may have been none, or both in one hand: then no other one shows, however often
+    the gown is looked at (175, 190), but from the place that holds it by now it hangs otherwise.
+    """
+    tries = []
+    for name, holder in zip(names, cycle((hand, SIDES[1 - SIDES.index(hand)])), strict=False):
+        has = Condition(f"{name}, the {holder} hand has it", holds_gown_with, Reason.CLOTH_SLIPPED, hand=holder)
+        tries.append(sequence(f"{name}, both corners", has, corners_from(context, name, holder)))
+    return fallback(f"{names[0]}, corner by corner", *tries)
+
+
+def corners_from(context: Context, name: str, hand: Side) -> Behaviour:
     """Both corners of a gown that hangs from one `hand`: the other hand takes one, and then this one the other."""
-    first, second = (Scope(context, name, keys=("views", "holder", "former")) for name in names)
+    first, second = (Scope(context, each, keys=("views", "holder", "former")) for each in (name, f"{name} other"))
     return sequence(
-        f"corners from the {hand} hand",
+        f"{name}, from the {hand} hand",
         look_and_take(first, hand, DRESSING.first_corner),
         Retreat("let the first place go", first, hands=first["former"], ready="never", tuning=LEVEL),
         look_and_take(second, first["holder"], DRESSING.second_corner),
@@ -143,7 +152,7 @@ def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> 
     """A corner `away` [m] from the `hand` that the gown hangs from; after a miss it hangs otherwise, without that one.
 
     Where no corner shows clear of other cloth, looking once more shows the same: then the best one there is is taken,
-    and the tug tells whether it was one.
+    and the tug tells whether it was one.  What was touched hangs otherwise, and is looked at anew.
     """
 
     def once(name: str, take: str, **more: float) -> Behaviour:
@@ -151,8 +160,11 @@ def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> 
         take_it = PreGraspManipulate(take, scope, min_distance=away[0], max_distance=away[1], **more)
         return patient(scope, sequence(f"{scope.prefix}once{name}", look, take_it))
 
-    clear = Retry(
-        f"{scope.prefix}until it holds a corner", once("", "take a corner"), attempts=DRESSING.corner_attempts
+    clear = RecoverBy(
+        f"{scope.prefix}until it holds a corner",
+        once("", "take a corner"),
+        dict.fromkeys(TOUCHED, sight_again(scope, "how it hangs")),
+        attempts=DRESSING.corner_attempts,
     )
     any_corner = once(" more", "take the best there is", min_confidence=0.0)
     return fallback(f"{scope.prefix}a corner", clear, any_corner)

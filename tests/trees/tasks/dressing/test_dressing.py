@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
-from caretree.skills import CarryAcross, LaySleeve, PresentSleeve, PullAlongArm, Retreat
+from caretree.skills import CarrySleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat
 from caretree.skills.core.reasons import Reason
 from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
@@ -54,7 +54,7 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
 
 
 def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_the_bed(nodes):
-    carries = [node for node in nodes if isinstance(node, CarryAcross)]
+    carries = [node for node in nodes if isinstance(node, CarrySleeve)]
     # the left sleeve after the right arm, and where it does not show after the person has moved and after all else;
     # out from its own side before the left arm, and for both arms after the person has moved and after all else
     assert [carry.own_side for carry in carries].count(False) == 3

@@ -9,17 +9,19 @@ from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
 FIRST = ["one hand/take a corner"]
-AGAIN = ["again/take a corner", "again the other/take a corner"]
+AGAIN = ["again/take a corner", "again other/take a corner"]
+THIRD = ["a third time/take a corner", "a third time other/take a corner"]
 
 
 @pytest.mark.parametrize(
     ("hidden", "took", "ends"),
     [
-        ((), [*FIRST, "other hand/take a corner"], "success"),
-        (("other hand/",), [*FIRST, *AGAIN], "success"),
-        (("other hand/take a corner",), [*FIRST, "other hand/take the best there is"], "success"),
-        (("other hand/", "again the other/"), [*FIRST, AGAIN[0]], "safe_stop"),
-        (("one hand/",), [], "safe_stop"),
+        ((), [*FIRST, "one hand other/take a corner"], "success"),
+        (("one hand other/",), [*FIRST, *AGAIN], "success"),
+        (("one hand other/take a corner",), [*FIRST, "one hand other/take the best there is"], "success"),
+        (("one hand other/", "again other/"), [*FIRST, AGAIN[0], *THIRD], "success"),
+        (("one hand/",), THIRD, "success"),
+        (("one hand/", "again/", "a third time/", "a fourth time/"), [], "safe_stop"),
     ],
 )
 def test_a_gown_of_which_the_second_corner_does_not_show_is_begun_anew_from_the_hand_that_has_it(

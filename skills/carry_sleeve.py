@@ -30,7 +30,7 @@ GENTLY = 0.2  # share of the speed on the way in; at half of it the trunk was me
 
 
 @dataclass(frozen=True, kw_only=True)
-class CarryAcrossTuning(Quantities):
+class CarrySleeveTuning(Quantities):
     """Where a stray sleeve lies, and how it is carried back.  Places are given from the middle of the mattress."""
 
     stray_place: tuple[float, float] = quantity(
@@ -106,7 +106,7 @@ class CarryAcrossTuning(Quantities):
     )
 
 
-class CarryAcross(Skill):
+class CarrySleeve(Skill):
     """Looks for the sleeve beyond the middle of the bed; takes it there from above and lays it beyond the arm's hand.
 
     The robot stands on the other side of the bed.  From the sleeve's own side it carries one that lies on the trunk,
@@ -119,7 +119,7 @@ class CarryAcross(Skill):
 
     side = Input(Side, doc="arm of the person that the sleeve belongs to")
     own_side = Input(bool, default=False, doc="whether the robot stands on that side of the bed")
-    tuning = Input(CarryAcrossTuning, default=CarryAcrossTuning(), doc="numbers of this skill")
+    tuning = Input(CarrySleeveTuning, default=CarrySleeveTuning(), doc="numbers of this skill")
     reasons = (
         Reason.PATH_BLOCKED,
         Reason.UNREACHABLE,

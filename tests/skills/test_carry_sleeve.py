@@ -12,7 +12,7 @@ from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.belief.sleeve_search import SleeveMemory
-from caretree.skills.carry_across import CarryAcross
+from caretree.skills.carry_sleeve import CarrySleeve
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.person_zone import WHOLE
 from caretree.skills.geometry.stances import stance
@@ -40,7 +40,7 @@ def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False):
         seed=1,
         senses=fake_senses(sleeve_opening=sleeve, gripped_cloth=Estimate(stamp=0.0, confidence=0.9)),
     )
-    skill = CarryAcross("across", context, side="left", own_side=own_side)
+    skill = CarrySleeve("across", context, side="left", own_side=own_side)
     for _ in range(6000):
         context.lease.advance()
         skill.tick_once()
@@ -84,8 +84,8 @@ def shown(monkeypatch):
     """Tells how much of the arm shows."""
 
     def tell(share):
-        monkeypatch.setattr("caretree.skills.carry_across.watch_arm", lambda skill, side: lying_posture(side))
-        monkeypatch.setattr("caretree.skills.carry_across.bare_share", lambda frame, posture: share)
+        monkeypatch.setattr("caretree.skills.carry_sleeve.watch_arm", lambda skill, side: lying_posture(side))
+        monkeypatch.setattr("caretree.skills.carry_sleeve.bare_share", lambda frame, posture: share)
 
     return tell
 
