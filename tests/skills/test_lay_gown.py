@@ -78,7 +78,7 @@ def test_a_taut_neckline_is_slackened_where_the_gown_was_askew(askew, steps):
     assert near - far == pytest.approx(WIDTH - steps * NARROWING, abs=0.01)
 
 
-@pytest.mark.parametrize(("uneven", "shift"), [(0.2, 0.0), (-0.2, 0.0), (-0.4, 0.08), (-2.0, 0.12)])
+@pytest.mark.parametrize(("uneven", "shift"), [(0.1, 0.0), (-0.1, 0.0), (-0.3, 0.09), (-2.0, 0.12)])
 def test_one_that_hangs_farther_over_one_edge_of_the_bed_is_drawn_to_the_other_side(uneven, shift):
     near, far = let_go_at(armhole(STRAIGHT_AT), uneven=uneven)
     assert (near + far) / 2 == pytest.approx(shift, abs=0.01)

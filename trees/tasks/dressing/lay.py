@@ -59,7 +59,7 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
         "both hands anew",
         holds("the left hand still holds it"),
         Retreat("let go once more", end, hands="right", ready="never", tuning=LEVEL),
-        corner_by_corner(context, ("an end", "an end again", "an end once more"), "left"),
+        corner_by_corner(context, ("end", "end again", "end anew"), "left"),
         stretch("stretch by both new ends"),
     )
     return fallback("by both ends", stretch("stretch the neckline"), right, both)

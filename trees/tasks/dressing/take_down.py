@@ -114,7 +114,7 @@ def from_one_hand(context: Context) -> Behaviour:
         Retreat("let go of the neckline", first),
         patient(first, SegmentAndGrasp("take it near the hook", first, hand="right")),
         Unhook("lift it off", first, hand="right"),
-        corner_by_corner(context, ("one hand", "again", "a third time", "a fourth time"), "right"),
+        corner_by_corner(context, ("one hand", "again", "anew", "once more"), "right"),
     )
 
 

@@ -10,7 +10,7 @@ from caretree.trees.run.task import load_task
 
 FIRST = ["one hand/take a corner"]
 AGAIN = ["again/take a corner", "again other/take a corner"]
-THIRD = ["a third time/take a corner", "a third time other/take a corner"]
+THIRD = ["anew/take a corner", "anew other/take a corner"]
 
 
 @pytest.mark.parametrize(
@@ -21,7 +21,7 @@ THIRD = ["a third time/take a corner", "a third time other/take a corner"]
         (("one hand other/take a corner",), [*FIRST, "one hand other/take the best there is"], "success"),
         (("one hand other/", "again other/"), [*FIRST, AGAIN[0], *THIRD], "success"),
         (("one hand/",), THIRD, "success"),
-        (("one hand/", "again/", "a third time/", "a fourth time/"), [], "safe_stop"),
+        (("one hand/", "again/", "anew/", "once more/"), [], "safe_stop"),
     ],
 )
 def test_a_gown_of_which_the_second_corner_does_not_show_is_begun_anew_from_the_hand_that_has_it(
