@@ -170,13 +170,25 @@ world.close()
 """
 
 
+ASKS_FOR_MAP = """
+import time
+from caretree.sim.ros1.ros import ask_master
+from caretree.sim.ros1.site import DEFAULT, read_site
+
+grid, asking = read_site(DEFAULT).room.grid, []
+while not any(node.startswith("/caretree") for node in asking):
+    time.sleep(0.05)
+    asking = dict(ask_master("getSystemState")[1]).get(grid, [])
+"""
+
+
 def test_a_tree_that_is_there_before_its_simulated_robot_takes_the_time_of_that(robot_of_its_own):
     robot_of_its_own.robot.kill()
     robot_of_its_own.robot.communicate()
     tree = robot_of_its_own._begin(sys.executable, "-c", WAITS)
     assert tree.stdout is not None
     assert tree.stdout.readline() == "waits\n"
-    time.sleep(2.0)
+    assert robot_of_its_own.python(ASKS_FOR_MAP).returncode == 0
     robot_of_its_own.serve("--task", "wave")
     age = tree.communicate(timeout=90.0)[0]
     assert float(age) < 10.0, "not the years between a simulation's clock and the wall's [s]"
