@@ -48,7 +48,7 @@ def spread(context: Context) -> Stage:
     return timed_stage(
         "spread",
         *(patient(bed, arm_lies(context, side)) for side in SIDES),
-        *go_to_head(bed),
+        Navigate("go round to the head", bed, goal="bed_head"),
         patient(bed, Retry("until it is neat", with_arms_in_view(context, bed), attempts=DRESSING.neaten_attempts)),
         patient(bed, surely_middle(context, bed)),
         *(patient(bed, still_inside(context, side)) for side in SIDES),
@@ -107,9 +107,8 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     looks = [shown(context, f"{side} in the end", side, DRESSING.armhole_claimed) for side in SIDES]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
-    there, still_there = (go_up(Scope(bed, name)) for name in ("each round", "then"))
-    done = (unfolded(context), seated(context, bed), still_there, straight(bed))
-    return sequence("neaten", there, *done, *looks, middle, flat_now)
+    done = (go_up(bed), unfolded(context), seated(context, bed), straight(bed))
+    return sequence("neaten", *done, *looks, middle, flat_now)
 
 
 def unfolded(context: Context) -> Behaviour:
@@ -155,7 +154,8 @@ def seated(context: Context, bed: Scope) -> Behaviour:
 
     looks = [shown(context, f"{side} armhole", side, DRESSING.armhole_sits) for side in SIDES]
     up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
-    return fallback("as far as they go", up, back_off("leave them", gown))
+    left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
+    return fallback("as far as they go", up, left)
 
 
 def straight(bed: Scope) -> Behaviour:
