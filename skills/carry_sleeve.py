@@ -22,6 +22,7 @@ from .control.pinch import PinchTuning, back_off, pinch_or_back_off, reach_in
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
+from .core.tries import Tries
 from .geometry.arm_path import UP
 from .geometry.stances import HEADWARD, LIFTING, PULLING, STANCES, outwards
 from .motion.errors import MotionError
@@ -62,6 +63,14 @@ class CarrySleeveTuning(Quantities):
         "1",
         "share of the arm that has to show skin, or its sleeve lies over it",
         "measured: of arms of which 0.22 to 0.75 was bare, 0 of 5 were dressed at once; of bare ones 7 of 9 (165-186)",
+    )
+    depths: tuple[float, ...] = quantity(
+        (0.017, 0.010, 0.004),
+        "m",
+        "of the fingertips beyond the strap, tried in turn",
+        "measured: 0.017 m deep, straight down or leaning, from three places of the base, no posture kept clear of the "
+        "person where the strap lay right on a thigh or over a hand; 0.005 m deep it was taken, at 0 and by 0.005 m "
+        "less the fingers closed on air (135)",
     )
     opening: float = quantity(
         0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
@@ -138,18 +147,38 @@ class CarrySleeve(Skill):
         if seen is None:
             return
         self.note(f"carries the {self.side} sleeve {'out' if self.own_side else 'across'}")
-        hand, place = (PULLING if self.own_side else LIFTING)[self.side], seen.position_in_map
+        hand = (PULLING if self.own_side else LIFTING)[self.side]
         beside = STANCES.lane * outwards(self.side)[0] * (1.0 if self.own_side else -1.0)
-        lane = np.array((beside, place[1] + STANCES.ahead, STANCES.heading))
+        lane = np.array((beside, seen.position_in_map[1] + STANCES.ahead, STANCES.heading))
         yield from drive_to(self, lane)
-        opening, speed = self.tuning.opening, self.tuning.reaching_speed
-        yield from reach_in(
-            self, hand, place, -UP, seen.closing_in_map, opening=opening, speed=speed, tuning=self.tuning.pinch
-        )
+        yield from self._reach(hand, seen)
         yield from pinch_or_back_off(self, hand)
         yield from self._carry(hand)
         back = self.tuning.back_off_distance * np.append(HEADWARD[:2], 0.0)
         yield from drive_to(self, lane - back, straight=True, retreat=True)
+
+    def _reach(self, hand: Side, sleeve: SleeveOpening) -> Iterator[None]:
+        """Bring open fingers around the strap, as deep as they keep clear of the person.
+
+        Raises:
+            MotionError: out of reach, or something is in the way.
+        """
+        tuning, tries = self.tuning, Tries(MotionError)
+        for depth in tuning.depths:
+            with tries:
+                yield from reach_in(
+                    self,
+                    hand,
+                    sleeve.position_in_map,
+                    -UP,
+                    sleeve.closing_in_map,
+                    opening=tuning.opening,
+                    depth=depth,
+                    speed=tuning.reaching_speed,
+                    tuning=tuning.pinch,
+                )
+                return
+        raise tries.last
 
     def _go(self, hand: Side, there: np.ndarray) -> Iterator[None]:
         """Bring what the hand holds to a position (3,), as far as it goes."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
@@ -24,6 +26,13 @@ class CheckSleeveTuning(Quantities):
         "share of the upper arm, from the shoulder, where the cuff shows at least",
         "measured: recorded runs: 0.29 to 0.77, 0.01 and 0.05 where the sleeve lay in a heap at the shoulder",
     )
+    upper_arm: tuple[float, float] = quantity(
+        (0.05, 0.35), "1", "part of the upper arm, from the shoulder, that a sleeve covers", "choice: short ones too"
+    )
+    min_covered: float = quantity(
+        0.25, "1", "share of that which shows something else than skin, or no sleeve is on it", "choice: one of four"
+    )
+    points: int = quantity(9, "1", "along it that are looked at", "choice: one a centimetre")
     min_share_round: float = quantity(
         0.45,
         "1",
@@ -39,8 +48,8 @@ class CheckSleeveTuning(Quantities):
 class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
-    It fails where the cuff is in a heap or beside the arm, and where the armhole is too far down the arm; a sleeve
-    of which too little shows is let pass, unless it `must_show`.
+    It fails where the cuff is in a heap or beside the arm, where the upper arm shows bare, and where the armhole is too
+    far down the arm; a sleeve of which too little shows is let pass, unless it `must_show`.
     """
 
     commands = False
@@ -61,6 +70,7 @@ class CheckSleeve(Skill):
         try:
             seen = self.context.senses.worn_sleeve(self.world.look("head"), side=self.side, arm_in_map=arm)
         except PerceptionFailure as hidden:
+            self._see_covered(arm)
             self.note(f"cannot see the {self.side} sleeve's bindings")
             if self.must_show:
                 raise SkillFailure(Reason.NOTHING_SEEN, f"{hidden}") from None
@@ -81,3 +91,22 @@ class CheckSleeve(Skill):
                 f"the armhole is at {seen.reach:.2f} of the upper arm, at least {self.min_reach:.2f} is asked for",
             )
         yield
+
+    def _see_covered(self, arm: np.ndarray) -> None:
+        """Whatever hides the bindings, a sleeve covers the top of its arm (4, 3).
+
+        A gown that had been drawn up beside the arm lay in a heap behind the shoulder, its tapes inside, and passed.
+
+        Raises:
+            SkillFailure: SLEEVE_MISSED.
+        """
+        tuning = self.tuning
+        along = np.linspace(*tuning.upper_arm, tuning.points)[:, None]
+        try:
+            seen = self.context.senses.hand_cover(
+                self.world.look("head"), points_in_map=arm[0] + along * (arm[1] - arm[0])
+            )
+        except PerceptionFailure:
+            return  # out of the picture
+        if seen.share < tuning.min_covered:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"{1.0 - seen.share:.0%} of the upper arm show skin")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -29,7 +30,12 @@ from ..motion.trajectory import free_postures
 class StrapGraspTuning(Quantities):
     """Numbers of choosing how to take a strap."""
 
-    depth: float = quantity(0.014, "m", "of the fingertips below the cloth", "choice: what lies behind it is not taken")
+    depths: tuple[float, ...] = quantity(
+        (0.014, 0.004),
+        "m",
+        "of the fingertips below the cloth, tried in turn",
+        "choice: what lies behind it is not taken; the less deep where it lies right on the person",
+    )
     standoff: float = quantity(0.10, "m", "length of the straight way in", "choice: the open fingers clear the cloth")
     presenting_distances: tuple[float, float] = quantity(
         (0.36, 0.30),
@@ -137,11 +143,11 @@ def way_in(
     accept = free_postures(collision_checker(skill), hand, base, seen.arm_positions)
     found: list[tuple[float, WayIn, StrapGrip, np.ndarray]] = []
     tries = Tries(Unreachable)
-    for approach in _approaches(strap, arm, tuning):
-        for sign in (1.0, -1.0):
-            inside = hand_pose(strap.position_in_map + tuning.depth * approach, approach, sign * strap.closing_in_map)
+    for depth in tuning.depths:
+        for approach, sign in product(_approaches(strap, arm, tuning), (1.0, -1.0)):
+            inside = hand_pose(strap.position_in_map + depth * approach, approach, sign * strap.closing_in_map)
             before = inside.copy()
-            before[:3, 3] -= (tuning.depth + tuning.standoff) * approach
+            before[:3, 3] -= (depth + tuning.standoff) * approach
             grip = strap_grip(arm, hand, strap, inside)
             with tries:
                 q0 = solve_ik(kinematics, hand, before, base, seen.arm_positions[n], seeds=tuning.seeds, accept=accept)
@@ -150,7 +156,9 @@ def way_in(
                 room = min(limits.margin(q) for q in (q0, q1, q2))
                 score = min(room, tuning.max_room) - tuning.turn_cost * float(np.abs(q2 - q1).max())
                 found.append((score, WayIn(before=before, inside=inside), grip, q2))
-    if not found:
+        if found:
+            break
+    else:
         raise tries.last
     best: tuple[float, WayIn] | None = None
     begin = path.coordinate_of(strap.position_in_map) if worn else np.inf

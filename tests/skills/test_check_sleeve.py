@@ -2,7 +2,7 @@
 
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import WornSleeve
+from caretree.perception.estimates import Cover, WornSleeve
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
@@ -17,11 +17,15 @@ def worn(cuff_at=0.5, round_arm=0.7, reach=0.8):
     )
 
 
-def ran(seen, **options):
-    """The skill after one run."""
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
+
+
+def ran(seen, covered=1.0, **options):
+    """The skill after one run; `covered` is how much of the upper arm shows no skin."""
+    cover = covered if isinstance(covered, Exception) else Cover(stamp=0.0, confidence=1.0, share=covered)
     run = LeafBench(
         lambda context: CheckSleeve("inside", context, side="left", **options),
-        beside_bed(worn_sleeve=seen, arm=lying_posture("left")),
+        beside_bed(worn_sleeve=seen, arm=lying_posture("left"), hand_cover=cover),
     )
     run.ended(seconds=1.0)
     return run.skill
@@ -39,7 +43,7 @@ def ran(seen, **options):
         (worn(cuff_at=0.9), None, Status.SUCCESS, None),
         (worn(reach=0.71), 0.70, Status.SUCCESS, None),
         (worn(reach=0.69), 0.70, Status.FAILURE, Reason.SLEEVE_LOW),
-        (PerceptionFailure(Problem.NOTHING_SEEN, "bindings"), 0.70, Status.SUCCESS, None),
+        (HIDDEN, 0.70, Status.SUCCESS, None),
     ],
 )
 def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_an_armhole_far_down_is_low(
@@ -51,7 +55,13 @@ def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_an_armhole_far_d
 
 
 def test_one_that_must_show_is_not_let_pass_unseen():
-    hidden = PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
-    skill = ran(hidden, min_reach=0.70, must_show=True)
+    skill = ran(HIDDEN, min_reach=0.70, must_show=True)
     assert (skill.status, skill.failure.reason) == (Status.FAILURE, Reason.NOTHING_SEEN)
     assert ran(worn(), min_reach=0.70, must_show=True).status == Status.SUCCESS
+
+
+def test_an_upper_arm_that_shows_bare_is_in_no_sleeve_whatever_hides_its_bindings():
+    skill = ran(HIDDEN, covered=0.1)
+    assert (skill.status, skill.failure.reason) == (Status.FAILURE, Reason.SLEEVE_MISSED)
+    assert ran(HIDDEN, covered=0.5).status == Status.SUCCESS
+    assert ran(HIDDEN, covered=PerceptionFailure(Problem.OUT_OF_REACH, "arm")).status == Status.SUCCESS
