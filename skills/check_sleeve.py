@@ -30,7 +30,10 @@ class CheckSleeveTuning(Quantities):
         (0.05, 0.35), "1", "part of the upper arm, from the shoulder, that a sleeve covers", "choice: short ones too"
     )
     min_covered: float = quantity(
-        0.25, "1", "share of that which shows something else than skin, or no sleeve is on it", "choice: one of four"
+        0.25,
+        "1",
+        "share of that which shows something else than skin, or no sleeve is on it",
+        "measured: from beside 16 arms in their sleeves all of it does, of 18 bare ones none (169 to 192)",
     )
     points: int = quantity(9, "1", "along it that are looked at", "choice: one a centimetre")
     min_share_round: float = quantity(
