@@ -16,9 +16,10 @@ from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.short_gown import short_gown
 from .control.arc import Arc
-from .control.arm_grip import ARM_GRIP, lost_arm, over_arm, top_down_reachable
-from .control.fingers import close_gripper, open_gripper
+from .control.arm_grip import lost_arm, over_arm, top_down_reachable
+from .control.fingers import open_gripper
 from .control.hands import hand_now, move_hands
+from .control.take_arm import TakeArmTuning, close_around
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -64,13 +65,7 @@ class LiftArmTuning(Quantities):
     """How an arm is taken and swung up."""
 
     goal: LiftGoal = field(default_factory=LiftGoal)
-    approach_speed: float = quantity(
-        0.5, "m/s", "of the hand to above the arm, away from the person", "choice: quick in the open"
-    )
-    grip_depth: float = quantity(
-        0.005, "m", "of the fingertips below the arm's axis", "choice: the pads then reach round the arm's widest part"
-    )
-    descent_speed: float = quantity(0.12, "m/s", "of the hand down around the arm", "choice: slow, towards the person")
+    take: TakeArmTuning = field(default_factory=TakeArmTuning)
     duration: float = quantity(5.5, "s", "of the swing of an arm that is not heavy", "choice: gentle on the shoulder")
     timeout_factor: float = quantity(
         4.0, "1", "greatest duration of the swing, in times of `duration`", "choice: room for a heavy arm"
@@ -155,16 +150,10 @@ class LiftArm(Skill):
         place = ArmPath.of(posture).point(tuning.goal.grip_coordinate)
         arc = Arc(posture.points_in_map[0], place, self._goal(posture))
         above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.angle)[0] - place))
-        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.approach_speed))
-        grip = above.copy()
-        grip[:3, 3] = place + tuning.grip_depth * above[:3, 2]
-        yield from move_hands(self, {self.hand: grip}, speed=tuning.descent_speed)
-        gap = yield from close_gripper(self, self.hand, force=ARM_GRIP.force)
-        if gap < ARM_GRIP.min_gap:
-            yield from open_gripper(self, self.hand)
-            yield from move_hands(self, {self.hand: above}, retreat=True)
-            raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
-        self.context.guard.declare_grip(self.hand, "arm")
+        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.take.approach_speed))
+        around = above.copy()
+        around[:3, 3] = place + tuning.take.grip_depth * above[:3, 2]
+        yield from close_around(self, self.hand, above, around, tuning=tuning.take)
         self.hold = Hold(self.hand, tuning.goal.grip_coordinate)
         self.note(f"lifts the {self.side} arm")
         yield from self._swing(posture)

@@ -13,17 +13,20 @@ from ..moving import carry_out, robot
 ON_ARM = over_arm(lying_posture("right"), 1.0, lift=0.0)
 
 
-def takes(between):
-    """World, guard, the skill that took the right elbow with the left hand, and the hand's way (n, 3)."""
+def takes(between, met_at=-np.inf):
+    """World, guard, the skill that took the right elbow with the left hand, and the hand's way (n, 3).
+
+    Something `met_at` [m] above the map's floor pushes the hand up with 20 N.
+    """
     world, context = robot(base=tuple(stance("right", "lift")))
     world.between_fingers["left"] = between
     way = []
-    skill = carry_out(
-        world,
-        context,
-        lambda skill: take_arm(skill, "left", ON_ARM),
-        each_tick=lambda skill: way.append(skill.world.observe().pose_hand_in_map[0, :3, 3]),
-    )
+
+    def felt(skill):
+        way.append(skill.world.observe().pose_hand_in_map[0, :3, 3])
+        world.load["left"] = np.array((0.0, 0.0, 20.0 if way[-1][2] < met_at else 0.0, 0.0, 0.0, 0.0))
+
+    skill = carry_out(world, context, lambda skill: take_arm(skill, "left", ON_ARM), each_tick=felt)
     return world, context.guard, skill, np.array(way)
 
 
@@ -40,6 +43,16 @@ def test_it_goes_over_the_arm_and_straight_down_around_it():
 def test_a_hand_that_closes_on_nothing_opens_above_the_arm():
     world, guard, skill, way = takes(0.0)
     assert skill.failure.reason == Reason.GRASP_MISSED
+    assert way[-1] == pytest.approx(ON_ARM[:3, 3] + (0.0, 0.0, 0.12), abs=0.01)
+    assert world.observe().gripper_opening[0] > 0.08
+    assert guard.grip("left") == "nothing"
+
+
+def test_a_hand_that_comes_down_on_something_else_goes_up_again_before_it_closes():
+    met_at = ON_ARM[2, 3] + 0.05
+    world, guard, skill, way = takes(0.07, met_at)
+    assert skill.failure.reason == Reason.GRASP_MISSED
+    assert way[:, 2].min() > met_at - 0.03
     assert way[-1] == pytest.approx(ON_ARM[:3, 3] + (0.0, 0.0, 0.12), abs=0.01)
     assert world.observe().gripper_opening[0] > 0.08
     assert guard.grip("left") == "nothing"
