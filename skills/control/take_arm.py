@@ -31,7 +31,7 @@ class TakeArmTuning(Quantities):
         0.005, "m", "of the fingertips below the arm's axis", "choice: the pads then reach round the arm's widest part"
     )
     descent_speed: float = quantity(
-        0.04,
+        0.05,
         "m/s",
         "of the hand down around the arm",
         "measured: at 0.12 m/s it came down on an arm that lay elsewhere under the gown with 121 to 123 N before the "
