@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import cycle
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -124,8 +123,10 @@ def corner_by_corner(context: Context, names: Sequence[str], hand: Side) -> Beha
     What was taken for the first corner may have been none, or both in one hand: then no other one shows, however often
     the gown is looked at (175, 190), but from the place that holds it by now it hangs otherwise.
     """
-    tries = []
-    for name, holder in zip(names, cycle((hand, SIDES[1 - SIDES.index(hand)])), strict=False):
+    tries: list[Behaviour] = []
+    other: Side = SIDES[1 - SIDES.index(hand)]
+    for n, name in enumerate(names):
+        holder = other if n % 2 else hand
         has = Condition(f"{name}, the {holder} hand has it", holds_gown_with, Reason.CLOTH_SLIPPED, hand=holder)
         tries.append(sequence(f"{name}, both corners", has, corners_from(context, name, holder)))
     return fallback(f"{names[0]}, corner by corner", *tries)
