@@ -50,7 +50,9 @@ def take_down(context: Context) -> Stage:
         Navigate("go there", rail, goal="rail"),
         fallback("find the outside", outside, Navigate("go behind it", rail, goal="rail_back")),
         fallback(
-            "take it", Retry("the other end first", patient(rail, by_both_ends), attempts=2), from_one_hand(context)
+            "take it",
+            Retry("the other end first", patient(rail, by_both_ends), attempts=DRESSING.rail_attempts),
+            from_one_hand(context),
         ),
         seconds=DRESSING.take_down_timeout,
     )
@@ -71,9 +73,6 @@ def take_ends(rail: Scope) -> Behaviour:
     aside = Scope(rail, keys=("held_length",))
     lengths = rail.key("length"), rail.key("other_length")
 
-    def take(name: str, opening: float, depth: float) -> TakeCorner:
-        return TakeCorner(name, rail, length=lengths[0], opening=opening, depth=depth)
-
     def take_other(name: str, **ports: float) -> TakeCorner:
         other = {"hand": rail["other_hand"], "sleeve": rail["other_sleeve"], "corner": None, "length": lengths[1]}
         return TakeCorner(name, aside, **other, **ports)
@@ -81,10 +80,8 @@ def take_ends(rail: Scope) -> Behaviour:
     return sequence(
         "take both ends",
         FindCorner("look for a corner", rail),
-        fallback(
-            "a corner",
-            take("take a corner", DRESSING.corner_opening, DRESSING.corner_depth),
-            take("take it deeper", DRESSING.deeper_opening, DRESSING.deeper_depth),
+        TakeCorner(
+            "take a corner", rail, length=lengths[0], opening=DRESSING.corner_opening, depth=DRESSING.corner_depth
         ),
         RaiseCorner("draw it aside", aside),
         FlipSideCheck("outside still to the front", rail, min_confidence=DRESSING.inside_confidence),

@@ -59,6 +59,12 @@ class DressingTuning(Quantities):
         "both strips of a hung gown's neckline together, at least and at most",
         "choice: less, and one of them was not held by its end",
     )
+    rail_attempts: int = quantity(
+        4,
+        "1",
+        "at both ends of a hung gown, the first one included, before it is taken off its hook with one hand",
+        "choice: each takes 20 to 60 s, and from one hand both ends were found 2 times of 5 (127, 146, 190 and two more)",
+    )
     farther_round: float = quantity(
         float(np.deg2rad(60.0)),
         "rad",
@@ -75,12 +81,8 @@ class DressingTuning(Quantities):
         "of the fingertips beyond a corner's edge",
         "choice: of 30 gowns one has another sheet a centimetre behind the corner",
     )
-    deeper_opening: float = quantity(0.04, "m", "of the fingers the second time", "choice: wider, for a corner missed")
-    deeper_depth: float = quantity(
-        0.006, "m", "of the fingertips the second time", "choice: deeper, for a corner missed"
-    )
     other_opening: float = quantity(
-        0.035, "m", "of the fingers round the other corner", "choice: between that of the first try and of the second"
+        0.035, "m", "of the fingers round the other corner", "choice: a little wider than round the first one"
     )
     seen_confidence: float = quantity(
         0.45, "1", "of a corner that is seen, not inferred", "choice: above an inferred one's"
