@@ -63,7 +63,7 @@ class DressingTuning(Quantities):
         4,
         "1",
         "at both ends of a hung gown, the first one included, before it is taken off its hook with one hand",
-        "choice: each takes 20 to 60 s, and from one hand both ends were found 2 times of 5 (127, 146, 190 and two more)",
+        "choice: each takes 20 to 60 s; from one hand an end was taken for another 2 times of 3 (127, 146, 190)",
     )
     farther_round: float = quantity(
         float(np.deg2rad(60.0)),
