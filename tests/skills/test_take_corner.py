@@ -62,6 +62,27 @@ def test_fingers_that_close_on_nothing_open_and_draw_back():
     assert np.linalg.norm(seen.pose_hand_in_map[RIGHT, :3, 3] - CORNER) > 0.10  # [m]
 
 
+def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to():
+    drift = 0.008 * np.array((0.0, 1.0, 0.0))  # [m/s]
+    run = None
+
+    def hidden_by_the_hand(frame, **details):
+        now = CORNER + frame.stamp * drift
+        if run is not None and np.linalg.norm(run.world.observe().pose_hand_in_map[RIGHT, :3, 3] - now) < 0.3:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
+        return seen_at(now, "collar_corner_left", confidence=0.9)
+
+    def pull(side, hand):
+        place, time = run.world.closed.get(side, (np.full(3, np.inf), 0.0))
+        return (0.5 if np.linalg.norm(place - CORNER - time * drift) < 0.012 else 0.0) * DOWN
+
+    run = bench(hidden_by_the_hand, opening=0.03)
+    run.world.pull = pull
+    assert ended(run) is None
+    _, time = run.world.closed["right"]
+    assert time > 5.0  # [s]: not at the first try
+
+
 def test_a_corner_that_is_hardly_seen_is_not_gone_for():
     run = bench(shown(confidence=0.3), min_confidence=0.45)
     assert ended(run) == Reason.NOTHING_SEEN
