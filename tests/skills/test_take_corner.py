@@ -70,7 +70,7 @@ def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to(
         now = CORNER + frame.stamp * drift
         if run is not None and np.linalg.norm(run.world.observe().pose_hand_in_map[RIGHT, :3, 3] - now) < 0.3:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
-        return seen_at(now, "collar_corner_left", confidence=0.9)
+        return seen_at(now, "collar_corner_left", stamp=frame.stamp, confidence=0.9)
 
     def pull(side, hand):
         place, time = run.world.closed.get(side, (np.full(3, np.inf), 0.0))

@@ -150,21 +150,22 @@ def look_and_take(scope: Scope, hand: Side | Key, away: tuple[float, float]) -> 
     """A corner `away` [m] from the `hand` that the gown hangs from; after a miss it hangs otherwise, without that one.
 
     Where no corner shows clear of other cloth, looking once more shows the same: then the best one there is is taken,
-    and the tug tells whether it was one.  What was touched hangs otherwise, and is looked at anew.
+    nearer or farther off, as a gown may hang bunched up (121); the tug tells whether it was cloth, and the neckline's
+    width, once it is stretched, whether it was a corner.  What was touched hangs otherwise, and is looked at anew.
     """
 
-    def once(name: str, take: str, **more: float) -> Behaviour:
+    def once(name: str, take: str, away: tuple[float, float], **more: float) -> Behaviour:
         look = ViewAround(f"look all round{name}", scope, hand=hand)
         take_it = PreGraspManipulate(take, scope, min_distance=away[0], max_distance=away[1], **more)
         return patient(scope, sequence(f"{scope.prefix}once{name}", look, take_it))
 
     clear = RecoverBy(
         f"{scope.prefix}until it holds a corner",
-        once("", "take a corner"),
+        once("", "take a corner", away),
         dict.fromkeys(TOUCHED, sight_again(scope, "how it hangs")),
         attempts=DRESSING.corner_attempts,
     )
-    any_corner = once(" more", "take the best there is", min_confidence=0.0)
+    any_corner = once(" more", "take the best there is", DRESSING.any_corner, min_confidence=0.0)
     return fallback(f"{scope.prefix}a corner", clear, any_corner)
 
 

@@ -110,6 +110,12 @@ class DressingTuning(Quantities):
         "0.38 m hangs the neckline's middle, taken for an end in three of three tries that reached cloth (116, 121, "
         "123)",
     )
+    any_corner: tuple[float, float] = quantity(
+        (0.15, 1.00),
+        "m",
+        "from the hand to a corner, at least and at most, where none shows as far off as it should be",
+        "measured: 0.23 to 0.30 m from one corner to the other, four times in a gown that hung bunched up (121)",
+    )
     # laying it on the person
     gown_weight: float = quantity(
         2.5, "N", "carried by both hands together with a gown in them", "choice: less is no gown"
