@@ -6,7 +6,7 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.skills.core.reasons import Reason
 from caretree.skills.take_corner import TakeCorner
 
-from .hung_gown import DOWN, at, bench_with, ended, seen_at
+from .hung_gown import DOWN, LEFT, at, bench_with, ended, seen_at
 
 HOOK = seen_at(at(0.75, 0.0, 1.50))
 CORNER = at(0.75, -0.16, 1.20)  # of the wearer's left, in front of the robot's right hand
@@ -63,7 +63,7 @@ def test_fingers_that_close_on_nothing_open_and_draw_back():
 
 
 def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to():
-    drift = 0.008 * np.array((0.0, 1.0, 0.0))  # [m/s]
+    drift = 0.008 * LEFT  # [m/s]
     run = None
 
     def hidden_by_the_hand(frame, **details):
@@ -74,7 +74,7 @@ def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to(
 
     def pull(side, hand):
         place, time = run.world.closed.get(side, (np.full(3, np.inf), 0.0))
-        return (0.5 if np.linalg.norm(place - CORNER - time * drift) < 0.012 else 0.0) * DOWN
+        return (0.5 if abs((place - CORNER - time * drift) @ LEFT) < 0.012 else 0.0) * DOWN
 
     run = bench(hidden_by_the_hand, opening=0.03)
     run.world.pull = pull
