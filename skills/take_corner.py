@@ -161,15 +161,12 @@ class TakeCorner(Skill):
                 if miss.reason != Reason.GRASP_MISSED or again == tuning.attempts:
                     raise
                 yield from self._give_up()  # before the corner, the hand hides it
-                tries = Tries(PerceptionFailure)
-                for near, drifts in ((seen, True), (self.corner, False)):
-                    with tries:
-                        before, seen = seen, self._look(hook, near)
-                        break
-                else:
+                try:
+                    before, seen = seen, self._look(hook, seen)
+                except PerceptionFailure:  # it has gone farther: another one may show better by now
                     raise miss from None
             passed = max(seen.stamp - before.stamp, tuning.min_interval)
-            drift = drifts * (seen.position_in_map - before.position_in_map) / passed
+            drift = (seen.position_in_map - before.position_in_map) / passed
 
     def _look(self, hook: GraspPoint, found: GraspPoint | None) -> GraspPoint:
         """The corner that was found, wherever it has got to, or the other one."""

@@ -73,7 +73,7 @@ def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to(
         return seen_at(now, "collar_corner_left", stamp=frame.stamp, confidence=0.9)
 
     def pull(side, hand):
-        place, time = run.world.closed.get(side, (np.full(3, np.inf), 0.0))
+        place, time = run.world.closed.get(side, (np.full(3, 9.0), 0.0))
         return (0.5 if abs((place - CORNER - time * drift) @ LEFT) < 0.012 else 0.0) * DOWN
 
     run = bench(hidden_by_the_hand, opening=0.03)
