@@ -249,7 +249,7 @@ class DressingTuning(Quantities):
     )
     # time of each stage
     take_down_timeout: float = quantity(
-        400.0, "s", "for taking the gown down", "choice: two tries and one from one hand, three at each corner"
+        600.0, "s", "for taking the gown down", "choice: four tries and one from one hand, three at each corner"
     )
     lay_timeout: float = quantity(
         400.0, "s", "for unfolding and laying the gown", "choice: an end is taken anew by each hand, as in `take_down`"
