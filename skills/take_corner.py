@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure
+from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import GraspPoint
 from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import GripperOpening, Side
 from .control.fingers import close_gripper, open_gripper
+from .control.hand_view import level_view
 from .control.hands import cloth_load, hand_now, move_arms, move_hands
 from .control.pinch import back_off, grasp_poses, reach_in
 from .core.ports import Input, Output
@@ -32,6 +33,22 @@ class TakeCornerTuning(Quantities):
         "rad",
         "of the approach, from the camera's direction towards the hand's own side, in the order of trying",
         "choice: a hand reaches in from its own side with most ease",
+    )
+    beside_angles: tuple[float, ...] = quantity(
+        tuple(float(np.deg2rad(angle)) for angle in (50.0, 30.0, 70.0)),
+        "rad",
+        "of the hand's view from beside, from straight ahead towards the hand's own side, in the order of trying",
+        "choice: drawn with 0.9 rad, the free corner showed whole on 196, edge-on from straight ahead, four times",
+    )
+    beside_distance: float = quantity(
+        0.50, "m", "from the hand's camera to the strip", "choice: all of a strip is in the picture"
+    )
+    beside_below: float = quantity(0.22, "m", "below the hook, where it looks", "choice: half of a strip's length")
+    beside_approaches: tuple[float, ...] = quantity(
+        tuple(float(np.deg2rad(angle)) for angle in (0.0, 15.0, -15.0, -30.0, 30.0)),
+        "rad",
+        "of the approach to a corner seen from beside, from the view's direction likewise",
+        "choice: the way it was looked at, or nearly",
     )
     speed: float = quantity(0.5, "m/s", "of the hand on its way to the corner", "choice: nothing is touched yet")
     settle_time: float = quantity(
@@ -90,7 +107,8 @@ class TakeCorner(Skill):
     """Pinches a corner of the neckline while the gown hangs on its hook with its outside towards the robot.
 
     The first corner is taken where it was found (`corner`).  The second one is looked for, which is easier when the
-    distance at which the other hand holds the first is known (`held_length`).  A short tug tells whether cloth is held.
+    distance at which the other hand holds the first is known (`held_length`); a strip that is edge-on to the head's
+    camera shows whole to that of the free hand, from `beside` it.  A short tug tells whether cloth is held.
 
     It fails where the corner does not show, is out of reach or is not held in the end, and where other cloth has come
     beside a first corner that hung clear of it.  After a failed grasp the hand is open and has drawn back.
@@ -103,6 +121,7 @@ class TakeCorner(Skill):
     held_length = Input(
         float, unit="m", doc="of the neckline from the hook to the corner that the other hand holds", default=None
     )
+    beside = Input(bool, default=False, doc="whether the hand's own camera looks for it, from beside")
     min_confidence = Input(float, unit="1", doc="least confidence of a corner to go for", default=0.0)
     opening = Input(float, unit="m", doc="between the fingertips on the way in", default=0.05)
     depth = Input(
@@ -125,7 +144,7 @@ class TakeCorner(Skill):
         """Look, go in, pinch, tug."""
         hook, seen = self.hook, self.corner
         if seen is None or self.now() - seen.stamp > self.tuning.max_age:
-            seen = self._look(hook, seen)
+            seen = yield from self._find(hook, seen)
         self.note(f"the {self.hand} hand takes the {self.sleeve} corner, confidence {seen.confidence:.2f}")
         if seen.confidence < self.min_confidence:
             raise SkillFailure(Reason.NOTHING_SEEN, f"the {self.sleeve} corner is not seen")
@@ -162,21 +181,55 @@ class TakeCorner(Skill):
                     raise
                 yield from self._give_up()  # before the corner, the hand hides it
                 try:
-                    before, seen = seen, self._look(hook, seen)
+                    before, seen = seen, (yield from self._find(hook, seen))
                 except PerceptionFailure:  # it has gone farther: another one may show better by now
                     raise miss from None
             passed = max(seen.stamp - before.stamp, tuning.min_interval)
             drift = (seen.position_in_map - before.position_in_map) / passed
 
-    def _look(self, hook: GraspPoint, found: GraspPoint | None) -> GraspPoint:
-        """The corner that was found, wherever it has got to, or the other one."""
+    def _find(self, hook: GraspPoint, found: GraspPoint | None) -> Generator[None, None, GraspPoint]:
+        """The corner that was found, wherever it has got to, or the other one.
+
+        Raises:
+            PerceptionFailure: it does not show.
+            MotionError: no view from beside is in reach.
+        """
+        if self.beside:
+            return (yield from self._find_from_beside(hook))
+        return self._look(hook, found)
+
+    def _look(self, hook: GraspPoint, found: GraspPoint | None, camera: str = "head") -> GraspPoint:
+        """It as a camera sees it now, from where that is."""
         return self.context.senses.hung_corner(
-            self.world.look("head"),
+            self.world.look(camera),
             side=self.sleeve,
             hook_in_map=hook.position_in_map,
             other_length=self.held_length,
             near_in_map=None if found is None else found.position_in_map,
         )
+
+    def _find_from_beside(self, hook: GraspPoint) -> Generator[None, None, GraspPoint]:
+        """From the first place beside the strip from which the hand's camera shows it well, or as well as it does."""
+        tuning, tries = self.tuning, Tries(PerceptionFailure, MotionError)
+        ahead = planar_pose(self.world.observe().pose_base_in_map)[:3, 0]
+        target, best = hook.position_in_map - tuning.beside_below * UP, None
+        for angle in tuning.beside_angles:
+            heading = self._turned(angle) @ ahead
+            view = level_view(self.world.robot, self.hand, target, heading, tuning.beside_distance)
+            with tries:
+                yield from move_hands(self, {self.hand: view}, speed=tuning.speed, way="any")
+                yield from self.wait(tuning.settle_time)
+                seen = self._look(hook, None, f"{self.hand}_hand")
+                if seen.confidence >= tuning.clear_confidence:
+                    return seen
+                best = seen if best is None or seen.confidence > best.confidence else best
+        if best is None:
+            raise tries.last
+        return best
+
+    def _turned(self, angle: float) -> np.ndarray:
+        """(3, 3) rotation about the vertical by an angle [rad], positive towards where the hand's own side looks."""
+        return planar_pose(np.array((0.0, 0.0, angle if self.hand == "right" else -angle)))[:3, :3]
 
     def _look_again(self, hook: GraspPoint, seen: GraspPoint, drift: np.ndarray) -> GraspPoint:
         """The same corner where it will be when the fingers close, as the gown turns and sways slowly.
@@ -185,6 +238,8 @@ class TakeCorner(Skill):
         """
         tuning = self.tuning
         try:
+            if self.beside:  # edge-on, the head's camera shows it elsewhere
+                raise PerceptionFailure(Problem.HIDDEN, "a strip seen from beside")
             now = self._look(hook, seen)
         except PerceptionFailure:
             hidden_for = self.now() - seen.stamp + tuning.closing_time
@@ -214,9 +269,8 @@ class TakeCorner(Skill):
         """
         tries = Tries(MotionError)
         opening, depth = self.opening + again * self.tuning.wider, self.depth + again * self.tuning.deeper
-        for angle in self.tuning.approach_angles:
-            turn = planar_pose(np.array((0.0, 0.0, angle if self.hand == "right" else -angle)))[:3, :3]
-            approach = turn @ seen.approach_in_map
+        for angle in self.tuning.beside_approaches if self.beside else self.tuning.approach_angles:
+            approach = self._turned(angle) @ seen.approach_in_map
             closing = np.cross(approach, UP)
             with tries:
                 before, _ = grasp_poses(self, self.hand, seen.position_in_map, approach, closing, depth=depth)

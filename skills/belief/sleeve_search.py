@@ -14,10 +14,10 @@ import numpy as np
 
 from ...perception.errors import PerceptionFailure
 from ...perception.estimates import SleeveOpening
-from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.mechanics.robot_model import RobotModel
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import SIDES, Side
+from ...sim.world import Side
+from ..control.hand_view import camera_in_hand
 from ..control.hands import move_hands
 from ..control.head import look_towards
 from ..core.skill import Skill
@@ -220,7 +220,7 @@ def strap_views(
     """
     hangs = far.position_in_map[2] < bed[1, 2] - tuning.hang_depth
     to_strap = tuning.armhole_to_strap * HEADWARD
-    camera, side_on = _camera_in_hand(robot, hand), np.cross(UP, outwards(side))
+    camera, side_on = camera_in_hand(robot, hand), np.cross(UP, outwards(side))
     for turn, tilt in product(tuning.turns, tuning.hanging_tilts if hangs else tuning.lying_tilts):
         towards_robot = np.cos(turn) * outwards(side) + np.sin(turn) * side_on
         pose = hand_pose(np.zeros(3), -np.cos(tilt) * towards_robot - np.sin(tilt) * UP, to_strap)
@@ -228,10 +228,3 @@ def strap_views(
             pose = half_turned(pose)  # the camera's side of the hand towards the robot
         pose[:3, 3] = far.position_in_map + to_strap - pose[:3, :3] @ (camera[:3, 3] + distance * camera[:3, 2])
         yield pose
-
-
-def _camera_in_hand(robot: RobotModel, hand: Side) -> np.ndarray:
-    """Pose (4, 4) of a hand's camera in the hand's frame."""
-    kinematics, n, base = kinematics_of(robot), SIDES.index(hand), np.zeros(3)
-    camera = kinematics.pose_camera_in_map(f"{hand}_hand", base, robot.ready, 0.0)
-    return np.linalg.inv(kinematics.pose_hand_in_map(hand, robot.ready[n], base)) @ camera

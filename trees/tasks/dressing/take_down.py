@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -73,7 +74,7 @@ def take_ends(rail: Scope) -> Behaviour:
     aside = Scope(rail, keys=("held_length",))
     lengths = rail.key("length"), rail.key("other_length")
 
-    def take_other(name: str, **ports: float) -> TakeCorner:
+    def take_other(name: str, **ports: Any) -> TakeCorner:
         other = {"hand": rail["other_hand"], "sleeve": rail["other_sleeve"], "corner": None, "length": lengths[1]}
         return TakeCorner(name, aside, **other, **ports)
 
@@ -89,6 +90,12 @@ def take_ends(rail: Scope) -> Behaviour:
             "the other corner",
             take_other(
                 "take the other corner", min_confidence=DRESSING.seen_confidence, opening=DRESSING.other_opening
+            ),
+            take_other(
+                "take it from beside",
+                beside=True,
+                min_confidence=DRESSING.seen_confidence,
+                opening=DRESSING.other_opening,
             ),
             sequence(
                 "from farther round",
