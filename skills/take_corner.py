@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..perception.errors import PerceptionFailure, Problem
+from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
@@ -41,9 +42,9 @@ class TakeCornerTuning(Quantities):
         "choice: drawn with 0.9 rad, the free corner showed whole on 196, edge-on from straight ahead, four times",
     )
     beside_distance: float = quantity(
-        0.50, "m", "from the hand's camera to the strip", "choice: all of a strip is in the picture"
+        0.60, "m", "from the hand's camera to the strip", "choice: all of a strip is in the picture"
     )
-    beside_below: float = quantity(0.22, "m", "below the hook, where it looks", "choice: half of a strip's length")
+    beside_below: float = quantity(0.30, "m", "below the hook, where it looks", "choice: half of the longest strip")
     beside_approaches: tuple[float, ...] = quantity(
         tuple(float(np.deg2rad(angle)) for angle in (0.0, 15.0, -15.0, -30.0, 30.0)),
         "rad",
@@ -237,11 +238,11 @@ class TakeCorner(Skill):
         A corner that no longer shows is taken to have gone on as it did, with `drift` (3,) [m/s].
         """
         tuning = self.tuning
-        try:
-            if self.beside:  # edge-on, the head's camera shows it elsewhere
-                raise PerceptionFailure(Problem.HIDDEN, "a strip seen from beside")
-            now = self._look(hook, seen)
-        except PerceptionFailure:
+        now = None
+        with suppress(PerceptionFailure):
+            if not self.beside:  # edge-on, it would be seen elsewhere from the head
+                now = self._look(hook, seen)
+        if now is None:
             hidden_for = self.now() - seen.stamp + tuning.closing_time
             return _drifted(seen, drift * hidden_for, tuning.max_hidden_drift)
         passed = now.stamp - seen.stamp

@@ -167,7 +167,8 @@ def _partly_shown(frame: Frame, hung: list[Strip], tuning: HungCornerTuning) -> 
     ends = [
         strip
         for strip in hung
-        if strip.width > tuning.part_width
+        if strip.whole
+        and strip.width > tuning.part_width
         and strip.blunt > tuning.part_bluntness
         and strip.cut < tuning.strip.max_cut
         and abs(strip.tells) > tuning.part_side_share
@@ -253,7 +254,7 @@ def hung_corner(
 
 def _ends_at_corner(strip: Strip, length: float, tuning: HungCornerTuning) -> bool:
     """Whether a strip that does not show well still ends at its corner: by its armhole, or by its `length` [m]."""
-    if strip.length >= length + tuning.length_tolerance:
+    if not strip.whole or strip.length >= length + tuning.length_tolerance:
         return False
     if strip.armhole > tuning.min_armhole_share:
         return True

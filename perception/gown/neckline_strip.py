@@ -53,6 +53,9 @@ class StripTuning(Quantities):
         (0.005, 0.015, 0.025), "m", "beyond a strip's end, where something before it is looked for", "choice: evenly"
     )
     beyond_width: float = quantity(0.4, "1", "of the strip's width, to either side, the same", "choice: inside of it")
+    image_border: int = quantity(
+        3, "px", "of the picture, within which an end is cut off", "choice: what lies there may go on outside"
+    )
     # what makes a corner certain
     min_width: float = quantity(0.043, "m", "of a strip flat to the camera", "choice: of a tape of 0.055 m")
     min_bluntness: float = quantity(0.85, "1", "of a strip that is seen to its end", "choice: by trial, not recorded")
@@ -77,6 +80,7 @@ class Strip:
         tells: from -1, the wearer's left strip, to 1, the right one.
         blunt: width of the last of it, as a share of `width`: a fold that closes cuts a strip to a point.
         cut: share of what is seen just beyond its end that lies nearer to the camera: the strip goes on behind that.
+        whole: whether it ends inside of the picture; else it may go on outside.
         shows: whether it is seen down to its end, flat to the camera.
     """
 
@@ -90,6 +94,7 @@ class Strip:
     tells: float
     blunt: float
     cut: float
+    whole: bool
     shows: bool
 
 
@@ -170,6 +175,7 @@ def _strip(
     width = float(high - low)
     blunt = float(np.ptp(last @ outward)) / max(width, 1e-3)
     cut = _cut(collar.frame, middle, along, outward, tuning.beyond_width * width, tuning)
+    whole = _inside(collar.only(run > run.max() - tuning.last_length), tuning)
     return Strip(
         corner_in_map=corner,
         tip_in_map=np.median(last, axis=0),
@@ -181,7 +187,20 @@ def _strip(
         tells=_side(collar, fabric, outside, far, tuning),
         blunt=blunt,
         cut=cut,
-        shows=width > tuning.min_width and blunt > tuning.min_bluntness and cut < tuning.max_cut,
+        whole=whole,
+        shows=whole and width > tuning.min_width and blunt > tuning.min_bluntness and cut < tuning.max_cut,
+    )
+
+
+def _inside(end: _Pixels, tuning: StripTuning) -> bool:
+    """Whether the end of a strip lies inside of the picture: at its border, it may go on outside."""
+    height, width = end.frame.depth.shape
+    border = tuning.image_border
+    return bool(
+        end.rows.min() >= border
+        and end.rows.max() < height - border
+        and end.columns.min() >= border
+        and end.columns.max() < width - border
     )
 
 
