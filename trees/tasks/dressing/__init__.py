@@ -33,7 +33,7 @@ from .dress import dress
 from .lay import holds_gown, lay
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
-from .take_down import before_rail, both_ends, hands_open, holds_gown_with, take_down
+from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
 
 STAGES = {
     "take_down": TaskStage(take_down, begins="gown_on_hook"),
@@ -42,7 +42,16 @@ STAGES = {
     "spread": TaskStage(spread, begins="gown_worn"),
 }
 
-CONDITIONS = (before_rail, both_ends, chest_covered, hands_open, holds_gown, holds_gown_with, outside_out)
+CONDITIONS = (
+    before_rail,
+    both_ends,
+    chest_covered,
+    fingers_closed,
+    hands_open,
+    holds_gown,
+    holds_gown_with,
+    outside_out,
+)
 
 
 def senses(context: Context) -> Senses:

@@ -94,7 +94,7 @@ def take_ends(rail: Scope) -> Behaviour:
             take_other(
                 "take it from beside",
                 beside=True,
-                min_confidence=DRESSING.seen_confidence,
+                min_confidence=DRESSING.beside_confidence,
                 opening=DRESSING.other_opening,
             ),
             sequence(
@@ -183,11 +183,15 @@ def before_rail(context: Context) -> bool:
     return min(places, key=lambda name: float(np.linalg.norm(here - places[name])), default="rail") == "rail"
 
 
+def fingers_closed(context: Context, hand: Side) -> bool:
+    """The fingers of that hand are closed [m]."""
+    return bool(context.world.observe().gripper_opening[SIDES.index(hand)] < DRESSING.empty_opening)
+
+
 def holds_gown_with(context: Context, hand: Side) -> bool:
     """The fingers of that hand are closed, and it carries some of the gown [N]."""
-    n, seen = SIDES.index(hand), context.world.observe()
-    closed = seen.gripper_opening[n] < DRESSING.empty_opening
-    return bool(closed and -seen.wrench_hand_in_map[n, 2] > DRESSING.end_weight)
+    carried = -context.world.observe().wrench_hand_in_map[SIDES.index(hand), 2]
+    return fingers_closed(context, hand) and bool(carried > DRESSING.end_weight)
 
 
 def hands_open(context: Context) -> bool:

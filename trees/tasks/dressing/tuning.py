@@ -87,6 +87,12 @@ class DressingTuning(Quantities):
     seen_confidence: float = quantity(
         0.45, "1", "of a corner that is seen, not inferred", "choice: above an inferred one's"
     )
+    beside_confidence: float = quantity(
+        0.8,
+        "1",
+        "of a corner that is seen from beside",
+        "choice: down to its end; of 0.69, the strip that the other hand held was taken for it (190)",
+    )
     inside_confidence: float = quantity(
         0.3,
         "1",
