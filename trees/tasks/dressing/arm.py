@@ -117,18 +117,17 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
     def grasp(name: str) -> Behaviour:
         return GraspSleeve(name, held, hand=arm["pulling"])
 
-    def lay() -> Behaviour:
-        return sequence(
-            "the sleeve is folded", LaySleeve("lay the sleeve down", held, hand=arm["pulling"]), grasp("grasp it again")
-        )
+    def lay(why: str) -> Behaviour:
+        down = LaySleeve(f"{why}, lay it down", held, hand=arm["pulling"])
+        return sequence(f"{why}, laid down", down, grasp(f"{why}, take it again"))
 
-    def opened(name: str, **ports: float) -> Behaviour:
+    def opened(name: str, why: str, **ports: float) -> Behaviour:
         present = PresentSleeve(name, held, max_load=sleeve.carry_load, **ports)
-        return RecoverBy(f"{name}, opened", present, {Reason.SLEEVE_FOLDED: lay}, attempts=3)
+        return RecoverBy(f"{name}, opened", present, {Reason.SLEEVE_FOLDED: lambda: lay(why)}, attempts=3)
 
-    def present_again() -> Behaviour:
+    def missed() -> Behaviour:
         # held out once more as it hung, it went past the hand again, 4 times of 5, each time farther off the bed (193)
-        return sequence("laid down, and held out again", lay(), opened("present it again"))
+        return sequence("laid down, and held out again", lay("missed"), opened("present it again", "still folded"))
 
     pull = PullAlongArm("pull over the hand", held, grip_goal=DRESSING.past_wrist)
     return sequence(
@@ -140,8 +139,8 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         Navigate("stand there", arm, goal=stand),
         LiftArm("lift", held, hand=arm["lifting"]),
         grasp("grasp the sleeve"),
-        opened("present the sleeve", min_cuff_distance=sleeve.min_cuff_distance),
-        RecoverBy("until the hand is inside", pull, {Reason.SLEEVE_MISSED: present_again}, attempts=3),
+        opened("present the sleeve", "folded", min_cuff_distance=sleeve.min_cuff_distance),
+        RecoverBy("until the hand is inside", pull, {Reason.SLEEVE_MISSED: missed}, attempts=3),
         RecoverBy(
             f"{arm.prefix}until it lies",
             ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
