@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.sim.robot.baxter import BAXTER
+from caretree.skills.control.hand_view import camera_in_hand
 from caretree.skills.core.reasons import Reason
 from caretree.skills.take_corner import TakeCorner
 
@@ -19,11 +21,11 @@ def shown(place=CORNER, confidence=0.9):
     )
 
 
-def bench(shows, *, tug=0.5, **ports):
+def bench(shows, *, tug=0.5, hook=HOOK, **ports):
     """The right hand takes the corner; what it has closed on pulls with `tug` [N]."""
 
     def make(context):
-        return TakeCorner("take", context, hand="right", sleeve="left", hook=HOOK, **ports)
+        return TakeCorner("take", context, hand="right", sleeve="left", hook=hook, **ports)
 
     made = bench_with(make, hung_corner=shows)
     made.world.pull = lambda side, hand: tug * DOWN if side in made.world.closed else np.zeros(3)
@@ -70,7 +72,7 @@ def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to(
         now = CORNER + frame.stamp * drift
         if run is not None and np.linalg.norm(run.world.observe().pose_hand_in_map[RIGHT, :3, 3] - now) < 0.3:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "a corner")
-        return seen_at(now, "collar_corner_left", stamp=frame.stamp, confidence=0.9)
+        return seen_at(now, "collar_corner_left", confidence=0.9)
 
     def pull(side, hand):
         place, time = run.world.closed.get(side, (np.full(3, 9.0), 0.0))
@@ -81,6 +83,22 @@ def test_a_missed_corner_that_drifts_behind_the_hand_is_met_where_it_has_got_to(
     assert ended(run) is None
     _, time = run.world.closed["right"]
     assert time > 5.0  # [s]: not at the first try
+
+
+def test_a_strip_that_is_edge_on_to_the_head_is_taken_where_the_free_hand_sees_it_from_beside():
+    looked, corner = [], at(1.0, -0.16, 1.20)
+
+    def from_beside_only(frame, **details):
+        looked.append((frame.camera, run.world.observe().pose_hand_in_map[RIGHT] @ camera_in_hand(BAXTER, "right")))
+        return seen_at(corner, "collar_corner_left", confidence=0.9 if frame.camera == "right_hand" else 0.4)
+
+    run = bench(from_beside_only, hook=seen_at(at(1.0, 0.0, 1.50)), beside=True, min_confidence=0.8)
+    assert ended(run) is None
+    assert np.linalg.norm(run.world.closed["right"][0] - corner) < 0.03  # [m]
+    assert {camera for camera, _ in looked} == {"right_hand"}
+    view = looked[0][1][:3, 2]
+    assert view @ LEFT > 0.3, "from the right hand's own side"
+    assert abs(view @ DOWN) < 0.05, "level"
 
 
 def test_a_corner_that_is_hardly_seen_is_not_gone_for():

@@ -1,5 +1,7 @@
 """The strips in which the neckline's tape falls from the hook, on pictures painted by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.gown.hung_corner import hook
@@ -32,6 +34,15 @@ def test_the_fabric_beside_it_tells_which_strip_it_is_and_the_inside_swaps_them(
     for one, other in zip(outside, inside, strict=True):
         assert abs(one.tells) > 0.5
         assert one.tells == pytest.approx(-other.tells)
+
+
+def test_a_strip_that_is_cut_off_by_the_border_of_the_picture_does_not_show_its_end():
+    whole = picture(PRINTED)
+    cut_off = replace(whole, rgb=whole.rgb[:70], depth=whole.depth[:70])  # the tape goes on to row 75
+    assert all(strip.whole for strip in told(whole))
+    for strip in told(cut_off):
+        assert not strip.whole
+        assert not strip.shows
 
 
 def test_no_tape_no_strip():
