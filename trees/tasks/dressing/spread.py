@@ -177,22 +177,25 @@ def straight(bed: Scope) -> Behaviour:
 
 
 def shown(context: Context, name: str, side: Side, reach: float) -> Behaviour:
-    """Look from the head of the bed whether a sleeve is up far enough, from beside it where it hides behind a shoulder.
+    """Look from the head of the bed whether a sleeve is up far enough; where it may be, look from beside it.
 
-    From the head alone it did not show in any of six rounds, and nothing was done about it (215, 233, 238).
+    From the head alone, sleeves that hide behind a shoulder did not show in any of six rounds (215, 233, 238), and ones
+    that were up were drawn up again, which took the collar aside (126, 198).
     """
     sleeve = arm_scope(context, name, side)
-    sits = CheckSleeve("sits", sleeve, min_reach=reach, must_show=True, tuning=FROM_HEAD)
+    closely = Scope(sleeve, "by")
 
-    def beside() -> Behaviour:
-        return sequence(f"{sleeve.prefix}from beside it", *go_beside(Scope(sleeve, "by"), side))
+    def look(name: str, scope: Scope, reach: float, *, must_show: bool = True) -> CheckSleeve:
+        return CheckSleeve(name, scope, min_reach=reach, must_show=must_show, tuning=FROM_HEAD)
 
-    seen = RecoverBy(
-        f"{sleeve.prefix}seen",
-        sequence(f"{sleeve.prefix}look at it", LookAtPerson("look", sleeve), sits),
-        {Reason.NOTHING_SEEN: beside},
+    from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), look("sits", sleeve, reach))
+    from_beside = sequence(
+        f"{sleeve.prefix}from beside it",
+        look("may sit", sleeve, DRESSING.armhole_may_sit, must_show=False),
+        *go_beside(closely, side),
+        look("sits after all", closely, DRESSING.armhole_beside),
     )
-    return sequence(f"{sleeve.prefix}up", seen, go_up(sleeve))
+    return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
 
 def still_inside(context: Context, side: Side) -> Behaviour:

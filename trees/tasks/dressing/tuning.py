@@ -180,6 +180,19 @@ class DressingTuning(Quantities):
         "measured: of 201 views from the head of the bed that showed 0.70 to 0.73 after it was drawn up, 13 were of "
         "armholes below 0.70, at 0.68 at the least, all in one of three runs (159, 160, 161)",
     )
+    armhole_may_sit: float = quantity(
+        0.55,
+        "1",
+        "of the upper arm, as it is seen from the head of the bed, from which a sleeve is looked at from beside",
+        "choice: one seen at 0.57 was at 0.68 (174), all seen lower were lower",
+    )
+    armhole_beside: float = quantity(
+        0.68,
+        "1",
+        "of the upper arm, as it is seen from beside the shoulder, from which a sleeve is up",
+        "measured: drawn again from there, in 56 states of seven runs on 126, 135, 174, 188 and 192, all 27 seen at 0.68 "
+        "and more were at 0.71 at the least, 1 of 8 seen at 0.66 and 0.67 was below 0.7, and 13 of the 21 seen lower",
+    )
     armhole_slipped: float = quantity(
         0.30,
         "1",
