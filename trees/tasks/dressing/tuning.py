@@ -190,7 +190,7 @@ class DressingTuning(Quantities):
         0.68,
         "1",
         "of the upper arm, as it is seen from beside the shoulder, from which a sleeve is up",
-        "measured: drawn again from there, in 56 states of seven runs on 126, 135, 174, 188 and 192, all 27 seen at 0.68 "
+        "measured: drawn again from there, in 56 states of seven runs (126, 135, 174, 188, 192), all 27 seen at 0.68 "
         "and more were at 0.71 at the least, 1 of 8 seen at 0.66 and 0.67 was below 0.7, and 13 of the 21 seen lower",
     )
     armhole_slipped: float = quantity(
