@@ -11,7 +11,6 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveHeading
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
-from .belief.gown_watch import while_gown_stays
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
 from .belief.short_gown import short_gown
@@ -111,8 +110,7 @@ class PresentSleeve(Skill):
     not open is carried out once more, farther, and its strap is turned by as much as the sleeve points elsewhere.
 
     It fails where the sleeve still does not open, where the gown is caught on something, where the strap or the arm
-    slips out of the fingers, where a place is out of reach, where the whole gown comes along with its `first` sleeve,
-    and where the person moves.
+    slips out of the fingers, where a place is out of reach, and where the person moves.
     """
 
     grip = Input(StrapGrip, doc="how the strap is held")
@@ -129,7 +127,6 @@ class PresentSleeve(Skill):
         default=-np.inf,
         doc="how far beyond the armhole, along the hand, the cuff has to show in the end; -inf to let anything pass",
     )
-    first = Input(bool, default=False, doc="whether the other sleeve still lies free, so that the gown may come along")
     tuning = Input(PresentSleeveTuning, default=PresentSleeveTuning(), doc="numbers of this skill")
     reasons = (
         Reason.UNREACHABLE,
@@ -142,15 +139,11 @@ class PresentSleeve(Skill):
         Reason.FORCE_LIMIT,
         Reason.SLEEVE_FOLDED,
         Reason.SLEEVE_CAUGHT,
-        Reason.GOWN_SHIFTED,
     )
 
     def steps(self) -> Iterator[None]:
-        """Present the sleeve as long as the person does not move, and the gown does not come along."""
-        motion = self._present()
-        if self.first:
-            motion = while_gown_stays(self, self.grip.arm, self.grip.hand, motion)
-        yield from while_person_rests(self, motion)
+        """Present the sleeve as long as the person does not move."""
+        yield from while_person_rests(self, self._present())
 
     def _present(self) -> Iterator[None]:
         """Up, then beyond the fingertips."""

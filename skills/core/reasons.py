@@ -23,7 +23,6 @@ class Reason(enum.Enum):
     SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
     COLLAR_ASIDE = "The collar does not lie in the middle between the person's shoulders."
     SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."
-    GOWN_SHIFTED = "The whole gown comes along with the sleeve."
     ARM_LOST = "The person's arm is no longer tracked."
     ARM_COVERED = "The gown lies over the arm that is to be dressed."
     ARM_SLIPPED = "The person's arm slipped out of the grip."

@@ -1,14 +1,12 @@
 """A sleeve is held open before the hand; one that does not open is carried out once more, then given up as folded."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from caretree.perception.estimates import SleeveHeading
 from caretree.skills.belief.short_gown import short_gown
 from caretree.skills.core.reasons import Reason
 from caretree.skills.present_sleeve import PresentSleeve
-from caretree.skills.scripted.scripted_person import laid_strap, lying_arm, lying_posture
+from caretree.skills.scripted.scripted_person import lying_arm, lying_posture
 
 from .bench import GRIP, LeafBench, beside_bed
 
@@ -30,30 +28,21 @@ def turned(run):
     return np.arctan2(-across @ ASIDE, -across @ ALONG)
 
 
-def ran(seen, load=1.0, other=None):
-    """With `other`, (x, ...) [m] where the left sleeve is seen in turn, it is the first sleeve.
-
-    The bench after a run, why it failed, None after a success, and how often it looked at the sleeve."""
+def ran(seen, load=1.0):
+    """The bench after a run, why it failed, None after a success, and how often it looked at the sleeve."""
     looks, arm = [], lying_posture("right")
 
     def answer(frame, **details):
         looks.append(frame.stamp)
         return seen[min(len(looks), len(seen)) - 1]
 
-    def other_sleeve(frame, **details):
-        x = other.pop(0) if len(other) > 1 else other[0]
-        return replace(laid_strap("left", frame.stamp), position_in_map=np.array((x, 0.2, 0.65)))
-
     run = LeafBench(
-        lambda context: PresentSleeve(
-            "present", context, grip=GRIP, max_load=4.0, min_cuff_distance=0.05, first=other is not None
-        ),
+        lambda context: PresentSleeve("present", context, grip=GRIP, max_load=4.0, min_cuff_distance=0.05),
         beside_bed(
             load={"right": (0.0, 0.0, -load)},  # the sleeve that hangs from it [N]
             arm=arm,
             relocalised_arm=arm,
             sleeve_heading=answer,
-            sleeve_opening=other_sleeve,
         ),
     )
     return run, run.ended(seconds=200.0), len(looks)
@@ -70,18 +59,6 @@ def test_it_comes_from_beyond_the_fingertips_and_waits_before_them_the_armhole_t
     assert (way @ ALONG)[near].min() > 0.05, "it is never over the arm"
     across = run.poses("right")[-1, :3, :3] @ GRIP.across_in_hand  # from the armhole to the gown's upper edge
     assert across @ ALONG < -0.9
-
-
-@pytest.mark.parametrize(
-    ("other", "reason"),
-    [([-0.40, -0.30, -0.20], None), ([-0.3, 0.1, -0.3], None), ([-0.3, -0.1, 0.05, 0.3], Reason.GOWN_SHIFTED)],
-)
-def test_the_first_one_goes_no_farther_where_the_whole_gown_comes_along(other, reason):
-    run, ended, _ = ran([heading(0.09)], other=other)
-    assert ended == reason
-    if reason:
-        last = run.way("right")[-3:]
-        assert np.ptp(last, axis=0).max() < 0.01, "the hand has come to rest [m]"
 
 
 def test_one_that_hangs_no_more_has_slipped():

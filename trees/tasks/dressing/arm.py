@@ -102,18 +102,16 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
     away = back_off("back off", arm, DRESSING.back_off_distance)
     inside = patient(arm, CheckSleeve("is inside", arm))
     lies = patient(arm, put_down("in the end", arm))
-    once = sequence(f"{side} arm once", over_hand(arm, sleeve, first=not strays), up, away, lies, inside)
+    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, lies, inside)
     again: dict[Reason, Callable[[], Behaviour]] = {
         **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
     }
-    if not strays:
-        again[Reason.GOWN_SHIFTED] = lambda: draw_back(context, Scope(arm, "shifted"))
     return RecoverBy(f"dress the {side} arm", once, again, attempts=DRESSING.arm_attempts)
 
 
-def over_hand(arm: Scope, sleeve: SleeveTuning, *, first: bool) -> Behaviour:
-    """Until the sleeve is past the wrist and the arm is let go; with the `first` one the gown must not come along."""
+def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
+    """Until the sleeve is past the wrist and the arm is let go."""
     held, stand = Scope(arm, keys=("hold",)), arm.key("stand")
 
     def grasp(name: str) -> Behaviour:
@@ -124,7 +122,7 @@ def over_hand(arm: Scope, sleeve: SleeveTuning, *, first: bool) -> Behaviour:
         return sequence(f"{why}, laid down", down, grasp(f"{why}, take it again"))
 
     def opened(name: str, why: str, **ports: float) -> Behaviour:
-        present = PresentSleeve(name, held, max_load=sleeve.carry_load, first=first, **ports)
+        present = PresentSleeve(name, held, max_load=sleeve.carry_load, **ports)
         return RecoverBy(f"{name}, opened", present, {Reason.SLEEVE_FOLDED: lambda: lay(why)}, attempts=3)
 
     def missed() -> Behaviour:
@@ -268,21 +266,6 @@ def not_slipped(arm: Scope, least: float, *, pulls: int = 2) -> Behaviour:
     )
     again = RecoverBy(f"{arm.prefix}not slipped", up, {Reason.SLEEVE_LOW: pulled_up}, attempts=1 + pulls)
     return fallback(f"{arm.prefix}as it may be", patient(arm, again), back_off("leave it so", arm))
-
-
-def draw_back(context: Context, arm: Scope) -> Behaviour:
-    """A gown that comes along with the sleeve is laid down, and drawn back by the other one, from its side of the bed.
-
-    Carried on, it fell to the floor (190, 193).
-    """
-    other = SIDES[1 - SIDES.index(arm["side"])]
-    beyond = arm_scope(context, "gown back", other)
-    return sequence(
-        f"{arm.prefix}draw the gown back",
-        let_down("held", arm, "lifting", other="pulling"),
-        laid_back(arm),
-        fallback("back on the bed", off_trunk(beyond, other), back_off("leave the gown", beyond)),
-    )
 
 
 def lay_out(arm: Scope) -> Behaviour:
