@@ -274,7 +274,9 @@ class DressingTuning(Quantities):
         400.0, "s", "for unfolding and laying the gown", "choice: an end is taken anew by each hand, as in `take_down`"
     )
     dress_timeout: float = quantity(800.0, "s", "for dressing both arms", "choice: room for three misses at each arm")
-    spread_timeout: float = quantity(950.0, "s", "for spreading and settling the gown", "choice: room for seven rounds")
+    spread_timeout: float = quantity(
+        1400.0, "s", "for spreading and settling the gown", "choice: seven rounds, both sleeves looked at from beside"
+    )
 
 
 DRESSING = DressingTuning()
