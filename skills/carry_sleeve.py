@@ -13,6 +13,7 @@ from ..perception.estimates import SleeveOpening
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import bare_share, careful, watch_arm
+from .belief.refused_stands import REFUSED, refused_stands
 from .belief.sleeve_search import SleeveMemory
 from .control.base import drive_to
 from .control.fingers import open_gripper
@@ -214,7 +215,9 @@ class CarrySleeve(Skill):
         return seen if out < self.tuning.trunk_distance or not self._at_hand(seen) else None
 
     def _at_hand(self, sleeve: SleeveOpening) -> bool:
-        """Whether the sleeve lies by the hand, and the arm beside it is bare."""
+        """Whether the sleeve lies by the hand, not out of reach, and the arm beside it is bare."""
+        if len(refused_stands(self, self.side)) >= REFUSED:
+            return False
         try:
             posture = watch_arm(self, self.side)
         except PerceptionFailure:
@@ -244,6 +247,7 @@ class CarrySleeve(Skill):
                 yield from self._go(hand, self._place(*last, above))
                 break
         memory.last[self.side] = hand_now(self, hand)[:3, 3]
+        refused_stands(self, self.side).clear()
         yield from open_gripper(self, hand)
         with suppress(MotionError):  # it is open, and the next motion begins with a way out
             yield from back_off(self, hand)

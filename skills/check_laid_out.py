@@ -10,6 +10,7 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import PERSON_TRACKING, visible_share, watch_arm
+from .belief.refused_stands import REFUSED, refused_stands
 from .belief.sleeve_search import find_sleeve
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
@@ -28,7 +29,8 @@ class CheckLaidOutTuning(Quantities):
 class CheckLaidOut(Skill):
     """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
 
-    It fails where the arm is covered, and where the sleeve lies elsewhere or does not show.
+    It fails where the arm is covered, where the sleeve lies elsewhere or does not show, and where it was out of reach
+    from more than one stand.
     """
 
     commands = False
@@ -47,4 +49,6 @@ class CheckLaidOut(Skill):
         away = float(np.linalg.norm((sleeve.position_in_map - posture.points_in_map[3])[:2]))
         if away > self.tuning.max_distance:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")
+        if (refused := len(refused_stands(self, self.side))) >= REFUSED:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"it was out of reach from {refused} stands")
         yield

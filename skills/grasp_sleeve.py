@@ -89,12 +89,12 @@ class GraspSleeve(Skill):
         """Look, reach in, pinch."""
         tuning = self.tuning
         self.note(f"looks for the {self.side} sleeve")
-        strap = yield from self._look()
-        self.note(f"takes the {self.side} sleeve")
-        path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
         try:
+            strap = yield from self._look()
+            self.note(f"takes the {self.side} sleeve")
+            path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
             way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
-        except MotionError:
+        except MotionError:  # neither to look at it nor to take it: from here it was so five times in turn (190)
             if not self.worn:
                 refused_stands(self, self.side).append(self.world.observe().pose_base_in_map)
             raise

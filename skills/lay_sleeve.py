@@ -11,6 +11,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful
+from .belief.refused_stands import refused_stands
 from .control.compliant_hold import while_holding
 from .control.fingers import open_gripper
 from .control.hands import hand_now, move_hands, until_load
@@ -91,6 +92,7 @@ class LaySleeve(Skill):
             motion = move_hands(self, {hand: pose}, speed=careful(self, tuning.speed), free="any", way="either")
             yield from until_load(self, hand, tuning.max_load, motion)
         yield from open_gripper(self, hand)
+        refused_stands(self, self.side).clear()
         try:
             yield from back_off(self, hand)
         except MotionError:

@@ -9,6 +9,10 @@ import numpy as np
 from ...sim.world import Side
 from ..core.skill import Skill
 
+# Stands from which a sleeve was out of reach since it was laid there, after which it has to lie elsewhere: 8 cm from
+# the hand one was out of reach five times in turn (151, 190).
+REFUSED = 2
+
 
 @dataclass
 class RefusedStands:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.skills.belief.refused_stands import refused_stands
 from caretree.skills.check_laid_out import CheckLaidOut
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
@@ -37,3 +38,17 @@ def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, shar
         beside_bed(sleeve_opening=sleeve, arm=lying_posture("left")),
     )
     assert run.ended(seconds=1.0) == reason
+
+
+@pytest.mark.parametrize(("stands", "reason"), [(1, None), (2, Reason.SLEEVE_MISSED)])
+def test_a_sleeve_that_was_out_of_reach_from_two_stands_is_at_no_hand(monkeypatch, stands, reason):
+    monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: 1.0)
+    monkeypatch.setattr("caretree.skills.belief.person_tracking.visible_share", lambda frame, posture: 1.0)
+
+    def leaf(context):
+        skill = CheckLaidOut("laid out", context, side="left")
+        refused_stands(skill, "left").extend([np.zeros(3)] * stands)
+        return skill
+
+    world = beside_bed(sleeve_opening=away(0.1), arm=lying_posture("left"))
+    assert LeafBench(leaf, world).ended(seconds=1.0) == reason
