@@ -184,7 +184,25 @@ def test_where_both_are_up_no_hand_moves():
 
 
 @pytest.mark.parametrize("hidden", SIDES)
-def test_a_seam_that_does_not_show_is_told_and_no_hand_moves(hidden):
+def test_where_one_seam_does_not_show_the_other_sleeve_is_drawn_all_the_same(hidden):
+    other = "right" if hidden == "left" else "left"
     run = bench(hidden=(hidden,))
+    assert run.ended() is None
+    assert (last_held(run, other) - SHOULDERS[other]) @ outwards(other) == pytest.approx(-0.07, abs=0.03)
+    assert np.ptp(run.way(hidden), axis=0) == pytest.approx(0.0, abs=0.02)  # [m]
+
+
+def test_where_no_seam_shows_that_is_told_and_no_hand_moves():
+    run = bench(hidden=SIDES)
     assert run.ended() == Reason.NOTHING_SEEN
     assert all(np.ptp(run.way(side), axis=0) == pytest.approx(0.0, abs=1e-3) for side in SIDES)
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_one_that_was_left_as_it_was_is_drawn_again_when_that_is_asked_for_once_more(before):
+    run = bench(reach={"left": 0.70, "right": 0.95})
+    memory = run.context.memory.of(Drawn, Drawn)
+    memory.times["left"], memory.reach["left"], memory.left = 2, 0.71, {"left"} if before else set()
+    assert run.ended() is None
+    assert memory.times["left"] == (3 if before else 2)
+    assert memory.left == (set() if before else {"left"})
