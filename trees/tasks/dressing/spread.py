@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from py_trees.behaviour import Behaviour
 
@@ -19,7 +21,7 @@ from ....skills.seat_sleeves import SeatSleeves
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
-from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
+from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .draw_over import DrawOver
@@ -27,6 +29,7 @@ from .patience import patient
 from .tuning import DRESSING
 
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
+UNSEEN = (Reason.ARM_LOST, Reason.NOTHING_SEEN)
 
 MIDDLE = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
@@ -49,7 +52,7 @@ def spread(context: Context) -> Stage:
         "spread",
         *(patient(bed, arm_lies(context, side)) for side in SIDES),
         Navigate("go round to the head", bed, goal="bed_head"),
-        patient(bed, Retry("until it is neat", with_arms_in_view(context, bed), attempts=DRESSING.neaten_attempts)),
+        patient(bed, neaten(context, bed)),
         patient(bed, surely_middle(context, bed)),
         *(patient(bed, still_inside(context, side)) for side in SIDES),
         patient(bed, chest_looks_right(context)),
@@ -84,39 +87,45 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     return fallback(f"the {side} arm lies, or later", lies, later)
 
 
-def with_arms_in_view(context: Context, bed: Scope) -> Behaviour:
-    """Neaten the gown; arms that have not shown under it for too long are looked at from beside the bed meanwhile."""
-
-    def look_again() -> Behaviour:
-        arms = [arm_scope(context, f"{side} arm again", side) for side in SIDES]
-        beside = [node for side, arm in zip(SIDES, arms, strict=True) for node in go_beside(arm, side)]
-        return sequence("both arms again", *beside, *go_to_head(Scope(bed, "again")))
-
-    return RecoverBy("both arms in view", neaten(context, bed), {Reason.ARM_LOST: look_again})
-
-
 def neaten(context: Context, bed: Scope) -> Behaviour:
-    """From the head of the bed, draw low sleeves up and lay the collar straight; then look.
+    """From the head of the bed, see whether the gown is worn neatly; what is not so is set right, and seen anew.
 
-    A front that shows its inside is drawn flat before, as that draws sleeves down.
-
-    The collar comes last: while a sleeve is low, half of the neckline is out of sight, and drawing both up takes the
-    collar along.  Cloth springs back in part, so what did not do is done once more, from where it lies by then.
+    A front that shows its inside is drawn flat first, as that draws sleeves down.  The collar comes last: while a
+    sleeve is low, half of the neckline is out of sight, and drawing both up takes the collar along.  Cloth springs back
+    in part, so what did not do is done once more, from where it lies by then.  Each state is looked at once: sleeves
+    that are looked at from beside, before they are drawn up and after, cost half a minute each time (257 to 260).
     """
-    # what does not show is not claimed: an armhole at 0.697 was (149)
-    looks = [shown(context, f"{side} in the end", side, DRESSING.armhole_claimed) for side in SIDES]
+    sleeves = [shown(context, f"{side} armhole", side) for side in SIDES]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
+    flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
-    done = (go_up(bed), unfolded(context), seated(context, bed), straight(bed))
-    return sequence("neaten", *done, *looks, middle, flat_now)
+    seen = sequence("neat", go_up(bed), flat_first, *sleeves, middle, flat_now)
+
+    def set_right() -> Behaviour:
+        return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
+
+    set_right_by: dict[Reason, Callable[[], Behaviour]] = {
+        Reason.WRONG_SIDE: lambda: unfolded(context),
+        **dict.fromkeys(LOW, set_right),
+        Reason.COLLAR_ASIDE: lambda: straight(Scope(bed, "collar")),
+        **dict.fromkeys(UNSEEN, lambda: looked_again(context, bed)),
+    }
+    return RecoverBy("until it is neat", seen, set_right_by, attempts=DRESSING.neaten_attempts)
 
 
 def unfolded(context: Context) -> Behaviour:
-    """Where the front shows its inside in a fold, go beside the bed and draw it flat; then the sleeves may be low."""
+    """Go beside the bed and draw a front flat that shows its inside in a fold; then the sleeves may be low."""
     front = arm_scope(context, "fold", "left")
     beside = Navigate("go beside it", front, goal="bed_left")
-    draw = sequence("unfold it", beside, flat(front), *go_to_head(front))
-    return fallback("unfolded", Condition("no fold shows", outside_out, Reason.WRONG_SIDE), draw)
+    return sequence("unfold it", beside, flat(front), *go_to_head(front))
+
+
+def looked_again(context: Context, bed: Scope) -> Behaviour:
+    """See arms from beside that are not known any more, or whose sleeves do not show; the collar may lie aside."""
+    arms = [arm_scope(context, f"{side} arm again", side) for side in SIDES]
+    beside = [node for side, arm in zip(SIDES, arms, strict=True) for node in go_beside(arm, side)]
+    again = Scope(bed, "again")
+    return sequence("both arms again", *beside, *go_to_head(again), straight(again))
 
 
 def surely_middle(context: Context, bed: Scope) -> Behaviour:
@@ -140,43 +149,36 @@ def surely_middle(context: Context, bed: Scope) -> Behaviour:
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
-    drawn = sequence("draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
-    return fallback("over the middle", drawn, back_off("leave it there", gown))
+    drawn = sequence(f"{gown.prefix}draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
+    return fallback(f"{gown.prefix}over the middle", drawn, back_off("leave it there", gown))
 
 
-def seated(context: Context, bed: Scope) -> Behaviour:
+def seated(bed: Scope) -> Behaviour:
     """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
-
-    def seat() -> Behaviour:
-        seats = (SeatSleeves("seat", gown), back_off("clear the view", gown))
-        return sequence("draw them up", go_up(gown), over(bed), *seats)
-
-    looks = [shown(context, f"{side} armhole", side, DRESSING.armhole_sits) for side in SIDES]
-    up = RecoverBy("until they sit", sequence("both sit", *looks), dict.fromkeys(LOW, seat))
+    seat = (SeatSleeves("seat", gown), back_off("clear the view", gown))
     left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
-    return fallback("as far as they go", up, left)
+    return fallback("as far as they go", sequence("draw them up", over(gown), *seat), left)
 
 
-def straight(bed: Scope) -> Behaviour:
+def straight(gown: Scope) -> Behaviour:
     """Draw a collar that lies aside over with the front, then lay it straight; where it gets no nearer, it may do.
 
     Laid in the middle alone, a collar that both sleeves had drawn 0.12 m aside went back to 0.08 m; with the front it
     stayed at 0.02 m (0).  One that lies headward sprang back 6 times of 16, so there are two tries.
     """
-    gown = Scope(bed, "collar")
 
     def straighten() -> Behaviour:
         by_now = CheckCollar("straight by now", gown, tuning=NEAT)
-        spread = sequence("by its collar", Spread("spread", gown), back_off("clear the view", gown))
-        return sequence("lay it straight", over(gown), fallback("straight", by_now, spread))
+        spread = sequence(f"{gown.prefix}by its collar", Spread("spread", gown), back_off("clear the view", gown))
+        return sequence(f"{gown.prefix}lay it straight", over(gown), fallback(f"{gown.prefix}straight", by_now, spread))
 
     lies = CheckCollar("lies straight", gown, tuning=NEAT)
-    laid = RecoverBy("until it lies straight", lies, {Reason.COLLAR_ASIDE: straighten}, attempts=3)
-    return fallback("as straight as it gets", laid, back_off("leave it", gown))
+    laid = RecoverBy(f"{gown.prefix}until it is straight", lies, {Reason.COLLAR_ASIDE: straighten}, attempts=3)
+    return fallback(f"{gown.prefix}as straight as may be", laid, back_off("leave it", gown))
 
 
-def shown(context: Context, name: str, side: Side, reach: float) -> Behaviour:
+def shown(context: Context, name: str, side: Side) -> Behaviour:
     """Look from the head of the bed whether a sleeve is up far enough; where it may be, look from beside it.
 
     From the head alone, sleeves that hide behind a shoulder did not show in any of six rounds (215, 233, 238), and ones
@@ -188,7 +190,8 @@ def shown(context: Context, name: str, side: Side, reach: float) -> Behaviour:
     def look(name: str, scope: Scope, reach: float, *, must_show: bool = True) -> CheckSleeve:
         return CheckSleeve(name, scope, min_reach=reach, must_show=must_show, tuning=FROM_HEAD)
 
-    from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), look("sits", sleeve, reach))
+    sits = look("sits", sleeve, DRESSING.armhole_up)
+    from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), sits)
     from_beside = sequence(
         f"{sleeve.prefix}from beside it",
         look("may sit", sleeve, DRESSING.armhole_may_sit, must_show=False),

@@ -85,7 +85,8 @@ def rehearsed(reach, off=(0.0, 0.0), **gown):
         (0.35, "success", ["seat", "seat", "seat"]),
         (0.05, "success", ["seat"] * 5),
         (-0.10, "success", ["seat"] * 6),
-        (-0.40, "safe_stop", ["seat"] * 7),
+        (-0.40, "success", ["seat"] * 8),
+        (-0.80, "safe_stop", ["seat"] * 9),
     ],
 )
 def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach, ends, done):
@@ -140,7 +141,7 @@ def test_a_front_that_is_folded_over_is_drawn_flat_before_the_sleeves_that_come_
 def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     outcome, done = rehearsed(0.85, (0.0, -0.25), stays=True)
     assert outcome == "safe_stop"
-    assert done == ["spread"] * 14, "two in each of seven rounds"
+    assert done == ["spread"] * 18, "two after each of ten looks but the last"
 
 
 @pytest.mark.parametrize(
