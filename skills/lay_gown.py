@@ -39,10 +39,17 @@ class LayGownTuning(Quantities):
         "choice: the hands cross before the chest one behind the other",
     )
     descent: tuple[tuple[float, float], tuple[float, float], tuple[float, float]] = quantity(
-        ((0.80, 1.15), (0.40, 0.98), (0.16, 0.87)),
+        ((0.80, 1.15), (0.40, 0.98), (0.22, 0.87)),
         "m",
         "y and height of the neckline on its way down",
         "choice: the hem trails towards the feet, so that the outside ends up on top",
+    )
+    end_y: float = quantity(0.16, "m", "of the neckline in the end", "choice: just beyond resting fingertips")
+    end_heights: tuple[float, ...] = quantity(
+        (0.66, 0.74),
+        "m",
+        "of the neckline in the end, tried in turn",
+        "choice: as near to the bed, whose top is at 0.58 m, as the hands get",
     )
     middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
     min_near_x: float = quantity(
@@ -106,10 +113,14 @@ class LayGownTuning(Quantities):
         "188); 0.00 to 0.33 N in six that stayed, 0.09 N in one that slid by 0.1 m (121 to 145)",
     )
     even_shift: float = quantity(
-        0.3,
+        0.15,
         "m/N",
-        "by which the hands go to the other side for it, up to `max_shift`",
-        "measured: all four then stay within 0.10 m of the middle; with 0.2 m/N two of them slid all the same",
+        "by which the hands go to the other side for it",
+        "measured: let go of in the air, the gown went half of 0.3 m/N back; all four then stayed within 0.10 m of the "
+        "middle",
+    )
+    max_even_shift: float = quantity(
+        0.06, "m", "by which they do so at most", "measured: by 0.12 m, of a gown that stayed there, too far (154, 156)"
     )
     withdrawal: tuple[float, float, float] = quantity(
         (0.0, 0.06, 0.22), "m", "of the open hands in the map", "choice: up and off the cloth, towards the feet"
@@ -151,6 +162,8 @@ class LayGown(Skill):
         yield from self._hands_to(*tuning.descent[-1])
         yield from self._centre()
         yield from self._even_out()
+        yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)
+        yield from self._lay_down()
         for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
             yield from open_gripper(self, side)
         self.note("withdraws")
@@ -201,7 +214,7 @@ class LayGown(Skill):
                 pulls.append((yield from self._pull()))
             if abs(pull := float(np.mean(pulls))) > tuning.uneven_load:
                 self.note(f"{abs(pull):.1f} N more of the gown hang over the {'near' if pull > 0.0 else 'far'} edge")
-                shift = float(np.clip(-tuning.even_shift * pull, -tuning.max_shift, tuning.max_shift))
+                shift = float(np.clip(-tuning.even_shift * pull, -tuning.max_even_shift, tuning.max_even_shift))
                 self._middle = middle + shift
                 yield from self._hands_to(*tuning.descent[-1])
         except MotionError:
@@ -215,6 +228,17 @@ class LayGown(Skill):
             samples.append(sum(float(cloth_load(self, side)[0]) for side in SIDES))
             yield
         return float(np.mean(samples))
+
+    def _lay_down(self) -> Iterator[None]:
+        """Bring both ends of the neckline down before the sleeves, which trail towards the feet.
+
+        Let go of in the air, sleeves that the hands' way across had tucked in turned over as they fell, and pointed
+        back at the person's hand as they were held out (148, 150, 156, 190, 194).
+        """
+        for height in self.tuning.end_heights:
+            with suppress(MotionError):
+                yield from self._hands_to(self.tuning.end_y, height)
+                return
 
     def _slacken(self) -> Iterator[None]:
         """Bring the hands together until the neckline between them is slack.
