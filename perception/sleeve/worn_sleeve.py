@@ -11,6 +11,7 @@ from ...sim.world import Frame, Side
 from ..errors import PerceptionFailure, Problem
 from ..estimates import WornSleeve
 from ..image.surfaces import Surface
+from .armhole_reach import armhole_reach
 from .cuff_round_arm import share_round, tape_near
 
 
@@ -22,19 +23,6 @@ class WornSleeveTuning(Quantities):
         (-1.0, 2.0), "1", "ends of the line beside which tape counts: 0 shoulder, 1 elbow", "choice: all of a sleeve"
     )
     min_points: int = quantity(15, "1", "of either tape", "choice: fewer are noise")
-    ends: tuple[float, float] = quantity(
-        (0.05, 0.95), "1", "quantiles of the armhole's points that are its ends", "choice: few are noise"
-    )
-    reach: tuple[float, float, float] = quantity(
-        (0.79, -1.66, -0.75),
-        "1, 1/m, 1/m",
-        "of the armhole, and its change with how far down the arm its near and its far end show",
-        "measured: least squares over 176 views from the head of the bed and from beside the shoulder, of 88 sleeves "
-        "above 0.4 that nobody holds in 30 runs on seeds 101 to 104: 0.060 root mean square on seeds left out; by its "
-        "far end and the cuff's middle 0.075.  0.05 less since: in 91 views of sleeves of three runs (145, 148, 149) "
-        "none of 47 low ones is told up by that, and 33 of 44 that are up; four and 43 before, and two were claimed at "
-        "0.697 and 0.673 (149, 150)",
-    )
     full_points: int = quantity(100, "1", "of the smaller one that make it certain", "choice: seen from close by")
 
 
@@ -67,16 +55,6 @@ def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: WornSl
         side=side,
         armhole_at=armhole,
         cuff_at=cuff,
-        reach=_reach(ways[0], tuning),
+        reach=armhole_reach(*found, arm_in_map, frame.pose_camera_in_map[:3, 3]),
         round_arm=share_round(found[1], line),
     )
-
-
-def _reach(way: np.ndarray, tuning: WornSleeveTuning) -> float:
-    """How far up the upper arm the armhole is, by how far down it (n,) its tape shows [m].
-
-    Half of the armhole is under the arm, and slants.
-    """
-    near, far = np.quantile(way, tuning.ends)
-    base, by_near, by_far = tuning.reach
-    return float(np.clip(base + by_near * near + by_far * far, 0.0, 1.0))
