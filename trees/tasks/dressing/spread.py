@@ -156,9 +156,10 @@ def over(bed: Scope) -> Behaviour:
 def seated(bed: Scope) -> Behaviour:
     """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
-    seat = (SeatSleeves("seat", gown), back_off("clear the view", gown))
+    # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
+    seat = (go_up(gown), over(gown), SeatSleeves("seat", gown), back_off("clear the view", gown))
     left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
-    return fallback("as far as they go", sequence("draw them up", over(gown), *seat), left)
+    return fallback("as far as they go", sequence("draw them up", *seat), left)
 
 
 def straight(gown: Scope) -> Behaviour:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.world import SIDES
+from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.run.runner import run
 from caretree.trees.run.task import load_task
@@ -21,6 +22,7 @@ class WornGown(ScriptedSenses):
 
     Attributes:
         done: what was done to it, in turn.
+        stands: where the robot stood then, but for folds.
         shown: how much of the neckline is seen.
         beside: where the collar is seen from the left (-1) and the right (1) of the bed, if those are other places.
         pulled: how much farther up a sleeve is after it was pulled by its strap.
@@ -31,6 +33,7 @@ class WornGown(ScriptedSenses):
         super().__init__(world)
         self.pulled, self.hidden = pulled, hidden
         self.outside, self.shown, self.beside = outside, shown, beside or {}
+        self.stands = []
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
 
     def worn_sleeve(self, frame, *, side, arm_in_map):
@@ -46,6 +49,8 @@ class WornGown(ScriptedSenses):
         if progress.status != "success" or progress.name not in (SEATED, LAID, FLAT):
             return
         self.done.append(progress.name.rpartition("/")[2])
+        if progress.name != FLAT:
+            self.stands.append(self._world.observe().pose_base_in_map)
         if progress.name == SEATED:
             self.low = {side: low + DRAWN_UP for side, low in self.low.items()}
         if progress.name == LAID and not self.stays:
@@ -71,6 +76,8 @@ def rehearsed(reach, off=(0.0, 0.0), **gown):
     prepare_stage(world, task, "spread")
     senses = WornGown(world, np.broadcast_to(reach, 2), off, **gown)
     result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=senses.drawn)
+    for stand in senses.stands:
+        assert stand[:2] == pytest.approx(stance_at_head()[:2], abs=0.05), "sleeves and collar are drawn from the bed's head"
     return result.outcome, senses.done
 
 
