@@ -231,6 +231,12 @@ class DressingTuning(Quantities):
         "of it shows, it is missed by 0.047 m at most from beside the left shoulder, by 0.072 m from beside the right "
         "one, by 0.081 m from the head of the bed, and by 0.128 m from farther off on the left",
     )
+    collar_far_aside: float = quantity(
+        0.10,
+        "m",
+        "of the collar's middle, as it is seen from beside the left shoulder, beyond which no other look counts",
+        "choice: of 0.07 m that are allowed, missed by 0.047 m at most from there (106, 142 to 144)",
+    )
     collar_headward: float = quantity(
         0.07,
         "m",
