@@ -23,7 +23,7 @@ WHEN = (
     "left arm/grasp the sleeve:step",
     "left arm/pull up:step",
     "gown/sleeves/seat:step",
-    "gown/collar/spread:step",
+    "gown/then/spread:step",
 )
 FAULTS = ("grip_slip", "person_moves", "camera_out")
 # every place once before any of them twice, each time with another fault
