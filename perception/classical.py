@@ -37,9 +37,9 @@ from .person.arm_shift import ArmShiftTuning, arm_shift
 from .person.arm_tracker import ArmTracker, ArmTrackerTuning
 from .person.chest_cover import ChestCoverTuning, chest_cover
 from .person.chest_front import ChestFrontTuning, chest_front
-from .person.hand_cover import HandCoverTuning, hand_cover
 from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
+from .person.skin_cover import SkinCoverTuning, skin_cover
 from .senses import Senses
 from .sleeve.cuff_round_arm import CuffTuning, cuff_round
 from .sleeve.held_armhole import HeldArmholeTuning, held_armhole
@@ -74,7 +74,7 @@ class ClassicalTuning(Quantities):
     chest_cover: ChestCoverTuning = field(default_factory=ChestCoverTuning)
     chest_front: ChestFrontTuning = field(default_factory=ChestFrontTuning)
     shoulder_seam: ShoulderSeamTuning = field(default_factory=ShoulderSeamTuning)
-    hand_cover: HandCoverTuning = field(default_factory=HandCoverTuning)
+    skin_cover: SkinCoverTuning = field(default_factory=SkinCoverTuning)
 
 
 DEFAULT = ClassicalTuning()
@@ -181,9 +181,9 @@ class ClassicalSenses(Senses):
         """By the gown that is nearest to the person's head beside the shoulder."""
         return shoulder_seam(frame, side, shoulders_in_map, self._tuning.shoulder_seam)
 
-    def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+    def skin_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the skin that shows along the axis of the hand."""
-        return hand_cover(frame, points_in_map, self._tuning.hand_cover)
+        return skin_cover(frame, points_in_map, self._tuning.skin_cover)
 
     def cuff_round(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """By the cuff's binding about the axis."""

@@ -293,12 +293,12 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
-        """How much of the person's hand is covered.
+    def skin_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+        """How much of the person's hand, or of an arm, is covered.
 
         Args:
             frame: a view from close by; what stands between counts as a cover.
-            points_in_map: (n, 3) on the axis of the hand [m].
+            points_in_map: (n, 3) on its axis [m].
 
         Raises:
             PerceptionFailure: too few of the points are in view.

@@ -106,7 +106,7 @@ class CheckSleeve(Skill):
         tuning = self.tuning
         along = np.linspace(*tuning.upper_arm, tuning.points)[:, None]
         try:
-            seen = self.context.senses.hand_cover(
+            seen = self.context.senses.skin_cover(
                 self.world.look("head"), points_in_map=arm[0] + along * (arm[1] - arm[0])
             )
         except PerceptionFailure:

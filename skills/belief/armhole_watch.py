@@ -148,7 +148,7 @@ class ArmholeWatch:
         points = np.array([path.point(float(coordinate)) for coordinate in hand])
         camera = self._skill.world.look(f"{self._hand}_hand")
         try:
-            cover = self._skill.context.senses.hand_cover(camera, points_in_map=points)
+            cover = self._skill.context.senses.skin_cover(camera, points_in_map=points)
         except PerceptionFailure:
             return False
         return cover.share < tuning.min_covered

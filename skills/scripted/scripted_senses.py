@@ -198,7 +198,7 @@ class ScriptedSenses(Senses):
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
 
-    def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+    def skin_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """All of it."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
 

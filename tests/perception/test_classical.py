@@ -50,7 +50,7 @@ ELSEWHERE = {
     "hung_side",
     "held_armhole",
     "sleeve_heading",
-    "hand_cover",
+    "skin_cover",
     "cuff_round",
     "shoulder_seam",
     "relocalised_arm",
@@ -112,7 +112,7 @@ def test_its_numbers_can_be_set(scenes, bed):
     room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
     points = np.linspace(*scene.arms["right"][2:], 6)
     asks = {
-        "hand_cover.min_points": (7, lambda senses, frame: senses.hand_cover(frame, points_in_map=points)),
+        "skin_cover.min_points": (7, lambda senses, frame: senses.skin_cover(frame, points_in_map=points)),
         "head.min_points": (10**6, lambda senses, frame: senses.head(frame)),
         "skin.height_range": ((5.0, 6.0), lambda senses, frame: senses.head(frame)),
         "arm.search.min_points": (10**6, lambda senses, frame: senses.arm(frame, side="right")),

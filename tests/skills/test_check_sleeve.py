@@ -25,7 +25,7 @@ def ran(seen, covered=1.0, **options):
     cover = covered if isinstance(covered, Exception) else Cover(stamp=0.0, confidence=1.0, share=covered)
     run = LeafBench(
         lambda context: CheckSleeve("inside", context, side="left", **options),
-        beside_bed(worn_sleeve=seen, arm=lying_posture("left"), hand_cover=cover),
+        beside_bed(worn_sleeve=seen, arm=lying_posture("left"), skin_cover=cover),
     )
     run.ended(seconds=1.0)
     return run.skill

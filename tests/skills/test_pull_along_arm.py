@@ -33,7 +33,7 @@ def bench(load=SLIDES, *, begin=2.9, goal=GOAL, hold=None, deaf_to=(), cover=1.0
             arm=lies,
             relocalised_arm=lies,
             held_armhole=PerceptionFailure(Problem.NOTHING_SEEN, "armhole"),
-            hand_cover=Cover(stamp=0.0, confidence=0.9, share=cover),
+            skin_cover=Cover(stamp=0.0, confidence=0.9, share=cover),
             cuff_round=cuff if callable(cuff) else Cover(stamp=0.0, confidence=0.9, share=cuff),
         ),
         each_tick=each_tick or (lambda bench: None),

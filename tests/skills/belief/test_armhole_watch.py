@@ -44,7 +44,7 @@ def make(points=None, share=1.0):
         cover = Cover(stamp=0.0, confidence=0.9, share=share)
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    senses = fake_senses(held_armhole=ring, hand_cover=cover, cuff_round=cover)
+    senses = fake_senses(held_armhole=ring, skin_cover=cover, cuff_round=cover)
     skill = Watcher("watch", Context(world=guard, guard=guard, senses=senses))
     return ArmholeWatch(skill, GRIP.arm, GRIP.hand), world
 

@@ -69,7 +69,7 @@ def test_senses_are_asked_of_the_repainted_picture_which_is_seen_once():
     black, senses = frame(), ClassicalSenses(room, 0)
     hand = np.array([(0.0, y, 1.0) for y in (0.0, 0.01, 0.02, 0.03)])
     through = seen_by_network(senses, network)
-    assert senses.hand_cover(black, points_in_map=hand).share == 1.0
-    assert through.hand_cover(black, points_in_map=hand).share == 0.0
-    assert through.hand_cover(black, points_in_map=hand).share == 0.0
+    assert senses.skin_cover(black, points_in_map=hand).share == 1.0
+    assert through.skin_cover(black, points_in_map=hand).share == 0.0
+    assert through.skin_cover(black, points_in_map=hand).share == 0.0
     assert asked == [black]

@@ -61,7 +61,7 @@ def _bare(context: Context, side: Side) -> bool:
     frame = context.world.look("head")
     arm = context.senses.arm(frame, side=side).points_in_map
     hand = np.linspace(arm[2], arm[3], HAND_POINTS)
-    if context.senses.hand_cover(frame, points_in_map=hand).share > COVERED:
+    if context.senses.skin_cover(frame, points_in_map=hand).share > COVERED:
         return False
     try:
         return context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).armhole_at > OFF

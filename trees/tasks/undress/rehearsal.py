@@ -53,7 +53,7 @@ class WornScript(ScriptedSenses):
             raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the worn {side} sleeve")
         return super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map)
 
-    def hand_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
+    def skin_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """None: the sleeves are short."""
         return Cover(stamp=frame.stamp, confidence=0.9, share=0.0)
 

@@ -1,4 +1,4 @@
-"""Whether a person's hand is inside the sleeve: skin that shows where the hand is says no."""
+"""Whether a hand or an arm is inside a sleeve: skin that shows where it is says no."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from ..image.surfaces import Surface, surfaces_at
 
 
 @dataclass(frozen=True, kw_only=True)
-class HandCoverTuning(Quantities):
-    """Numbers of the look at a hand."""
+class SkinCoverTuning(Quantities):
+    """Numbers of the look at a hand or an arm."""
 
-    min_points: int = quantity(4, "1", "of the hand's axis in view", "choice: fewer say little about a hand")
-
-
-DEFAULT = HandCoverTuning()
+    min_points: int = quantity(4, "1", "of its axis in view", "choice: fewer say little about a hand")
 
 
-def hand_cover(frame: Frame, points_in_map: np.ndarray, tuning: HandCoverTuning = DEFAULT) -> Cover:
-    """Ask along the axis of a hand whether the camera sees something else than skin there.
+DEFAULT = SkinCoverTuning()
+
+
+def skin_cover(frame: Frame, points_in_map: np.ndarray, tuning: SkinCoverTuning = DEFAULT) -> Cover:
+    """Ask along the axis of a hand, or of an arm, whether the camera sees something else than skin there.
 
     In recorded pulls the share was 1 for a hand inside and at most 0.2 for one that the sleeve had missed.
 
     Args:
         frame: a view from close by; what stands between counts as a cover, so the view must be free.
-        points_in_map: (n, 3) on the axis of the hand [m].
+        points_in_map: (n, 3) on its axis [m].
         tuning: numbers.
 
     Raises:
@@ -39,6 +39,6 @@ def hand_cover(frame: Frame, points_in_map: np.ndarray, tuning: HandCoverTuning 
     """
     rows, columns, _, inside = pixels_of(frame, points_in_map)
     if inside.sum() < tuning.min_points:
-        raise PerceptionFailure(Problem.OUT_OF_REACH, "hand of the person")
+        raise PerceptionFailure(Problem.OUT_OF_REACH, "hand or arm of the person")
     seen = surfaces_at(frame.rgb, rows[inside], columns[inside])
     return Cover(stamp=frame.stamp, confidence=float(inside.mean()), share=float((seen != Surface.SKIN).mean()))
