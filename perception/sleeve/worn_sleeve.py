@@ -43,18 +43,17 @@ def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: WornSl
     """
     shoulder, along = arm_in_map[0], arm_in_map[1] - arm_in_map[0]
     line = shoulder + np.outer(tuning.line, along)
-    found = [tape_near(frame, tape, line) for tape in (Surface.ARMHOLE, Surface.CUFF)]
-    if min(map(len, found)) < tuning.min_points:
+    armhole, cuff = (tape_near(frame, tape, line) for tape in (Surface.ARMHOLE, Surface.CUFF))
+    if min(len(armhole), len(cuff)) < tuning.min_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, f"both bindings of the worn {side} sleeve")
     length = float(np.linalg.norm(along))
-    ways = [(points - shoulder) @ along / length for points in found]
-    armhole, cuff = (float(np.median(way)) / length for way in ways)
+    armhole_at, cuff_at = (float(np.median((tape - shoulder) @ along)) / length**2 for tape in (armhole, cuff))
     return WornSleeve(
         stamp=frame.stamp,
-        confidence=min(1.0, min(map(len, found)) / tuning.full_points),
+        confidence=min(1.0, min(len(armhole), len(cuff)) / tuning.full_points),
         side=side,
-        armhole_at=armhole,
-        cuff_at=cuff,
-        reach=armhole_reach(*found, arm_in_map, frame.pose_camera_in_map[:3, 3]),
-        round_arm=share_round(found[1], line),
+        armhole_at=armhole_at,
+        cuff_at=cuff_at,
+        reach=armhole_reach(armhole, cuff, arm_in_map, frame.pose_camera_in_map[:3, 3]),
+        round_arm=share_round(cuff, line),
     )
