@@ -8,11 +8,11 @@ import numpy as np
 
 from ...sim.bullet.grip import cloth_between
 from ...sim.bullet.soft_world import MARGIN
+from ...sim.robot.hand_boxes import boxes_of
 from ...sim.spring.fingers import PLACES, near_boxes, push_aside
 from ...sim.spring.sheet import Sheet
 from .action import HandPath
 from .gowns import sheet_of
-from ...sim.robot.hand_boxes import boxes_of
 from .hung_state import HungState
 from .numbers import ACTION, HANG, ActionNumbers
 
