@@ -43,8 +43,10 @@ def test_same_seeds_same_bytes_and_what_is_there_is_kept(made: Path) -> None:
 def test_ceiling_counts_states_that_only_sweeps_win(made: Path) -> None:
     data = dataset.load_dataset(made)
     found = ceiling(data)
-    assert len(data.seeds) == 3 and found.hard.all()
-    assert found.primitives.all() and not found.direct_pixels.any()
+    assert len(data.seeds) == 3
+    assert found.hard.all()
+    assert found.primitives.all()
+    assert not found.direct_pixels.any()
     assert "Sweeps win 3 states" in table(data)
 
 

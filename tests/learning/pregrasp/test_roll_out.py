@@ -23,7 +23,8 @@ def test_gown_hangs_still_from_one_end_of_its_neckline(state: HungState) -> None
     mesh = mesh_of(state.gown)
     assert np.linalg.norm(state.vertices[list(state.held)], axis=1).max() < 0.1
     assert (set(mesh.corners) & set(state.held)) == set(mesh.corners) - {state.wanted}
-    assert state.vertices[:, 2].max() < 0.1 and state.vertices[state.wanted, 2] < -0.6
+    assert state.vertices[:, 2].max() < 0.1
+    assert state.vertices[state.wanted, 2] < -0.6
     assert state.speed < 0.15
 
 
@@ -68,7 +69,9 @@ def test_the_same_action_comes_to_the_same_whatever_was_done_before(state: HungS
 
 def test_a_grasp_far_from_the_gown_takes_nothing(state: HungState) -> None:
     grasp = roll_out(state, path_to(np.array((1.0, 1.0, -0.8)), 0, 1))
-    assert grasp.layers == 0 and not grasp.corner and not grasp.success
+    assert grasp.layers == 0
+    assert not grasp.corner
+    assert not grasp.success
 
 
 def test_kept_seeds_are_those_from_9000_on() -> None:

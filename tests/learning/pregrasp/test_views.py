@@ -55,12 +55,14 @@ def test_the_best_action_is_on_the_gown(views: Views) -> None:
     only = best_action(values, views, grasp_only=True)
     assert (only.view, only.primitive) == (3, DIRECT)
     explored = any_action(np.random.default_rng(3), views, grasp_only=True)
-    assert explored.primitive == DIRECT and views.depth[explored.view, explored.row, explored.column] > 0
+    assert explored.primitive == DIRECT
+    assert views.depth[explored.view, explored.row, explored.column] > 0
 
 
 def test_what_is_seen_is_zero_off_the_gown(views: Views) -> None:
     image = seen(views)
-    assert image.shape == (6, CHANNELS, *views.depth.shape[1:]) and image.dtype == np.float32
+    assert image.shape == (6, CHANNELS, *views.depth.shape[1:])
+    assert image.dtype == np.float32
     off = views.depth == 0
     assert not image[:, :3].transpose(0, 2, 3, 1)[off].any()
     assert np.abs(image[:, 0]).max() < 6.0
