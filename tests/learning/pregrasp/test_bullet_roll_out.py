@@ -11,8 +11,8 @@ from caretree.learning.pregrasp.roll_out import roll_out
 
 
 def test_both_engines_push_the_cloth_the_same_way() -> None:
-    state = hang(104)
-    path = path_to(state.vertices[state.wanted].astype(float), 4, PRIMITIVES.index("direct"))
+    state = hang(102)
+    path = path_to(state.vertices[state.wanted].astype(float), 5, PRIMITIVES.index("direct"))
     spring, bullet = roll_out(state, path), bullet_roll_out(state, path)
     apart = np.linalg.norm(spring.vertices - bullet.vertices, axis=1)
     moved = np.linalg.norm(bullet.vertices - state.vertices, axis=1)
