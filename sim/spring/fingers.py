@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import njit
-from .touching import FASTEST, FRICTION, NORMAL, PUSH, SURFACE, _on_box
+from .touching import FASTEST, FRICTION, NORMAL, PUSH, SURFACE, on_box
 
 PLACES = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4.0  # barycentric, (15, 3)
 COLUMNS = 15
@@ -90,7 +90,7 @@ def push_aside(
             for d in range(3):
                 point[d] = one * x[i, d] + two * x[j, d] + three * x[k, d]
             contact = found[count]
-            gap, _ = _on_box(point, boxes[b], box_speeds[b], away, contact)
+            gap, _ = on_box(point, boxes[b], box_speeds[b], away, contact)
             gap -= margin
             leaving = 0.0
             for d in range(3):
