@@ -84,7 +84,9 @@ def _on_capsule(point, ends, speed, radius, contact):
 
 
 @njit(inline="always")
-def on_box(point, box, speed, away, contact):
+def on_box(
+    point: np.ndarray, box: np.ndarray, speed: np.ndarray, away: np.ndarray, contact: np.ndarray
+) -> tuple[float, bool]:
     """Normal and velocity of the surface into `contact`; returns the gap, and whether the surface is flat there.
 
     Edges are round; `away` (3,) is room to work in.
