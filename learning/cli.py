@@ -16,6 +16,7 @@ USAGE = """usage: caretree learn PART COMMAND ...
 parts:
   physics    a garment's physics from one depth clip of it falling
   vision     gown and person in a picture, whatever their colours
+  pregrasp   the manipulation that isolates a corner of a gown in one hand, and grasps it
 """
 
 
@@ -34,6 +35,8 @@ def main(argv: list[str], seers: Seers | None = None) -> int:
         return 0
     if argv[0] == "vision":
         return int(importlib.import_module(".vision.cli", __package__).main(argv[1:], seers))
+    if argv[0] == "pregrasp":
+        return int(importlib.import_module(".pregrasp.cli", __package__).main(argv[1:]))
     if argv[0] != "physics":
-        raise CaretreeError(f"`caretree learn` has no part '{argv[0]}', it has physics and vision")
+        raise CaretreeError(f"`caretree learn` has no part '{argv[0]}', it has physics, vision and pregrasp")
     return int(importlib.import_module(".physics.cli", __package__).main(argv[1:]))

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..robot.hand_boxes import local_boxes
 from .handle_turn import motor_targets
 from .soft_world import GRAVITY
 from .units import ROOM
@@ -46,13 +47,15 @@ class Handle:
     Args:
         client: BulletClient of the room.
         pose_in_map: (4, 4) where to start.
+        opening: of fingers that push cloth aside, boxes on the handle [m]; None for a handle that touches nothing.
+            They keep the orientation that they have at the start.
     """
 
-    def __init__(self, client: Any, pose_in_map: np.ndarray) -> None:
+    def __init__(self, client: Any, pose_in_map: np.ndarray, opening: float | None = None) -> None:
         self.client = client
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "handle.urdf"
-            path.write_text(_urdf())
+            path.write_text(_urdf("" if opening is None else _fingers(pose_in_map[:3, :3], opening)))
             self.body: int = client.loadURDF(str(path), useFixedBase=True)
         self.link = _LINK
         for link in range(-1, 6):
@@ -123,14 +126,29 @@ class Handle:
         return np.array(self.client.getLinkState(self.body, self.link)[4])
 
 
-def _urdf() -> str:
+def _fingers(turn: np.ndarray, opening: float) -> str:
+    """Collision shapes of two fingers and a palm on a link whose axes are the map's."""
+    roll, pitch, yaw = np.arctan2(turn[2, 1], turn[2, 2]), -np.arcsin(turn[2, 0]), np.arctan2(turn[1, 0], turn[0, 0])
+    parts = []
+    for middle, half in zip(*local_boxes(opening), strict=True):
+        x, y, z = turn @ middle
+        a, b, c = 2 * half
+        parts.append(
+            f'<collision><origin xyz="{x:.6f} {y:.6f} {z:.6f}" rpy="{roll:.9f} {pitch:.9f} {yaw:.9f}"/>'
+            f'<geometry><box size="{a:.6f} {b:.6f} {c:.6f}"/></geometry></collision>'
+        )
+    return "".join(parts)
+
+
+def _urdf(fingers: str = "") -> str:
     # below 1e-3 kg m^2 the turning motors do not hold against the anchors
     inertia = '<inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/>'
     parts = [f'<link name="room"><inertial><mass value="0"/>{inertia}</inertial></link>']
     parent = "room"
     for k, (kind, axis) in enumerate(_AXES):
         mass = MASS if k == _LINK else LINK_MASS
-        parts.append(f'<link name="l{k}"><inertial><mass value="{mass}"/>{inertia}</inertial></link>')
+        shapes = fingers if k == _LINK else ""
+        parts.append(f'<link name="l{k}"><inertial><mass value="{mass}"/>{inertia}</inertial>{shapes}</link>')
         # lower > upper: no limit, hence no limit constraint to solve for
         parts.append(
             f'<joint name="j{k}" type="{kind}"><parent link="{parent}"/><child link="l{k}"/>'

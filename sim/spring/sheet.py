@@ -118,11 +118,7 @@ class Sheet:
             if self._layers is not None:
                 self._layers.look(self.x, REACH / 2)
         self._looked += 1
-        s, force = self.springs, np.empty_like(self.x)
-        _free_step(
-            *(self.x, self.v, s.start, s.other, s.stiffness, s.rest, s.mass, s.area, self._band.row, self._band.lower),
-            *(self._rim, s.damping, s.air_drag, self.gravity, self.dt, force),
-        )
+        force = self.free_step()
         if self._layers is not None:
             self._layers.part(self.x, self.v, self._loose, self.dt, ROUNDS)
         impulses = meet(
@@ -131,6 +127,24 @@ class Sheet:
             *(*self._edges, self._longest, self._pulls, ROUNDS, given),
         )
         _move(self.x, self.v, force, impulses, self.load, self.dt)
+
+    def free_step(self) -> np.ndarray:
+        """Give the cloth the velocities that springs, air, gravity and damping make; returns their force (V, 3) [N]."""
+        s, force = self.springs, np.empty_like(self.x)
+        _free_step(
+            *(self.x, self.v, s.start, s.other, s.stiffness, s.rest, s.mass, s.area, self._band.row, self._band.lower),
+            *(self._rim, s.damping, s.air_drag, self.gravity, self.dt, force),
+        )
+        return force
+
+    def move_on(self) -> None:
+        """Go where the velocities lead in one step."""
+        self.x += self.dt * self.v
+
+    @property
+    def loose(self) -> np.ndarray:
+        """(V,) one over the mass of each vertex, 0 of those that are held [1/kg]."""
+        return self._loose
 
     def _near(self, solids: Solids) -> np.ndarray:
         one, other = self._points

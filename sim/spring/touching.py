@@ -84,7 +84,9 @@ def _on_capsule(point, ends, speed, radius, contact):
 
 
 @njit(inline="always")
-def _on_box(point, box, speed, away, contact):
+def on_box(
+    point: np.ndarray, box: np.ndarray, speed: np.ndarray, away: np.ndarray, contact: np.ndarray
+) -> tuple[float, bool]:
     """Normal and velocity of the surface into `contact`; returns the gap, and whether the surface is flat there.
 
     Edges are round; `away` (3,) is room to work in.
@@ -139,7 +141,7 @@ def _find_contacts(
             gap = _on_capsule(point, capsules[k], speeds[k], radii[k], contact) - margin
         else:
             n = k - len(capsules)
-            gap, flat = _on_box(point, boxes[n], box_speeds[n], away, contact)
+            gap, flat = on_box(point, boxes[n], box_speeds[n], away, contact)
             gap -= margin
             if flat and i != j:  # the middle of an edge is no lower than its ends
                 continue

@@ -9,7 +9,7 @@ from caretree.trees.commands.seers import ClassicalSeer
 
 def test_an_unknown_part_names_those_that_are_there(capsys):
     assert main(["learn", "hearing"]) == 2
-    assert "it has physics and vision" in capsys.readouterr().err
+    assert "it has physics, vision and pregrasp" in capsys.readouterr().err
 
 
 def test_seeds_that_are_kept_for_tests_are_refused(capsys, tmp_path):

@@ -1,0 +1,45 @@
+"""The same action in PyBullet: its cloth, and fingers on a handle that push it; the room that trains nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...sim.bullet.cloth import Cloth
+from ...sim.bullet.handle import Handle
+from ...sim.bullet.soft_world import SoftWorld
+from .action import HandPath
+from .gowns import mesh_of
+from .hung_state import HungState
+from .numbers import ACTION, HANG, ActionNumbers
+from .roll_out import Grasp, grasp_of, waypoints
+
+
+def bullet_roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) -> Grasp:
+    """Carry out an action in a PyBullet room of its own.
+
+    Args:
+        state: the gown, at rest.
+        path: of the hand.
+        numbers: of the primitives.
+    """
+    world = SoftWorld(HANG.step)
+    try:
+        mesh = mesh_of(state.gown)
+        cloth = Cloth(world, mesh, mesh.vertices)
+        cloth.pin(state.held)
+        world.step()  # takes the rest lengths, see `learning/physics/engine/bullet.py`
+        cloth.place(np.asarray(state.vertices, float))
+        pose = path.pose_at_end
+        pose[:3, 3] = path.start
+        handle = Handle(world.client, pose, numbers.opening)
+        world.client.changeDynamics(handle.body, handle.link, lateralFriction=0.5)
+        for tip in waypoints(path, HANG.step, numbers):
+            pose[:3, 3] = tip
+            handle.follow(pose.copy())
+            world.step()
+        closed = path.pose_at_end
+        closed[:3, 3] = handle.position()  # where the motors have brought it
+        there = HandPath(turn=path.turn, start=path.start, inside=path.inside, end=closed[:3, 3])
+        return grasp_of(state, cloth.vertices(), there, numbers.opening)
+    finally:
+        world.close()

@@ -1,0 +1,113 @@
+"""`caretree learn pregrasp data|train|evaluate`; each goes on where it was interrupted."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ...sim.command_line import CommandParser, seed, whole_number
+from ...sim.errors import CaretreeError
+from ...sim.scene.gown import GOWNS, HELD_OUT_GOWNS
+from ..shards import add_cluster_options
+from .numbers import KEPT_SEEDS
+
+
+def _seeds(text: str) -> range:
+    first, dash, last = text.partition("-")
+    try:
+        found = range(int(first), int(last if dash else first) + 1)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no span of seeds; for example 100-199") from None
+    if not found or found[0] < 0 or found[-1] >= KEPT_SEEDS:
+        raise argparse.ArgumentTypeError(f"{text!r}: seeds are 0 to {KEPT_SEEDS - 1}, later ones are kept for tests")
+    return found
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = CommandParser(prog="caretree learn pregrasp")
+    sub = top.add_subparsers(dest="command", required=True)
+    data = sub.add_parser("data", help="gowns that hang from one hand, and what the oracle's grasps come to")
+    data.add_argument("folder", metavar="DIR", help="made when it is not there")
+    data.add_argument("--seeds", type=_seeds, default=_seeds("100-199"), metavar="A-B", help="default 100-199")
+    data.add_argument("--gown", choices=(*GOWNS, *HELD_OUT_GOWNS), help="of all states (default: the seed draws it)")
+    add_cluster_options(data)
+    train = sub.add_parser("train", help="train the policy and write it as ONNX")
+    train.add_argument("data", type=Path, metavar="DATA", help="folder of `data`: its successes are demonstrations")
+    train.add_argument("--out", required=True, type=Path, metavar="DIR", help="checkpoint, record and pregrasp.onnx")
+    train.add_argument("--steps", type=whole_number, default=400, metavar="N", help="on demonstrations (default 400)")
+    train.add_argument("--trials", type=int, default=1000, metavar="N", help="active trials after them (default 1000)")
+    train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
+    train.add_argument("--grasp-only", action="store_true", help="ablation: the direct grasp alone")
+    train.add_argument("--no-demonstrations", action="store_true", help="ablation: active trials alone")
+    test = sub.add_parser("evaluate", help="ceiling of the oracle, success of a policy, agreement with PyBullet")
+    test.add_argument("data", type=Path, metavar="DATA", help="folder of `data` that no training saw")
+    test.add_argument("--policy", type=Path, metavar="FILE", help="a pregrasp.onnx")
+    test.add_argument("--bullet", type=int, default=0, metavar="N", help="repeat N attempts in PyBullet (0.5 s each)")
+    test.add_argument("--seed", type=seed, default=0, metavar="N", help="of which attempts these are (default 0)")
+    test.add_argument("--out", type=Path, metavar="FILE", help="also write the tables, Markdown")
+    return top
+
+
+def main(argv: list[str]) -> int:
+    """Run one command.
+
+    Raises:
+        CaretreeError: the input cannot be used.
+    """
+    options = parser().parse_args(argv)
+    if options.command == "data":
+        from .dataset import make_dataset
+
+        print(
+            make_dataset(
+                options.folder, options.seeds, _say, gown=options.gown, jobs=options.jobs, address=options.address
+            )
+        )
+    elif options.command == "train":
+        _train(options)
+    else:
+        _evaluate(options)
+    return 0
+
+
+def _train(options: argparse.Namespace) -> None:
+    try:
+        import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
+    except ImportError as error:
+        raise CaretreeError("`caretree learn pregrasp train` needs PyTorch: pip install 'caretree[learn]'") from error
+    from .train import Plan, train
+
+    torch.set_num_threads(1)  # as the other trainings: bit by bit the same on any number of cores
+    plan = Plan(
+        steps=0 if options.no_demonstrations else options.steps,
+        trials=max(0, options.trials),
+        grasp_only=options.grasp_only,
+        seed=options.seed,
+    )
+    print(train(options.data, options.out, plan, _say))
+
+
+def _evaluate(options: argparse.Namespace) -> None:
+    from .ceiling import table
+    from .dataset import load_dataset
+
+    data = load_dataset(options.data)
+    texts = [table(data)]
+    if options.policy:
+        from .evaluate import policy_table
+
+        texts.append(policy_table(data, options.policy, _say))
+    if options.bullet > 0:
+        from .agreement import agreement_table
+
+        texts.append(agreement_table(data, options.bullet, options.seed, _say))
+    text = "\n\n".join(texts)
+    print(text)
+    if options.out:
+        options.out.write_text(text + "\n", encoding="utf-8")
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

@@ -1,0 +1,22 @@
+"""PyBullet and the spring engine do the same to a gown that fingers push."""
+
+from __future__ import annotations
+
+import numpy as np
+from caretree.learning.pregrasp.action import path_to
+from caretree.learning.pregrasp.bullet_roll_out import bullet_roll_out
+from caretree.learning.pregrasp.hung_state import hang
+from caretree.learning.pregrasp.numbers import PRIMITIVES
+from caretree.learning.pregrasp.roll_out import roll_out
+
+
+def test_both_engines_push_the_cloth_the_same_way() -> None:
+    state = hang(102)
+    path = path_to(state.vertices[state.wanted].astype(float), 5, PRIMITIVES.index("direct"))
+    spring, bullet = roll_out(state, path), bullet_roll_out(state, path)
+    apart = np.linalg.norm(spring.vertices - bullet.vertices, axis=1)
+    moved = np.linalg.norm(bullet.vertices - state.vertices, axis=1)
+    assert np.median(apart) < 0.005
+    assert apart.max() < 0.05
+    assert moved.max() > 0.01  # the fingers have met it
+    assert (spring.layers, spring.corner) == (bullet.layers, bullet.corner)

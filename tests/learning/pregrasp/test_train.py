@@ -1,0 +1,83 @@
+"""The policy learns what it is shown, goes on where it stopped, and OpenCV runs it as PyTorch does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="PyTorch is an extra: pip install 'caretree[learn]'")
+pytest.importorskip("onnx", reason="onnx is in the extra `learn`")
+pytestmark = pytest.mark.filterwarnings("ignore")  # torch says that its exporter is the old one
+
+from caretree.learning.pregrasp import dataset  # noqa: E402 - after the check for torch
+from caretree.learning.pregrasp import train as training_file  # noqa: E402
+from caretree.learning.pregrasp.action import Action  # noqa: E402
+from caretree.learning.pregrasp.affordance import seen  # noqa: E402
+from caretree.learning.pregrasp.evaluate import Policy  # noqa: E402
+from caretree.learning.pregrasp.oracle import Attempt  # noqa: E402
+from caretree.learning.pregrasp.train import Plan, Training, train  # noqa: E402
+from caretree.sim.errors import CaretreeError  # noqa: E402
+
+
+def right_of_the_middle(state: object, views: dataset.Views) -> list[Attempt]:
+    """Success of the move to the right at one pixel of view 2, and of nothing else."""
+    spots = np.argwhere(views.depth[2] > 0)
+    row, column = (int(k) for k in spots[len(spots) // 2])
+    return [
+        Attempt(action=Action(primitive=p, view=2, row=row, column=column), pixel=0, layers=1, corner=p == 2)
+        for p in range(3)
+    ]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(dataset, "try_all", right_of_the_middle)
+    return dataset.make_dataset(tmp_path / "data", range(110, 112))
+
+
+def test_it_learns_which_primitive_succeeds(folder: Path) -> None:
+    training = Training(dataset.load_dataset(folder), Plan(steps=1, trials=0))
+    first = training.step()
+    losses = [training.step() for _ in range(25)]
+    assert np.mean(losses[-5:]) < 0.8 * first
+
+
+def test_it_goes_on_where_it_stopped_and_runs_without_torch(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(training_file, "SAVE", 2)
+    plan, out = Plan(steps=4, trials=4), folder.parent / "out"
+    path = train(folder, folder.parent / "whole", plan)
+    step, calls = Training.step, []
+
+    def interrupted(self: Training) -> float:
+        calls.append(1)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        return step(self)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Training, "step", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            train(folder, out, plan)
+    image = seen(dataset.load_dataset(folder).views(0))
+    values = Policy(train(folder, out, plan)).values(image)
+    assert np.allclose(values, Policy(path).values(image), atol=1e-6)
+    network = Training(dataset.load_dataset(folder), plan).network
+    network.load_state_dict(torch.load(out / "checkpoint.pt", weights_only=True)["network"])
+    with torch.no_grad():
+        assert np.allclose(network(torch.from_numpy(image)).numpy(), values, atol=1e-5)
+    assert path.stat().st_size < 2e6
+    with pytest.raises(CaretreeError, match="another training"):
+        train(folder, out, Plan(steps=5, trials=4))
+
+
+def test_nothing_to_train_on_is_refused(folder: Path) -> None:
+    with pytest.raises(CaretreeError, match="nothing to train on"):
+        train(folder, folder.parent / "none", Plan(steps=0, trials=0))
+
+
+def test_a_broken_policy_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "pregrasp.onnx").write_bytes(b"no")
+    with pytest.raises(CaretreeError, match="no policy"):
+        Policy(tmp_path / "pregrasp.onnx")
