@@ -142,7 +142,7 @@ def surely_middle(context: Context, bed: Scope) -> Behaviour:
         return sequence(f"from the {side} {why}", *go_beside(arm_scope(context, f"{side} {why}", side), side))
 
     def second_opinion() -> Behaviour:
-        near = CheckCollar("it does not lie far aside", Scope(bed, "from a side"), tuning=NOT_FAR)
+        near = CheckCollar("not far aside", Scope(bed, "from a side"), tuning=NOT_FAR)
         return sequence("a second opinion", near, beside("right", "then"))
 
     lies = CheckCollar("it lies in the middle", Scope(bed, "from a side"), tuning=FROM_A_SIDE)
