@@ -1,7 +1,7 @@
 """Train the policy: demonstrations of the oracle, then active trials in the spring engine.
 
     L = mean of bce(F(s, a), r) over the actions that were tried
-        + lambda * sum of bce(F(s, .), H(s)) over the pixels of the gown / (1 + sum of H(s) there)
+        + lambda * sum of bce(F(s, .), H(s)) over the pixels of the gown / (1 + sum of H(s) there), sums of a batch
 
 H is a Gaussian at every action by which a demonstration succeeded, 0 elsewhere.  The paper has Huber's loss and the
 mean square in place of the entropies; with them our values fell to 0 everywhere, where a sigmoid has no slope to learn
@@ -101,7 +101,7 @@ class Training:
         ]
         logits = self.network.logits(torch.from_numpy(np.concatenate([self.images[k] for k in chosen])))
         logits = logits.reshape(len(chosen), -1, *logits.shape[1:])
-        loss = torch.zeros(())
+        loss, spread, marked = torch.zeros(()), torch.zeros(()), torch.ones(())
         for n, k in enumerate(chosen):
             tried = np.array(self.tried[k])
             told = logits[n][tried[:, 0], tried[:, 1], tried[:, 2], tried[:, 3]]
@@ -109,8 +109,9 @@ class Training:
             if k < self.demonstrated:
                 gown = torch.from_numpy(self.images[k][:, GOWN] > 0)[:, None].expand_as(logits[n])
                 heat = torch.from_numpy(self.heat[k])
-                spread = entropy(logits[n][gown], heat[gown], reduction="sum")
-                loss = loss + LAMBDA * spread / (1.0 + heat[gown].sum())
+                spread = spread + entropy(logits[n][gown], heat[gown], reduction="sum")
+                marked = marked + heat[gown].sum()
+        loss = loss / len(chosen) + LAMBDA * spread / marked
         self.optimiser.zero_grad()
         loss.backward()
         self.optimiser.step()
