@@ -10,6 +10,7 @@ from .oracle import DIRECT
 from .views import Views
 
 CHANNELS = 5
+GOWN = 1  # the channel that tells gown from background
 
 
 def seen(views: Views) -> np.ndarray:

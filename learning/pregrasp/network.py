@@ -35,10 +35,14 @@ class PolicyNetwork(nn.Module):
         nn.init.constant_(self.heads.bias, -3.0)  # grasps fail, as long as nothing else is known
 
     def forward(self, image: torch.Tensor) -> torch.Tensor:
-        """Values of a batch of views."""
+        """Expected rewards of a batch of views, (n, 3, H, W), 0 to 1."""
+        return torch.sigmoid(self.logits(image))
+
+    def logits(self, image: torch.Tensor) -> torch.Tensor:
+        """Their logits (n, 3, H, W), which a loss needs: where all is near 0, a sigmoid has no slope to learn by."""
         half = functional.relu(self.first(image))
         quarter = self.quarter(half)
         up = functional.interpolate(self.to_quarter(self.eighth(quarter)), scale_factor=2.0, mode="nearest")
         quarter = functional.relu(self.mix_quarter(up + quarter))
         up = functional.interpolate(self.to_half(quarter), scale_factor=2.0, mode="nearest")
-        return torch.sigmoid(functional.pixel_shuffle(self.heads(functional.relu(self.mix_half(up + half))), 2))
+        return functional.pixel_shuffle(self.heads(functional.relu(self.mix_half(up + half))), 2)

@@ -1,9 +1,13 @@
 """Train the policy: demonstrations of the oracle, then active trials in the spring engine.
 
-    L = huber(F(s, a) - r) at the pixels that were tried + lambda * mse(F(s, .), H(s))
+    L = mean of bce(F(s, a), r) over the actions that were tried
+        + lambda * sum of bce(F(s, .), H(s)) over the pixels of the gown / (1 + sum of H(s) there), sums of a batch
 
-H is a Gaussian at every action by which a demonstration succeeded, 0 elsewhere.  Each random choice has a generator of
-its own number, so that a training that goes on after an interruption makes the same choices.
+H is a Gaussian at every action by which a demonstration succeeded, 0 elsewhere.  The paper has Huber's loss and the
+mean square in place of the entropies; with them our values fell to 0 everywhere, where a sigmoid has no slope to learn
+by.  The entropy of logits has one; background is left out since it cannot be chosen; the sum of H keeps the few pixels
+of the blobs from drowning.  Each random choice has a generator of its own number, so that a training that goes on after
+an interruption makes the same choices.
 """
 
 from __future__ import annotations
@@ -18,10 +22,12 @@ from pathlib import Path
 
 import numpy as np
 import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
-from torch.nn import functional  # pyright: ignore[reportMissingImports] - in the extra `learn`
+from torch.nn.functional import (  # pyright: ignore[reportMissingImports] - in the extra `learn`
+    binary_cross_entropy_with_logits as entropy,
+)
 
 from ...sim.errors import CaretreeError
-from .affordance import any_action, best_action, seen
+from .affordance import GOWN, any_action, best_action, seen
 from .dataset import Dataset, load_dataset
 from .export import export
 from .hung_state import hang
@@ -30,7 +36,7 @@ from .oracle import DIRECT, attempt
 from .views import photograph
 
 BATCH = 4  # states of a step
-RATE, LAMBDA, BLOB = 2e-3, 20.0, 1.5  # of learning; weight of the MSE; width of a Gaussian [px]
+RATE, LAMBDA, BLOB = 2e-3, 1.0, 1.5  # of learning; lambda; width of a Gaussian [px]
 EPSILON, DECAY = 0.5, 300  # of exploring at the first trial; trials in which it falls to 37 %
 EVERY, SAVE, LAST = 4, 100, 200  # trials to a step; to a checkpoint; over which success is told
 TRIAL_SEEDS = 2000  # first seed of the states of active trials; they end at 8999
@@ -93,15 +99,19 @@ class Training:
             else self.demonstrated + int(rng.integers(fresh))
             for n in range(BATCH)
         ]
-        values = self.network(torch.from_numpy(np.concatenate([self.images[k] for k in chosen])))
-        values = values.reshape(len(chosen), -1, *values.shape[1:])
-        loss = torch.zeros(())
+        logits = self.network.logits(torch.from_numpy(np.concatenate([self.images[k] for k in chosen])))
+        logits = logits.reshape(len(chosen), -1, *logits.shape[1:])
+        loss, spread, marked = torch.zeros(()), torch.zeros(()), torch.ones(())
         for n, k in enumerate(chosen):
             tried = np.array(self.tried[k])
-            told = values[n][tried[:, 0], tried[:, 1], tried[:, 2], tried[:, 3]]
-            loss = loss + functional.huber_loss(told, torch.from_numpy(tried[:, 4]).float())
+            told = logits[n][tried[:, 0], tried[:, 1], tried[:, 2], tried[:, 3]]
+            loss = loss + entropy(told, torch.from_numpy(tried[:, 4]).float(), reduction="mean")
             if k < self.demonstrated:
-                loss = loss + LAMBDA * functional.mse_loss(values[n], torch.from_numpy(self.heat[k]))
+                gown = torch.from_numpy(self.images[k][:, GOWN] > 0)[:, None].expand_as(logits[n])
+                heat = torch.from_numpy(self.heat[k])
+                spread = spread + entropy(logits[n][gown], heat[gown], reduction="sum")
+                marked = marked + heat[gown].sum()
+        loss = loss / len(chosen) + LAMBDA * spread / marked
         self.optimiser.zero_grad()
         loss.backward()
         self.optimiser.step()

@@ -44,6 +44,14 @@ def test_it_learns_which_primitive_succeeds(folder: Path) -> None:
     assert np.mean(losses[-5:]) < 0.8 * first
 
 
+def test_it_learns_from_values_that_have_died(folder: Path) -> None:
+    training = Training(dataset.load_dataset(folder), Plan(steps=1, trials=0))
+    assert training.network.heads.bias is not None
+    torch.nn.init.constant_(training.network.heads.bias, -200.0)  # a sigmoid of 0, with a slope of 0
+    first = training.step()
+    assert np.mean([training.step() for _ in range(5)]) < first
+
+
 def test_it_goes_on_where_it_stopped_and_runs_without_torch(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training_file, "SAVE", 2)
     plan, out = Plan(steps=4, trials=4), folder.parent / "out"
