@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 from ..sim.cluster import Cluster, LostCallError
@@ -22,6 +24,21 @@ def add_cluster_options(parser: argparse.ArgumentParser) -> None:
         help="shards at once (1; on a cluster as many as it has cores); more than 1 needs Ray",
     )
     parser.add_argument("--address", metavar="ray://...", help="make it on a Ray cluster")
+
+
+def shard_name(number: int) -> str:
+    """File name of a shard."""
+    return f"shard_{number:04d}.npz"
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Write a file whole, or not at all: who is interrupted leaves the former one."""
+    part = path.with_name(path.name + ".part")
+    with part.open("wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(part, path)
 
 
 def each_shard(

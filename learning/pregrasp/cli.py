@@ -9,19 +9,8 @@ from pathlib import Path
 from ...sim.command_line import CommandParser, seed, whole_number
 from ...sim.errors import CaretreeError
 from ...sim.scene.gown import GOWNS, HELD_OUT_GOWNS
+from ..seeds import span_of_seeds
 from ..shards import add_cluster_options
-from .numbers import KEPT_SEEDS
-
-
-def _seeds(text: str) -> range:
-    first, dash, last = text.partition("-")
-    try:
-        found = range(int(first), int(last if dash else first) + 1)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no span of seeds; for example 100-199") from None
-    if not found or found[0] < 0 or found[-1] >= KEPT_SEEDS:
-        raise argparse.ArgumentTypeError(f"{text!r}: seeds are 0 to {KEPT_SEEDS - 1}, later ones are kept for tests")
-    return found
 
 
 def parser() -> argparse.ArgumentParser:
@@ -30,7 +19,9 @@ def parser() -> argparse.ArgumentParser:
     sub = top.add_subparsers(dest="command", required=True)
     data = sub.add_parser("data", help="gowns that hang from one hand, and what the oracle's grasps come to")
     data.add_argument("folder", metavar="DIR", help="made when it is not there")
-    data.add_argument("--seeds", type=_seeds, default=_seeds("100-199"), metavar="A-B", help="default 100-199")
+    data.add_argument(
+        "--seeds", type=span_of_seeds, default=span_of_seeds("100-199"), metavar="A-B", help="default 100-199"
+    )
     data.add_argument("--gown", choices=(*GOWNS, *HELD_OUT_GOWNS), help="of all states (default: the seed draws it)")
     add_cluster_options(data)
     train = sub.add_parser("train", help="train the policy and write it as ONNX")

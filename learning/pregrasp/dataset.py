@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
-from ..shards import each_shard
+from ..shards import each_shard, replace_file, shard_name
 from .hung_state import hang
 from .oracle import Attempt, try_all
 from .views import Views, photograph
@@ -99,10 +98,10 @@ def make_dataset(
     whole = {s["file"]: s for s in old["shards"] if s["states"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-len(seeds) // SHARD)) if shard_name(n) not in whole]
     for number, shard in each_shard(make_shard, missing, seeds, gown, jobs=jobs, address=address):
-        _replace(folder / shard_name(number), shard.pop("bytes"))
+        replace_file(folder / shard_name(number), shard.pop("bytes"))
         spent = shard.pop("seconds")
         whole[shard_name(number)] = shard
-        _replace(
+        replace_file(
             folder / INDEX, (json.dumps({**about, "shards": [whole[k] for k in sorted(whole)]}, indent=1)).encode()
         )
         made = sum(s["states"] for s in whole.values())
@@ -143,11 +142,6 @@ def make_shard(number: int, seeds: Sequence[int], gown: str | None) -> dict[str,
     }
 
 
-def shard_name(number: int) -> str:
-    """File name of a shard."""
-    return f"shard_{number:04d}.npz"
-
-
 def read_index(folder: str | Path) -> dict[str, Any]:
     """What a dataset's folder says about it.
 
@@ -186,9 +180,3 @@ def load_dataset(folder: str | Path) -> Dataset:
         raise CaretreeError(f"{folder}: the dataset is empty")
     digest = hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
     return Dataset(**{key: np.concatenate([part[key] for part in parts]) for key in parts[0]}, digest=digest)
-
-
-def _replace(path: Path, data: bytes) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(data)
-    os.replace(part, path)

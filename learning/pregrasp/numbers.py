@@ -53,4 +53,3 @@ class ActionNumbers(Quantities):
 
 HANG, VIEWS, ACTION = HangNumbers(), ViewNumbers(), ActionNumbers()
 PRIMITIVES = ("move_left", "direct", "move_right")
-KEPT_SEEDS = 9000  # seeds from here on are kept for tests that no tuning sees

@@ -27,6 +27,7 @@ from torch.nn.functional import (  # pyright: ignore[reportMissingImports] - in 
 )
 
 from ...sim.errors import CaretreeError
+from ..seeds import KEPT_SEEDS
 from .affordance import GOWN, any_action, best_action, seen
 from .dataset import Dataset, load_dataset
 from .export import export
@@ -39,7 +40,7 @@ BATCH = 4  # states of a step
 RATE, LAMBDA, BLOB = 2e-3, 1.0, 1.5  # of learning; lambda; width of a Gaussian [px]
 EPSILON, DECAY = 0.5, 300  # of exploring at the first trial; trials in which it falls to 37 %
 EVERY, SAVE, LAST = 4, 100, 200  # trials to a step; to a checkpoint; over which success is told
-TRIAL_SEEDS = 2000  # first seed of the states of active trials; they end at 8999
+TRIAL_SEEDS = 2000  # first seed of the states of active trials; they end before `KEPT_SEEDS`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,7 +123,7 @@ class Training:
         """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded."""
         plan, k = self.plan, self.trials
         rng = np.random.default_rng([plan.seed, 19, k])
-        state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (9000 - TRIAL_SEEDS))
+        state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS))
         views = photograph(state)
         image = seen(views)
         if rng.random() < EPSILON * np.exp(-k / DECAY):

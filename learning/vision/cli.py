@@ -12,20 +12,8 @@ from typing import Any
 from ...sim.command_line import CommandParser, seed, whole_number
 from ...sim.errors import CaretreeError
 from ...sim.scene.gown import HELD_OUT_GOWNS
+from ..seeds import span_of_seeds
 from ..shards import add_cluster_options
-
-KEPT_SEEDS = 9000  # from here on no seed is for training or trying
-
-
-def _seeds(text: str) -> range:
-    first, dash, last = text.partition("-")
-    try:
-        found = range(int(first), int(last if dash else first) + 1)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no span of seeds; for example 110-139") from None
-    if not found or found[0] < 0 or found[-1] >= KEPT_SEEDS:
-        raise argparse.ArgumentTypeError(f"{text!r}: seeds are 0 to {KEPT_SEEDS - 1}, later ones are kept for tests")
-    return found
 
 
 def _rate(text: str) -> float:
@@ -44,7 +32,9 @@ def parser() -> argparse.ArgumentParser:
     sub = top.add_subparsers(dest="command", required=True)
     states = sub.add_parser("states", help="states of the room to take pictures of")
     states.add_argument("folder", metavar="DIR", help="made when it is not there")
-    states.add_argument("--seeds", type=_seeds, default=_seeds("110-139"), metavar="A-B", help="default 110-139")
+    states.add_argument(
+        "--seeds", type=span_of_seeds, default=span_of_seeds("110-139"), metavar="A-B", help="default 110-139"
+    )
     states.add_argument(
         "--run", type=Path, action="append", default=[], metavar="DIR", help="a recorded run; may be repeated"
     )

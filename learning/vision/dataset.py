@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -18,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
-from ..shards import each_shard
+from ..shards import each_shard, replace_file, shard_name
 from .pictures import PARTS, Picture, chosen_states, draw_picture
 from .states import RoomState
 
@@ -143,11 +142,11 @@ def make_dataset(
     whole = {s["file"]: s for s in old["shards"] if s["pictures"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-spec.pictures // SHARD)) if shard_name(n) not in whole]
     for number, shard in each_shard(make_shard, missing, mine, spec, jobs=jobs, address=address):
-        _replace(folder / shard_name(number), shard.pop("bytes"))
+        replace_file(folder / shard_name(number), shard.pop("bytes"))
         spent = shard.pop("seconds")
         whole[shard_name(number)] = shard
         shards = [whole[name] for name in sorted(whole)]
-        _replace(folder / INDEX, (json.dumps({**about, "shards": shards}, indent=1) + "\n").encode())
+        replace_file(folder / INDEX, (json.dumps({**about, "shards": shards}, indent=1) + "\n").encode())
         made = sum(s["pictures"] for s in shards)
         say(f"{spec.part}: {made} of {spec.pictures} pictures, {spent:.1f} s for the last {shard['pictures']}")
     return folder
@@ -180,11 +179,6 @@ def make_shard(number: int, states: Sequence[RoomState], spec: DatasetSpec) -> d
     }
 
 
-def shard_name(number: int) -> str:
-    """File name of a shard."""
-    return f"shard_{number:04d}.npz"
-
-
 def read_index(folder: str | Path) -> dict[str, Any]:
     """What a dataset's folder says about it.
 
@@ -215,9 +209,3 @@ def load_dataset(folder: str | Path) -> tuple[dict[str, np.ndarray], str]:
             parts.append({key: file[key] for key in file.files})
     arrays = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
     return arrays, hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
-
-
-def _replace(path: Path, data: bytes) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(data)
-    os.replace(part, path)

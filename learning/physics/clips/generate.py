@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ....sim.errors import CaretreeError
-from ...shards import each_shard
+from ...shards import each_shard, replace_file, shard_name
 from .camera import misplacement, standard_camera
 from .clip import packed
 from .dataset import INDEX, SHARD, DatasetSpec, read_index, read_shard, write_index
@@ -77,20 +77,6 @@ def _depths(spec: DatasetSpec, ids: range) -> Iterator[np.ndarray]:
         yield packed(clip_of(depth, camera).depth)
 
 
-def shard_name(number: int) -> str:
-    """File name of a shard."""
-    return f"shard_{number:04d}.npz"
-
-
-def _write(path: Path, data: bytes) -> None:
-    part = path.with_name(path.name + ".part")
-    with part.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(part, path)
-
-
 def generate(
     folder: str | Path,
     spec: DatasetSpec,
@@ -137,7 +123,7 @@ def generate(
         say(f"{spec.kind}: {len(shards)} of {count} shards are there, {len(missing)} to make")
     keep()
     for number, shard in each_shard(make_shard, missing, spec, jobs=jobs, address=address):
-        _write(folder / shard["file"], shard.pop("bytes"))
+        replace_file(folder / shard["file"], shard.pop("bytes"))
         shards[number] = shard
         keep()
         fresh += shard["clips"]

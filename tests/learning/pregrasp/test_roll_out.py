@@ -7,8 +7,9 @@ import pytest
 from caretree.learning.pregrasp.action import path_to
 from caretree.learning.pregrasp.gowns import mesh_of
 from caretree.learning.pregrasp.hung_state import HungState, hang
-from caretree.learning.pregrasp.numbers import ACTION, HANG, KEPT_SEEDS, PRIMITIVES
+from caretree.learning.pregrasp.numbers import ACTION, HANG, PRIMITIVES
 from caretree.learning.pregrasp.roll_out import roll_out, waypoints
+from caretree.learning.seeds import KEPT_SEEDS
 from caretree.sim.robot.hand_boxes import boxes_of
 
 SEED = 104
