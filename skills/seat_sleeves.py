@@ -95,6 +95,12 @@ class SeatSleevesTuning(Quantities):
     brought_higher: float = quantity(
         0.03, "1", "of the upper arm, by which a draw raises an armhole that is drawn again", "choice: half of an error"
     )
+    level_share: float = quantity(
+        0.5,
+        "1",
+        "of the way headward that is level; over the rest the hands come down",
+        "choice: as both seams stayed high to the end, the collar between them lay over the mouth for 1.2 s (267)",
+    )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
@@ -185,8 +191,10 @@ class SeatSleeves(Skill):
             drawn.times[side] += 1
             drawn.reach[side] = reach[side]
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
-            over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
+            now = hand_now(self, side)[:3, 3]
+            level = place - (1.0 - tuning.level_share) * ((place - now) @ HEADWARD) * HEADWARD
+            over[side] = np.append(level[:2], now[2])
         yield from carry_each(self, over, tuning.carry, tuning.apart)
         yield from carry_each(self, laid, tuning.carry, tuning.apart, tuning.laying_speed)
         # at once, so that neither side gives way to the other

@@ -22,6 +22,7 @@ class Reason(enum.Enum):
     SLEEVE_FOLDED = "The sleeve does not open towards the person's hand."
     SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
     COLLAR_ASIDE = "The collar does not lie in the middle between the person's shoulders."
+    FACE_COVERED = "The gown lies over the person's face."
     SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."
     ARM_LOST = "The person's arm is no longer tracked."
     ARM_COVERED = "The gown lies over the arm that is to be dressed."

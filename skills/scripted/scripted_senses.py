@@ -37,6 +37,7 @@ from ..geometry.stances import HEADWARD, outwards
 from .scripted_person import laid_strap, lying_arm, lying_posture
 
 _CHEST = 0.4  # from the collar, within which cloth lies on the chest [m]
+_FACE = 0.1  # headward of the shoulders, from where a person has a face [m]
 
 _Senses = TypeVar("_Senses", bound="ScriptedSenses")
 
@@ -199,8 +200,9 @@ class ScriptedSenses(Senses):
         )
 
     def skin_cover(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
-        """All of it."""
-        return Cover(stamp=frame.stamp, confidence=0.9, share=1.0)
+        """All of an arm; nothing of the face."""
+        face = bool((points_in_map @ HEADWARD > PERSON.shoulders_headward + _FACE).all())
+        return Cover(stamp=frame.stamp, confidence=0.9, share=0.0 if face else 1.0)
 
     def cuff_round(self, frame: Frame, *, points_in_map: np.ndarray) -> Cover:
         """All the way round."""

@@ -36,6 +36,7 @@ from caretree.skills.view_around import ViewAround, Views
 from caretree.trees.tasks.draw_blanket.draw_up import DrawUp
 from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
+from caretree.trees.tasks.dressing.check_face import CheckFace
 from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
@@ -61,6 +62,7 @@ def pre_grasp_manipulate(context):
 EXAMPLES = {
     CarrySleeve: lambda context: CarrySleeve("carry across", context, side="left"),
     CheckCollar: lambda context: CheckCollar("check collar", context),
+    CheckFace: lambda context: CheckFace("check face", context),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     TakeSeam: lambda context: TakeSeam("take seam", context, side="right", hand="left"),

@@ -24,6 +24,7 @@ from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
+from .check_face import CheckFace
 from .draw_over import DrawOver
 from .patience import patient
 from .tuning import DRESSING
@@ -91,21 +92,24 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 def neaten(context: Context, bed: Scope) -> Behaviour:
     """From the head of the bed, see whether the gown is worn neatly; what is not so is set right, and seen anew.
 
-    A front that shows its inside is drawn flat first, as that draws sleeves down.  The collar comes last: while a
-    sleeve is low, half of the neckline is out of sight, and drawing both up takes the collar along.  Cloth springs back
-    in part, so what did not do is done once more, from where it lies by then.  Each state is looked at once: sleeves
-    that are looked at from beside, before they are drawn up and after, cost half a minute each time (257 to 260).
+    A collar that lies over the face comes before all else.  A front that shows its inside is drawn flat then, as that
+    draws sleeves down.  The collar's middle comes last: while a sleeve is low, half of the neckline is out of sight,
+    and drawing both up takes the collar along.  Cloth springs back in part, so what did not do is done once more, from
+    where it lies by then.  Each state is looked at once: sleeves that are looked at from beside, before they are drawn
+    up and after, cost half a minute each time (257 to 260).
     """
     sleeves = [shown(context, f"{side} armhole", side) for side in SIDES]
     middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
     flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
-    seen = sequence("neat", go_up(bed), flat_first, *sleeves, middle, flat_now)
+    face_free = CheckFace("the face is free", bed)
+    seen = sequence("neat", go_up(bed), face_free, flat_first, *sleeves, middle, flat_now)
 
     def set_right() -> Behaviour:
         return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
 
     set_right_by: dict[Reason, Callable[[], Behaviour]] = {
+        Reason.FACE_COVERED: lambda: straight(Scope(bed, "off the face")),
         Reason.WRONG_SIDE: lambda: unfolded(context),
         **dict.fromkeys(LOW, set_right),
         Reason.COLLAR_ASIDE: lambda: straight(Scope(bed, "collar")),
