@@ -95,12 +95,6 @@ class SeatSleevesTuning(Quantities):
     brought_higher: float = quantity(
         0.03, "1", "of the upper arm, by which a draw raises an armhole that is drawn again", "choice: half of an error"
     )
-    level_share: float = quantity(
-        0.5,
-        "1",
-        "of the way headward that is level; over the rest the hands come down",
-        "choice: as both seams stayed high to the end, the collar between them lay over the mouth for 1.2 s (267)",
-    )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
@@ -111,7 +105,6 @@ class SeatSleevesTuning(Quantities):
         "choice: nothing else keeps them apart while they are driven by velocities; at 0.10 m from the shoulders hands "
         "that leaned inwards were 8 cm inside each other",
     )
-    laying_speed: float = quantity(0.06, "m/s", "of the hands on their way down", "choice: slow beside the neck")
     # at 6.5 N, with 8.1 N for a moment, 1 % of the cloth's edges were 28 % longer, at 6 N and 7.5 N 23 and 25 % (101)
     carry: Carry = field(default_factory=lambda: Carry(max_load=5.5))
     withdrawal: float = quantity(0.12, "m", "by which the open hands are drawn back", "choice: clear of the sleeves")
@@ -191,12 +184,10 @@ class SeatSleeves(Skill):
             drawn.times[side] += 1
             drawn.reach[side] = reach[side]
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
+            over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
-            now = hand_now(self, side)[:3, 3]
-            level = place - (1.0 - tuning.level_share) * ((place - now) @ HEADWARD) * HEADWARD
-            over[side] = np.append(level[:2], now[2])
         yield from carry_each(self, over, tuning.carry, tuning.apart)
-        yield from carry_each(self, laid, tuning.carry, tuning.apart, tuning.laying_speed)
+        yield from carry_each(self, laid, tuning.carry, tuning.apart)
         # at once, so that neither side gives way to the other
         yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
