@@ -13,8 +13,9 @@ from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
 SEATED, FLAT = "gown/sleeves/seat", "fold/draw flat"
-LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again"))
+LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again", "off the face"))
 PULLED = {f"{side} sleeve/pull up": side for side in SIDES}
+ON_FACE = -0.15  # along y, a collar so far headward lies over mouth and nose [m]
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
 
@@ -59,6 +60,10 @@ class WornGown(ScriptedSenses):
         if progress.name == FLAT and not self.stays:
             self.outside = 1.0
             self.low = {side: low - DRAWN_UP for side, low in self.low.items()}
+
+    def skin_cover(self, frame, *, points_in_map):
+        seen = super().skin_cover(frame, points_in_map=points_in_map)
+        return replace(seen, share=1.0) if seen.share == 0.0 and self.off[1] < ON_FACE else seen
 
     def chest_cover(self, frame, *, shoulders_in_map):
         return replace(super().chest_cover(frame, shoulders_in_map=shoulders_in_map), outside=self.outside)
@@ -122,6 +127,16 @@ def test_a_sleeve_that_does_not_show_is_not_claimed(side):
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
 def test_a_collar_that_is_off_its_place_is_laid_straight(off):
     assert rehearsed(0.85, off) == ("success", ["spread"])
+
+
+def test_a_collar_over_the_face_is_laid_straight_before_a_sleeve_is_drawn_up():
+    assert rehearsed(0.65, (0.0, -0.18)) == ("success", ["spread", "seat"])
+
+
+def test_with_a_collar_that_stays_over_the_face_nothing_is_claimed_and_no_sleeve_drawn():
+    outcome, done = rehearsed(0.65, (0.0, -0.18), stays=True)
+    assert outcome == "safe_stop"
+    assert set(done) == {"spread"}
 
 
 def test_the_collar_is_laid_straight_once_the_sleeves_that_hide_it_are_up():
