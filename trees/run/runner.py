@@ -133,8 +133,8 @@ class Run:
         self.root = task.build(self.context, **(params or {}))
         self.context.settings.check()
         for node in self.root.iterate():
-            if hasattr(node, "bind"):
-                node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions
+            if (bind := getattr(node, "bind", None)) is not None:  # decorators and conditions
+                bind(self.context)
         self.trace = Trace(self.root, self.context.now, fenced(recorder.event, self.lost) if recorder else None)
         told = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
