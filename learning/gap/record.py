@@ -47,9 +47,9 @@ def record(
         CaretreeError: an unknown gown, or a model file that does not fit one.
         GapError: a duration that is too short to move.
     """
+    from ...sim.bullet.coupled_room import TIME_STEP
     from ...sim.bullet.soft_world import GRAVITY
     from ...sim.bullet.units import PER_SECOND
-    from ...sim.bullet.world import TIME_STEP
     from ...sim.scene.gown import build_gown
     from ...sim.scene.scene import named_gown
 

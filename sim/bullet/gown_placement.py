@@ -10,6 +10,7 @@ from scipy.optimize import least_squares
 from ..mechanics.kinematics import Kinematics, kinematics_of
 from ..robot.baxter import BAXTER
 from ..scene.gown import GownMesh
+from ..scene.initial_state import InitialState
 from ..scene.person_spec import ARM_AXES, JOINT_LIMITS
 from ..world import SIDES, Side, WorldError
 from .cloth import ClothBody
@@ -64,6 +65,34 @@ def holding(kinematics: Kinematics) -> np.ndarray:
             )
         found[n] = best.x
     return found
+
+
+def place_by_hand(
+    state: InitialState,
+    cloth: ClothBody,
+    person: Person,
+    handles: list[Handle],
+    step: Callable[[], None],
+    time_step: float,
+    *,
+    seed: int,
+) -> None:
+    """Bring the gown to where a state on the person has it.
+
+    Args:
+        state: laid on the legs, worn or dressed.
+        cloth: the gown, held by nothing.
+        person: on the bed.
+        handles: two handles that hold nothing.
+        step: passes one physics step.
+        time_step: its length [s].
+        seed: of the run, which decides how far the sleeves are up.
+    """
+    if state == InitialState.GOWN_ON_PERSON:
+        lay_by_hand(cloth, handles, step, time_step)
+        return
+    put_on = dress_by_hand if state == InitialState.GOWN_DRESSED else put_on_by_hand
+    put_on(cloth, person, handles, step, time_step, np.random.default_rng([seed, 4]).uniform(size=2).tolist())
 
 
 def lay_by_hand(cloth: ClothBody, handles: list[Handle], step: Callable[[], None], time_step: float) -> None:

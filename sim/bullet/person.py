@@ -30,6 +30,8 @@ from .units import ROOM
 
 BRACED = 60.0  # torque that keeps an arm which somebody carries before a run [N m]
 BRISTLE = 0.02  # how far a joint gives before its friction slips [rad]
+STIR_SPEED = 0.45  # of both shoulders, outwards ... [rad/s]
+STIR_TIME = 0.6  # ... for this long [s]
 STIR_TORQUE = 7.0  # of a shoulder that its owner moves [N m]: a tenth of an adult's strength, enough to lift the arm
 
 
@@ -81,6 +83,7 @@ class Person:
         self._dry, self._ends, self._end_stiffness = (np.ravel(values) for values in _resistance(spec))
         self._torso_front = torso_front(spec, bed_top, bed_xy)
         self._swing, self._braced = 0.0, False
+        self._stirs_until: float | None = None
         self._stuck = np.array([angle for side in SIDES for angle in spec.pose[side]])
         self.resist()
 
@@ -160,6 +163,24 @@ class Person:
         """Swing both arms outwards at `speed` [rad/s] with the joints' own torque; 0 makes them passive again."""
         self._swing = speed
         self.resist()
+
+    @property
+    def stirs(self) -> bool:
+        """Whether the person moves by itself."""
+        return self._stirs_until is not None
+
+    def begin_to_stir(self, time: float) -> None:
+        """Swing both arms outwards for a moment, from now [s] on."""
+        self._stirs_until = time + STIR_TIME
+
+    def stir(self, time: float) -> None:
+        """Go on with what `begin_to_stir` began; before every step, with the world clock [s]."""
+        if self._stirs_until is None:
+            return
+        goes_on = time < self._stirs_until
+        self.swing(STIR_SPEED if goes_on else 0.0)
+        if not goes_on:
+            self._stirs_until = None
 
     def arms(self) -> np.ndarray:
         """(2, 4, 3) [left, right] x [shoulder, elbow, wrist, fingertip] in the map frame [m]."""

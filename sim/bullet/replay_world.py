@@ -23,9 +23,11 @@ from ..record.measured import Measured
 from ..record.recorded_stretch import Stretch
 from ..robot.body import JointReading
 from ..world import SIDES, Command
+from .coupled_room import CONTROL_STEPS, ROBOT_STEPS, TIME_STEP
 from .gown_placement import put_arms
 from .grip import Grip
-from .world import CONTROL_STEPS, ROBOT_STEPS, SETTLE_RECORDED, SLEEP_TIME, TIME_STEP, BulletWorld
+from .sleep import SLEEP_TIME
+from .world import SETTLE_RECORDED, BulletWorld
 
 NEAR = 0.001  # arms that lie where they were recorded are not moved: friction forgets what it holds [m]
 STILL = 2e-3  # a robot whose joints are slower stands [rad/s, m/s]

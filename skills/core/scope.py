@@ -34,7 +34,7 @@ class Scope:
 
     def __init__(self, context: Context | Scope, name: str = "", *, keys: Iterable[str] = (), **constants: Any) -> None:
         outer = context if isinstance(context, Scope) else None
-        self.context: Context = outer.context if outer else context  # type: ignore[assignment] else it is a Context
+        self.context: Context = context.context if isinstance(context, Scope) else context
         self.prefix = (outer.prefix if outer else "") + (f"{name}/" if name else "")
         own = {key: self.key(key) for key in keys}
         if both := sorted(own.keys() & constants.keys()):

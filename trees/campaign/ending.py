@@ -8,7 +8,8 @@ from ...sim.faults import FaultyWorld
 from ...sim.record.record import RunResult
 from ...sim.waiting import wait
 from ...sim.world import SIDES, WorldError
-from ..run.runner import OPEN, Run
+from ..run.runner import Run
+from ..run.safe_stop import OPEN
 from .fault_row import FaultKey, Row
 
 SETTLE = 1.0  # [s] watched after the end for anything that still moves

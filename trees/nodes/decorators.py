@@ -246,7 +246,8 @@ class Stage(Wrapper):
         super().__init__(name, *([body] if first is None else [body, first]))
         self.precondition = first
         self._checked = False
-        self._attempts, self._status = 0, "not_run"
+        self._attempts = 0
+        self._status: Literal["success", "failure", "running", "not_run"] = "not_run"
         self._times: list[float | None] = [None, None]
         self._reason = ""
 
@@ -287,10 +288,9 @@ class Stage(Wrapper):
     @property
     def result(self) -> StageResult:
         """The account so far."""
-        status: Literal["success", "failure", "running", "not_run"] = self._status  # type: ignore[assignment]
         return StageResult(
             name=self.name,
-            status=status,
+            status=self._status,
             attempts=self._attempts,
             t_start=self._times[0],
             t_end=self._times[1],

@@ -202,7 +202,7 @@ def _idle_recoveries(root: Behaviour, paths: dict[Behaviour, str]) -> list[str]:
             continue
         leaves = [leaf for leaf in node.body.iterate() if not leaf.children]
         said = {reason for leaf in leaves for reason in getattr(leaf, "reasons", ())} | set(FROM_OUTSIDE)
-        said |= {leaf.reason for leaf in leaves if hasattr(leaf, "reason")}  # type: ignore[attr-defined] conditions
+        said |= {getattr(leaf, "reason", None) for leaf in leaves}  # of conditions
         notes += [
             f"{paths[node]}: no skill below says that it fails with {reason.name.lower()}; that recovery is idle"
             for reason in node.recoveries

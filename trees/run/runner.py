@@ -15,12 +15,11 @@ from __future__ import annotations
 
 import difflib
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from typing import Any, Protocol
 
-import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -30,9 +29,8 @@ from ...sim.faults import FaultyWorld
 from ...sim.fence import fenced, said
 from ...sim.record.record import RunResult
 from ...sim.scripted.clock import SteppedClock
-from ...sim.stopwatch import Stopwatch, timed
-from ...sim.waiting import wait
-from ...sim.world import SIDES, GripperOpening, Observation, World, WorldError
+from ...sim.stopwatch import Stopwatch
+from ...sim.world import Observation, World, WorldError
 from ...skills.core.context import Context
 from ...skills.core.reasons import Failure, Reason
 from ...skills.core.settings import Settings
@@ -43,16 +41,13 @@ from ..guard.tick_watchdog import TickWatchdog
 from ..nodes.decorators import FailSafe, Stage
 from ..nodes.failures import failure_of
 from .progress import Announcer, Progress
+from .safe_stop import SafeStop
 from .task import Task
-from .time_limit import TimeLimit, TookTooLongError
+from .ticker import Ticker
+from .time_limit import TookTooLongError
 from .trace import Trace
 
-RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
-OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
-OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
-CALM_TICKS = 5
 FEW_NAMES = 12  # so many are listed whole in an error
-HANG = 20.0  # [s] wall time without a new tick: longer than any plan takes
 FROM_OUTSIDE = (Reason.INTERRUPTED, Reason.EMERGENCY_STOP, Reason.RECORD_LOST, Reason.DISPLAY_LOST)
 
 
@@ -90,8 +85,6 @@ class Run:
         root: the tree.
         trace: what happened.
         stopwatch: of `tree` (ticks) and `world` (the time between them).
-        interrupted: somebody pressed Ctrl-C meanwhile; the run then ended in the safe stop, and who started it may
-            want to end too.
     """
 
     def __init__(
@@ -117,17 +110,16 @@ class Run:
                 raise CaretreeError(f"{name} is {rate}, but must be above 0")
         self.world = world
         self.limits = limits
-        self._stepped = isinstance(world.clock, SteppedClock)
-        self._watchdog = None if self._stepped else TickWatchdog(world.stop, limits, now=wall)
+        stepped = isinstance(world.clock, SteppedClock)
+        self._watchdog = None if stepped else TickWatchdog(world.stop, limits, now=wall)
         self._on_sample = fenced(on_sample or (lambda seen: None), self.lost)
         self.guard = GuardedWorld(
             world,
             limits,
             on_command=lambda command: self.trace.command(command),
-            before_command=self._beat,
+            before_command=lambda: self._ticker.beat(),
             on_sample=self._sampled,
         )
-        self._period = 1.0 / rate_hz
         self._settled_period = 1.0 / (settled_rate_hz or rate_hz)
         self.context = Context(
             world=self.guard,
@@ -135,24 +127,36 @@ class Run:
             senses=senses,
             seed=seed,
             settings=settings,
-            hold=self._period,
+            hold=1.0 / rate_hz,
         )
         self.context.lease.patience = limits.stop_patience
         self.root = task.build(self.context, **(params or {}))
         self.context.settings.check()
         for node in self.root.iterate():
-            if hasattr(node, "bind"):
-                node.bind(self.context)  # type: ignore[attr-defined] decorators and conditions
+            if (bind := getattr(node, "bind", None)) is not None:  # decorators and conditions
+                bind(self.context)
         self.trace = Trace(self.root, self.context.now, fenced(recorder.event, self.lost) if recorder else None)
-        self._ticked = float("-inf")
-        self._began = time.perf_counter()  # the last tick, by the wall clock
-        self._limit = TimeLimit(limits.tick, self._last_resort)
         told = fenced(on_progress or (lambda progress: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
-        self._announcer = Announcer(self.root, self.context.now, told)
         self._before_tick = fenced(before_tick or (lambda: None), partial(self.lost, reason=Reason.DISPLAY_LOST))
         self._stop: Failure | None = None
-        self.interrupted = False
         self.stopwatch = Stopwatch()
+        self._ticker = Ticker(
+            self.context,
+            self.guard,
+            world.clock,
+            limits,
+            period=1.0 / rate_hz,
+            stepped=stepped,
+            watchdog=self._watchdog,
+            trace=self.trace,
+            announcer=Announcer(self.root, self.context.now, told),
+            stopwatch=self.stopwatch,
+            request_stop=self.request_stop,
+            last_resort=lambda: self._safe_stop.last_resort(),
+        )
+        self._safe_stop = SafeStop(
+            self.root, world, self.guard, self.context, limits, ticker=self._ticker, before_tick=self._before_tick
+        )
         if isinstance(world, FaultyWorld):
             self._check_fault_nodes(world)
             self.context.observers.append(world.on_phase)
@@ -175,25 +179,22 @@ class Run:
         """Whether the safe stop has been asked for."""
         return self._stop is not None
 
+    @property
+    def interrupted(self) -> bool:
+        """Somebody pressed Ctrl-C; the run then ended in the safe stop, and who started it may want to end too."""
+        return self._safe_stop.interrupted
+
     def hangs(self) -> bool:
         """Whether the last tick began so long ago that it will hardly end by itself."""
-        return time.perf_counter() - self._began > HANG
+        return self._ticker.hangs()
 
-    @contextmanager
-    def aside(self) -> Iterator[None]:
+    def aside(self) -> AbstractContextManager[None]:
         """A while within a tick that is no work of a node's, such as a breakpoint's: neither too long, nor a hang."""
-        self._limit.pause()
-        self._began = float("inf")
-        try:
-            with self.stopwatch.of("held"):
-                yield
-        finally:
-            self._began = time.perf_counter()
-            self._limit.start()
+        return self._ticker.aside()
 
     def go_on_in_fork(self) -> None:
         """To be called in a process that was forked during this run, and goes on with it."""
-        self._limit.set_alarm()
+        self._ticker.limit.set_alarm()
 
     def _check_fault_nodes(self, world: FaultyWorld) -> None:
         skills = sorted({node.name for node in self.root.iterate() if isinstance(node, Skill)})
@@ -203,7 +204,7 @@ class Run:
 
     def run(self) -> RunResult:
         """Tick to the end and make safe."""
-        with self._limit, self._watchdog or nullcontext():
+        with self._ticker.limit, self._watchdog or nullcontext():
             return self._run()
 
     def _run(self) -> RunResult:
@@ -211,7 +212,7 @@ class Run:
         try:
             failure = self._tick_to_end()
         except KeyboardInterrupt:
-            self.interrupted = True
+            self._safe_stop.interrupted = True
             self.request_stop()
             failure = self._stop
         except WorldError as error:
@@ -227,10 +228,8 @@ class Run:
         try:
             return self._end(failure)
         except BaseException:  # interrupted once more
-            self._last_resort()
+            self._safe_stop.last_resort()
             raise
-
-    # -- ticking -----------------------------------------------------------------------------------------
 
     def _tick_to_end(self) -> Failure | None:
         """Tick until the tree is done; the failure that stops it from outside, if one does."""
@@ -245,70 +244,22 @@ class Run:
             if stop is not None:
                 return stop
             if isinstance(self.world, FaultyWorld) and self.world.settled:
-                self._period = self.context.hold = self._settled_period
-            self._tick(self.root)
+                self._ticker.period = self.context.hold = self._settled_period
+            self._ticker.tick(self.root)
             if self.root.status != Status.RUNNING:
                 return None
-            self._pass_time()
-
-    @timed("tree")
-    def _tick(self, node: Behaviour) -> None:
-        self._beat()
-        self._began = time.perf_counter()
-        self._ticked = self.context.now()
-        self._limit.start()
-        self._advance_lease()
-        self._limit.start()
-        for visited in node.tick():
-            self.trace.visit(visited)
-            self._announcer.visit(visited)
-        self._limit.pause()
-        self.trace.sweep()
-        self._announcer.sweep()
+            self._ticker.pass_time()
 
     def _sampled(self, seen: Observation) -> None:
         if self._watchdog is not None:
             self._watchdog.sampled()
         self._on_sample(seen)
 
-    def _beat(self) -> None:
-        """A sign of life to the watchdog; a motion that it has stopped is no longer under way: its skill is told."""
-        if self._watchdog is None:
-            return
-        self._watchdog.ticked()
-        stopped = self._watchdog.take()
-        if stopped is not None and self.guard.was_stopped(stopped, self._ticked):
-            self.trace.add("stopped", by=stopped.node, detail=stopped.detail)
-        if self._watchdog.error is not None:
-            error, self._watchdog.error = self._watchdog.error, None
-            self.context.report(error)
-
-    def _advance_lease(self) -> None:
-        """Carry what is stopping further; a skill whose `cancel` does not come back is not asked again."""
-        try:
-            self.context.lease.advance()
-        except TookTooLongError as error:
-            self.context.report(error)
-            self.context.lease.clear()
-            self.guard.stop()
-            self.request_stop(Reason.TIMEOUT, str(error), error.node or "runner")
-
-    @timed("world")
-    def _pass_time(self) -> None:
-        """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
-        self._limit.start(None if self._stepped else self.limits.wait)
-        try:
-            wait(self.world.clock, self._ticked + self._period)
-        finally:
-            self._limit.pause()
-
-    # -- the end -----------------------------------------------------------------------------------------
-
     def _end(self, failure: Failure | None) -> RunResult:
         """Make safe, stop, and say how it went."""
         if failure is not None:
-            self._halt(self.root)
-            self._run_safe_branches()
+            self._safe_stop.halt(self.root)
+            self._safe_stop.run_branches()
         elif self.root.status == Status.FAILURE:
             failure = failure_of(self.root)
         elif self.root.status != Status.SUCCESS:
@@ -317,7 +268,7 @@ class Run:
         owed = failure is not None and (not branches or any(node.entered for node in branches))
         made_safe = any(node.made_safe is not None for node in branches)
         # even a safe branch that succeeded may have misread fingers that were on their way
-        stood = self._last_resort(release=failure is not None and (owed or made_safe))
+        stood = self._safe_stop.last_resort(release=failure is not None and (owed or made_safe))
         self.trace.sweep()
         if failure is None:
             outcome, reason = "success", "The task is done."
@@ -338,97 +289,6 @@ class Run:
             trace_hash=self.trace.digest(),
             stopped_from_outside=failure is not None and failure.reason in FROM_OUTSIDE,
         )
-
-    def _halt(self, node: Behaviour) -> None:
-        """End every node below `node`, leaves first, even where an exception left the statuses inconsistent."""
-        for each in node.iterate():
-            self._limit.start()
-            try:
-                if isinstance(each, Skill):
-                    each.terminate(Status.INVALID)
-                    each.status = Status.INVALID
-                elif each.status != Status.INVALID:
-                    each.stop(Status.INVALID)
-            except (Exception, TookTooLongError) as error:
-                self.context.report(error)
-                each.status = Status.INVALID
-                self.context.lease.release(each)
-        self._limit.pause()
-        self.trace.sweep()
-        self._announcer.sweep()
-
-    def _run_safe_branches(self) -> None:
-        """Tick the safe branch of every fail-safe that was entered, innermost first."""
-        for node in [each for each in self.root.iterate() if isinstance(each, FailSafe) and each.entered]:
-            try:
-                node.made_safe = self._tick_safe(node.safe)
-                node.entered = not node.made_safe
-            except KeyboardInterrupt:  # the operator insists: leave the rest to the last resort
-                self.interrupted = True
-                return
-            except BaseException as error:
-                self.context.report(error)
-                node.made_safe = False
-            finally:
-                self._halt(node.safe)
-
-    def _tick_safe(self, safe: Behaviour) -> bool:
-        """Tick a safe branch to its end; False when it fails or takes too long."""
-        ends = self.context.now() + self.limits.safe_branch
-        while self.context.now() < ends:
-            self.guard.check()  # stops on excess load; dead senses no longer change what has to be done
-            if self.context.lease.stuck() is not None:
-                self.guard.stop()  # releasing the person matters more than whose turn it is
-                self.context.lease.clear()
-            self._before_tick()
-            self._tick(safe)
-            if safe.status != Status.RUNNING:
-                return safe.status == Status.SUCCESS
-            self._pass_time()
-        return False
-
-    def _last_resort(self, release: bool = True) -> bool:
-        """Stop until nothing moves, open the fingers if asked to; True when the robot stands still.
-
-        A command may be lost on its way, so stop and open are sent until they are seen to have worked for some
-        ticks on end.  Errors are kept: nothing may keep the rest from happening.
-        """
-        ends = self.context.now() + self.limits.stop_patience
-        calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
-        before = np.zeros(2)
-        for _ in range(10_000):  # a dead clock must not keep us here
-            self._beat()
-            self._ticked, self._began = self.context.now(), time.perf_counter()
-            self._try(self._advance_lease)
-            self._try(self.guard.stop)
-            if release:
-                for side in SIDES:
-                    self._try(lambda side=side: self.world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
-            rests = bool(self._try(self.guard.still, default=False))
-            seen = self._try(self.guard.observe)
-            opening = np.zeros(2) if seen is None else seen.gripper_opening
-            opened = not release or bool((opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all())
-            opened |= seen is not None and seen.emergency_stop  # then they do not move
-            before = opening
-            calm = calm + 1 if rests and opened and not self.context.lease.releasing() else 0
-            if calm >= wanted or self.context.now() >= ends:
-                break
-            if self._try(lambda: self._pass_time() or True, default=False) is False:
-                break
-        self.context.lease.clear()
-        self._try(self.guard.stop)
-        return calm > 0
-
-    def _try(self, action: Callable[[], Any], default: Any = None) -> Any:
-        self._limit.start()
-        try:
-            return action()
-        except (Exception, KeyboardInterrupt, TookTooLongError) as error:
-            self.interrupted |= isinstance(error, KeyboardInterrupt)
-            self.context.report(error)
-            return default
-        finally:
-            self._limit.pause()
 
 
 def _nearest(name: str, names: list[str]) -> str:

@@ -95,9 +95,9 @@ def senses_for(choice: str, task: Task, world: World, seed: int) -> Senses | Non
         return None
     model, senses = task.scripted(seed)
     model.close()
-    if not hasattr(senses, "on"):
+    if (on := getattr(senses, "on", None)) is None:
         raise CaretreeError(f"task {task.name!r} has no scripted senses for another world")
-    return senses.on(world)  # type: ignore[union-attr]
+    return on(world)
 
 
 def read_world_arguments(name: str, texts: Sequence[str]) -> dict[str, Any]:

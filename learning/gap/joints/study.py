@@ -23,7 +23,7 @@ from .localise import places
 from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
 from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplained
-from .payloads.carried import carried_at_first, changes_of, told_in
+from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .placebo import placebos
 from .rigid import RigidModel
 from .rivals import parting, rivals
@@ -80,8 +80,8 @@ class JointStudy(Study):
         named = confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
         constant = named.constant
         if named.carried and constant:
-            weight = named.search.weight
-            known, blocks = told_in(named.carried, named.blocks, named.theta, weight, self.model, self.heldout)
+            fit = Fit(blocks=named.blocks, theta=named.theta, weight=named.search.weight, model=self.model)
+            known, blocks = told_in(named.carried, fit, self.heldout)
             named = replace(named, carried=known, blocks=blocks)
             constant = confident(constant, self.fitted)
             left = [unexplained(n, self.heldout) for n in (constant, named)]

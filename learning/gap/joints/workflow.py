@@ -12,7 +12,7 @@ from .gram import Gram, assemble, exchange
 from .lag import lagged
 from .log import JointLog
 from .noise import NoiseModel, estimate_noise, repeat_difference
-from .payloads.carried import PAYLOAD, Carried, alike, asked_again, with_payloads
+from .payloads.carried import PAYLOAD, Carried, Fit, alike, asked_again, with_payloads
 from .payloads.cells import carried
 from .refine import refined
 from .rigid import RigidModel
@@ -120,7 +120,8 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
         parted = with_payloads(blocks, found, model)
         noise = first_noise(parted, logs)
         again = _settled(assemble(parted, logs), noise, model, logs, strict, rounds=1)
-        known = asked_again(found, again.blocks, again.theta, again.search.weight, model, logs)
+        fit = Fit(blocks=again.blocks, theta=again.theta, weight=again.search.weight, model=model)
+        known = asked_again(found, fit, logs)
         fewer = len(known.during) < len(found.during)
         found = known
         if fewer:

@@ -1,8 +1,9 @@
 """A gown that is put on by hand."""
 
 import numpy as np
+from caretree.sim.bullet.coupled_room import TIME_STEP
 from caretree.sim.bullet.gown_placement import RAISED, holding, put_on_by_hand
-from caretree.sim.bullet.world import TIME_STEP, BulletWorld
+from caretree.sim.bullet.world import BulletWorld
 from caretree.sim.evaluate.crossings import sleeve
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER

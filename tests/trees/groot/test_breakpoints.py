@@ -119,11 +119,11 @@ def test_a_long_pause_is_no_node_that_hangs(served, groot, uid, monkeypatch):
     groot.hook(uid("still"))
     served.begin()
     groot.reached()
-    monkeypatch.setattr("caretree.trees.run.runner.HANG", -1.0)
+    monkeypatch.setattr("caretree.trees.run.ticker.HANG", -1.0)
     assert not served.run.hangs()
-    assert served.run._limit._ends == float("inf")
+    assert served.run._ticker.limit._ends == float("inf")
     groot.unlock(uid("still"))
-    until(lambda: served.run._limit._ends < float("inf") or served.results)
+    until(lambda: served.run._ticker.limit._ends < float("inf") or served.results)
 
 
 def test_a_robot_is_not_held(served, groot, uid, monkeypatch):

@@ -4,7 +4,7 @@ import signal
 
 import pytest
 from caretree.skills.core.reasons import Reason
-from caretree.trees.run import runner
+from caretree.trees.run import ticker
 from caretree.trees.run.stop_signals import CAUSES, StopSignals
 
 from ..planted import Plan, run_of
@@ -70,7 +70,7 @@ def test_only_ctrl_c_insists(run):
 def test_a_run_that_hangs_is_interrupted_by_the_second_signal(run, monkeypatch):
     with StopSignals() as signals:
         signals.run = run
-        monkeypatch.setattr(runner, "HANG", 0.0)
+        monkeypatch.setattr(ticker, "HANG", 0.0)
         signal.raise_signal(signal.SIGTERM)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGTERM)

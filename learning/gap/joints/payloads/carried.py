@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
@@ -50,6 +50,29 @@ class Carried:
         one = During(spells={n: _fused([*a.of(n), *b.of(n)]) for n in a.spells}, last=a.last or b.last)
         rest = (one if k == first else d for k, d in enumerate(self.during) if k != second)
         return replace(self, during=tuple(rest))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fit:
+    """What was named, with its numbers.
+
+    Attributes:
+        blocks: in the order of their numbers.
+        theta: (K,) their parameters, concatenated.
+        weight: (C,) of the channels.
+        model: of the arm.
+    """
+
+    blocks: Sequence[Block]
+    theta: np.ndarray
+    weight: np.ndarray
+    model: RigidModel
+
+    def each(self) -> Iterator[tuple[Block, np.ndarray]]:
+        """Every block with its own numbers."""
+        ends = np.cumsum([0, *(len(b.parameters) for b in self.blocks)])
+        for block, a, b in zip(self.blocks, ends, ends[1:], strict=False):
+            yield block, self.theta[a:b]
 
 
 def _fused(spells: list[Spell]) -> tuple[Spell, ...]:
@@ -118,25 +141,15 @@ def inverse(A: np.ndarray) -> np.ndarray:
     return np.linalg.inv(A / np.outer(size, size) + RIDGE * np.eye(len(A))) / np.outer(size, size)
 
 
-def asked_again(
-    found: Carried,
-    blocks: Sequence[Block],
-    theta: np.ndarray,
-    weight: np.ndarray,
-    model: RigidModel,
-    logs: list[JointLog],
-) -> Carried:
+def asked_again(found: Carried, fit: Fit, logs: list[JointLog]) -> Carried:
     """Which payload is carried when in the logs that were fitted to, beside what was named, not all that could be.
 
     Args:
         found: the payloads; those that are carried no more, or too briefly, are left out.
-        blocks: what was named.
-        theta: its numbers.
-        weight: (C,) of the channels.
-        model: of the arm.
+        fit: what was named.
         logs: the logs.
     """
-    every = _told_beside(found, blocks, theta, weight, model, logs)
+    every = _told_beside(found, fit, logs)
     during = [during_of(k, every, logs, every[-1][-1][0] == k) for k in range(len(found.during))]
     long = [max(lengths(every, logs, k), default=0.0) >= LEAST for k in range(len(during))]
     if all(long):
@@ -144,61 +157,44 @@ def asked_again(
     return replace(found, during=tuple(d for d, kept in zip(found.during, long, strict=True) if kept))
 
 
-def told_in(
-    found: Carried,
-    blocks: Sequence[Block],
-    theta: np.ndarray,
-    weight: np.ndarray,
-    model: RigidModel,
-    logs: list[JointLog],
-) -> tuple[Carried, tuple[Block, ...]]:
+def told_in(found: Carried, fit: Fit, logs: list[JointLog]) -> tuple[Carried, tuple[Block, ...]]:
     """Which payload is carried when in logs held out; nothing but the times is taken from them.
 
     Args:
         found: the payloads of the logs that were fitted to.
-        blocks: what was named there.
-        theta: its numbers.
-        weight: (C,) of the channels.
-        model: of the arm.
+        fit: what was named there.
         logs: the logs held out.
 
     Returns:
         The payloads and the blocks, which know of these logs too.
     """
-    every = _told_beside(found, blocks, theta, weight, model, logs)
+    every = _told_beside(found, fit, logs)
     during = tuple(
         replace(d, spells={**d.spells, **during_of(k, every, logs, d.last).spells}) for k, d in enumerate(found.during)
     )
     now = dict(zip(map(id, found.during), during, strict=True))
     changed = tuple(
-        body_block(replace(b.term, during=now[id(b.term.during)]), model)
+        body_block(replace(b.term, during=now[id(b.term.during)]), fit.model)
         if b.term is not None and b.term.during is not None
         else b
-        for b in blocks
+        for b in fit.blocks
     )
     return replace(found, during=during), changed
 
 
-def _told_beside(
-    found: Carried,
-    blocks: Sequence[Block],
-    theta: np.ndarray,
-    weight: np.ndarray,
-    model: RigidModel,
-    logs: list[JointLog],
-) -> list[list[Span]]:
-    ends = np.cumsum([0, *(len(b.parameters) for b in blocks)])
+def _told_beside(found: Carried, fit: Fit, logs: list[JointLog]) -> list[list[Span]]:
+    """By log, from when on which payload explains best what all other blocks leave."""
     every = []
     for log in logs:
         left = log.residual[log.inner].copy()
         loads = np.zeros((len(found.during), *left.shape))
-        for block, a, b in zip(blocks, ends, ends[1:], strict=False):
+        for block, numbers in fit.each():
             if block.term is not None and block.term.during is not None:
-                always = body_block(replace(block.term, during=None), model)
-                loads[found.during.index(block.term.during)] = always.build(log) @ theta[a:b]
+                always = body_block(replace(block.term, during=None), fit.model)
+                loads[found.during.index(block.term.during)] = always.build(log) @ numbers
             else:
-                left[:, list(block.channels)] -= block.build(log) @ theta[a:b]
-        every.append(told(log, left, loads, weight, found.price))
+                left[:, list(block.channels)] -= block.build(log) @ numbers
+        every.append(told(log, left, loads, fit.weight, found.price))
     return every
 
 
