@@ -23,15 +23,18 @@ from caretree.trees.run.task import load_task
 
 PORT = 11610
 CARETREE = [sys.executable, "-P", "-m", "caretree.trees.cli"]
-PATIENCE = 600.0  # [s] for one run
+PATIENCE = 3600.0  # [s] for one run, on a machine that has much else to do
 STARTING = 60.0  # [s] for the master, and for the robot
 
 
 def told(record: Path) -> tuple[str, list[tuple[str, str]]]:
-    """Outcome of a run, and its nodes in the order in which they ended, each with how."""
+    """Outcome of a run, and its nodes in the order in which they ended, each with how; prints why if it failed."""
     events = [json.loads(line) for line in (record / "trace.jsonl").read_text().splitlines()]
     ended = [(each["node"], each["status"]) for each in events if each.get("status") in ("SUCCESS", "FAILURE")]
-    return json.loads((record / "run.json").read_text())["outcome"], ended
+    run = json.loads((record / "run.json").read_text())
+    if run["outcome"] != "success":
+        print(f"{record.name}: {run['outcome']}, {run['reason']}", flush=True)
+    return run["outcome"], ended
 
 
 def tree(task: str, seed: int, world: str, folder: Path, *more: str) -> tuple[str, list[tuple[str, str]]]:

@@ -4,6 +4,7 @@ The robot's side (`caretree serve-robot --world bullet --record`), the tree and 
 ends count what they publish and what they are given, and when.
 
     make ros && python benchmarks/ros_traffic.py OUT [--task dressing] [--stage lay] [--seed 104] [--pace tree]
+                                                  [--end-after NODE]
 
 | row | from | to |
 |---|---|---|
@@ -183,6 +184,14 @@ def report(out: Path) -> None:
         print(f"the evaluator: {evaluate(out / 'robot')}")
 
 
+def succeeded(record: Path, node: str) -> bool:
+    """Whether a node has succeeded, as the record of a run that goes on tells."""
+    trace = record / "trace.jsonl"
+    lines = trace.read_text().split("\n")[:-1] if trace.exists() else []  # the last one may be half written
+    events = [json.loads(line) for line in lines]
+    return any(each.get("status") == "SUCCESS" and each["node"].endswith(node) for each in events)
+
+
 def main() -> None:
     """Run it, and print the account."""
     parser = argparse.ArgumentParser()
@@ -192,6 +201,7 @@ def main() -> None:
     parser.add_argument("--seed", default="104")
     parser.add_argument("--world", default="bullet")
     parser.add_argument("--pace", default="tree")
+    parser.add_argument("--end-after", metavar="NODE", help="tell the tree to end once a node of this name succeeded")
     given = parser.parse_args()
     given.out.mkdir(parents=True)
     same = ["--seed", given.seed, *(["--stage", given.stage] if given.stage else [])]
@@ -215,7 +225,12 @@ def main() -> None:
         robot = subprocess.Popen(ours, stdout=subprocess.PIPE, text=True)
         assert robot.stdout is not None
         assert "serving" in robot.stdout.readline()
-        subprocess.run(run, check=False)
+        tree = subprocess.Popen(run)
+        if given.end_after:
+            while tree.poll() is None and not succeeded(given.out / "tree", given.end_after):
+                time.sleep(0.5)
+            tree.send_signal(signal.SIGTERM)
+        tree.wait()
     finally:
         if robot is not None:
             robot.send_signal(signal.SIGTERM)
