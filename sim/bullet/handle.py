@@ -35,7 +35,8 @@ _CARRIED = (
     MASS + 3 * LINK_MASS,
 )  # what the motors along x, y and z move [kg]
 _JOINTS = tuple(range(6))
-_POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
+FOLLOWS = 0.3  # share of the way that is left which a motor goes in one step
+_POSITION_GAINS, _VELOCITY_GAINS = (FOLLOWS,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
 _FORCES = (ROOM.force(300.0),) * 3 + (ROOM.force(20.0),) * 3  # of the motors, 300 N and 20 N m
 _FORCE, _RATE = ROOM.force(1.0), ROOM.rate(1.0)
 _UPRIGHT = 1e-6  # below this cosine of the pitch, roll and yaw cannot be told apart
