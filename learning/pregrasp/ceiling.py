@@ -65,6 +65,16 @@ def table(data: Dataset) -> str:
     lines += ["", "| single attempt at the corner's pixel | success |", "|---|---|"]
     for k, name in enumerate(("move left", "direct", "move right")):
         lines.append(f"| {name} | {rate_text(success[(tried[:, 1] == 0) & (tried[:, 2] == k)])} |")
+    taken, corner = tried[:, 6], tried[:, 7] == 1
+    lines += ["", "| what a single attempt at the corner's pixel takes | direct | sweeps |", "|---|---|---|"]
+    kinds = [(tried[:, 1] == 0) & ((tried[:, 2] == DIRECT) == direct) for direct in (True, False)]
+    for name, what in (
+        ("nothing", taken == 0),
+        ("one layer elsewhere", (taken == 1) & ~corner),
+        ("several layers with the corner", (taken > 1) & corner),
+        ("several layers without it", (taken > 1) & ~corner),
+    ):
+        lines.append(f"| {name} | {' | '.join(rate_text(what[kind]) for kind in kinds)} |")
     sweeps, alone = signs(found.primitives, found.direct), signs(found.all, found.direct_pixels)
     lines += [
         "",

@@ -11,9 +11,8 @@ from ...sim.bullet.handle import FOLLOWS
 from ...sim.bullet.soft_world import MARGIN
 from ...sim.robot.hand_boxes import boxes_of
 from ...sim.spring.fingers import near_boxes, push_aside
-from ...sim.spring.sheet import Sheet
 from .action import HandPath
-from .gowns import sheet_of
+from .gowns import held_sheet
 from .hung_state import HungState
 from .numbers import ACTION, HANG, ActionNumbers
 
@@ -71,7 +70,7 @@ def roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) 
         path: of the hand.
         numbers: of the primitives.
     """
-    sheet = _held(state)
+    sheet = held_sheet(state.gown, state.held, state.vertices, state.deep)
     faces, dt = np.ascontiguousarray(sheet.mesh.sewn), HANG.step
     room = np.empty((3 * len(faces), 2), np.int64)
     before, count = path.start, 0
@@ -83,6 +82,7 @@ def roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) 
         if k % LOOK == 0:
             count = near_boxes(sheet.x, faces, boxes, REACH, room)
         sheet.free_step()
+        sheet.keep_apart(k % LOOK == 0)
         if count:
             push_aside(
                 *(sheet.x, sheet.v, sheet.loose, faces, room[:count], boxes, speeds),
@@ -91,13 +91,3 @@ def roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) 
         sheet.move_on()
         before = tip
     return grasp_of(state, sheet.x, replace(path, end=before), numbers.opening)
-
-
-def _held(state: HungState) -> Sheet:
-    """The sheet of a gown, held and placed as in the state."""
-    sheet = sheet_of(state.gown)
-    if sheet.held != set(state.held):
-        sheet.held.clear()
-        sheet.hold(state.held)
-    sheet.place(state.vertices)
-    return sheet
