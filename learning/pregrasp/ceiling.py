@@ -55,9 +55,13 @@ def table(data: Dataset) -> str:
     rows = [
         ("direct grasp, the corner's pixel, best of 6 views", found.direct),
         ("3 primitives, the corner's pixel, best of 18", found.primitives),
-        ("direct grasp, best of 5 pixels and 6 views", found.direct_pixels),
-        ("3 primitives, best of 5 pixels, 90 actions", found.all),
     ]
+    pixels = int(data.attempts[:, 1].max()) + 1
+    if pixels > 1:
+        rows += [
+            (f"direct grasp, best of {pixels} pixels and 6 views", found.direct_pixels),
+            (f"3 primitives, best of {pixels} pixels, {18 * pixels} actions", found.all),
+        ]
     lines = ["| oracle | all states | hard states |", "|---|---|---|"]
     for name, won in rows:
         lines.append(f"| {name} | {rate_text(won)} | {rate_text(won[found.hard])} |")
@@ -78,8 +82,8 @@ def table(data: Dataset) -> str:
     sweeps, alone = signs(found.primitives, found.direct), signs(found.all, found.direct_pixels)
     lines += [
         "",
-        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g}), "
-        f"and {alone[0]} at several pixels (p = {alone[2]:.2g}).",
+        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g})"
+        + (f", and {alone[0]} at several pixels (p = {alone[2]:.2g})." if pixels > 1 else "."),
         f"{len(data.seeds)} states, seeds {data.seeds.min()} to {data.seeds.max()}, data {data.digest}.",
     ]
     return "\n".join(lines)
