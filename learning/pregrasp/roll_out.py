@@ -8,7 +8,6 @@ import numpy as np
 
 from ...sim.bullet.grip import cloth_between
 from ...sim.bullet.handle import FOLLOWS
-from ...sim.bullet.soft_world import MARGIN
 from ...sim.robot.hand_boxes import boxes_of
 from ...sim.spring.fingers import near_boxes, push_aside
 from .action import HandPath
@@ -18,7 +17,6 @@ from .numbers import ACTION, HANG, ActionNumbers
 
 REACH = 0.03  # triangles this near to a box are looked at ... [m]
 LOOK = 4  # ... for so many steps
-FINGER_MARGIN = MARGIN + 0.0005  # between cloth and fingers [m]; a loose triangle stays so far before them in PyBullet
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +84,7 @@ def roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) 
         if count:
             push_aside(
                 *(sheet.x, sheet.v, sheet.loose, faces, room[:count], boxes, speeds),
-                *(numbers.friction, FINGER_MARGIN, dt, 3),
+                *(numbers.friction, numbers.margin, dt, 3),
             )
         sheet.move_on()
         before = tip
