@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...sim.errors import CaretreeError
 from .action import Action, hand_path
 from .bullet_roll_out import bullet_roll_out
 from .dataset import Dataset
@@ -21,7 +22,12 @@ def paired(data: Dataset, count: int, seed: int, say: Callable[[str], None] = la
         count: how many are repeated; half of them successes, as far as there are enough.
         seed: of which ones.
         say: takes lines of progress.
+
+    Raises:
+        CaretreeError: the states are deep grasps.
     """
+    if data.deep:
+        raise CaretreeError("PyBullet's cloth does not meet itself here: deep grasps are not repeated in it")
     rng = np.random.default_rng([seed, 17])
     won, lost = np.flatnonzero(data.success), np.flatnonzero(~data.success)
     half = min(count // 2, len(won))

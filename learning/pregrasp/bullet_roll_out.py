@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...sim.bullet.cloth import Cloth
@@ -37,9 +39,7 @@ def bullet_roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = A
             pose[:3, 3] = tip
             handle.follow(pose.copy())
             world.step()
-        closed = path.pose_at_end
-        closed[:3, 3] = handle.position()  # where the motors have brought it
-        there = HandPath(turn=path.turn, start=path.start, inside=path.inside, end=closed[:3, 3])
+        there = replace(path, end=handle.position())  # where the motors have brought it
         return grasp_of(state, cloth.vertices(), there, numbers.opening)
     finally:
         world.close()

@@ -55,9 +55,13 @@ def table(data: Dataset) -> str:
     rows = [
         ("direct grasp, the corner's pixel, best of 6 views", found.direct),
         ("3 primitives, the corner's pixel, best of 18", found.primitives),
-        ("direct grasp, best of 5 pixels and 6 views", found.direct_pixels),
-        ("3 primitives, best of 5 pixels, 90 actions", found.all),
     ]
+    pixels = int(data.attempts[:, 1].max()) + 1
+    if pixels > 1:
+        rows += [
+            (f"direct grasp, best of {pixels} pixels and 6 views", found.direct_pixels),
+            (f"3 primitives, best of {pixels} pixels, {18 * pixels} actions", found.all),
+        ]
     lines = ["| oracle | all states | hard states |", "|---|---|---|"]
     for name, won in rows:
         lines.append(f"| {name} | {rate_text(won)} | {rate_text(won[found.hard])} |")
@@ -65,11 +69,21 @@ def table(data: Dataset) -> str:
     lines += ["", "| single attempt at the corner's pixel | success |", "|---|---|"]
     for k, name in enumerate(("move left", "direct", "move right")):
         lines.append(f"| {name} | {rate_text(success[(tried[:, 1] == 0) & (tried[:, 2] == k)])} |")
+    taken, corner = tried[:, 6], tried[:, 7] == 1
+    lines += ["", "| what a single attempt at the corner's pixel takes | direct | sweeps |", "|---|---|---|"]
+    kinds = [(tried[:, 1] == 0) & ((tried[:, 2] == DIRECT) == direct) for direct in (True, False)]
+    for name, what in (
+        ("nothing", taken == 0),
+        ("one layer elsewhere", (taken == 1) & ~corner),
+        ("several layers with the corner", (taken > 1) & corner),
+        ("several layers without it", (taken > 1) & ~corner),
+    ):
+        lines.append(f"| {name} | {' | '.join(rate_text(what[kind]) for kind in kinds)} |")
     sweeps, alone = signs(found.primitives, found.direct), signs(found.all, found.direct_pixels)
     lines += [
         "",
-        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g}), "
-        f"and {alone[0]} at several pixels (p = {alone[2]:.2g}).",
+        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g})"
+        + (f", and {alone[0]} at several pixels (p = {alone[2]:.2g})." if pixels > 1 else "."),
         f"{len(data.seeds)} states, seeds {data.seeds.min()} to {data.seeds.max()}, data {data.digest}.",
     ]
     return "\n".join(lines)

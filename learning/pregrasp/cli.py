@@ -23,6 +23,16 @@ def parser() -> argparse.ArgumentParser:
         "--seeds", type=span_of_seeds, default=span_of_seeds("100-199"), metavar="A-B", help="default 100-199"
     )
     data.add_argument("--gown", choices=(*GOWNS, *HELD_OUT_GOWNS), help="of all states (default: the seed draws it)")
+    data.add_argument(
+        "--deep", action="store_true", help="gowns held by the middle of the neckline, which meet themselves"
+    )
+    data.add_argument(
+        "--pixels",
+        type=whole_number,
+        choices=range(1, 6),
+        default=5,
+        help="that the oracle tries in a view (default 5)",
+    )
     add_cluster_options(data)
     train = sub.add_parser("train", help="train the policy and write it as ONNX")
     train.add_argument("data", type=Path, metavar="DATA", help="folder of `data`: its successes are demonstrations")
@@ -53,7 +63,14 @@ def main(argv: list[str]) -> int:
 
         print(
             make_dataset(
-                options.folder, options.seeds, _say, gown=options.gown, jobs=options.jobs, address=options.address
+                options.folder,
+                options.seeds,
+                _say,
+                gown=options.gown,
+                deep=options.deep,
+                pixels=options.pixels,
+                jobs=options.jobs,
+                address=options.address,
             )
         )
     elif options.command == "train":

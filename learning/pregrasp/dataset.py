@@ -19,10 +19,10 @@ import numpy as np
 from ...sim.errors import CaretreeError
 from ..shards import each_shard, replace_file, shard_name
 from .hung_state import hang
-from .oracle import Attempt, try_all
+from .oracle import PIXELS, Attempt, try_all
 from .views import Views, photograph
 
-FORMAT = "caretree-pregrasp-1"
+FORMAT = "caretree-pregrasp-2"  # 2: fingers meet cloth at the nearest points; deep grasps
 INDEX = "dataset.json"
 SHARD = 10  # states
 COLUMNS = ("state", "pixel", "primitive", "view", "row", "column", "layers", "corner")  # of an attempt
@@ -39,6 +39,7 @@ class Dataset:
         depth: (S, 6, H, W) uint16 [mm], 0 where the gown does not show.
         attempts: (A, 8) int, `COLUMNS`; `state` is an index into the others.
         digest: of everything.
+        deep: whether the states are deep grasps, see `hung_state`.
     """
 
     seeds: np.ndarray
@@ -47,6 +48,7 @@ class Dataset:
     depth: np.ndarray
     attempts: np.ndarray
     digest: str
+    deep: bool = False
 
     @property
     def success(self) -> np.ndarray:
@@ -70,6 +72,8 @@ def make_dataset(
     say: Callable[[str], None] = lambda text: None,
     *,
     gown: str | None = None,
+    deep: bool = False,
+    pixels: int = len(PIXELS),
     jobs: int | None = None,
     address: str | None = None,
 ) -> Path:
@@ -80,6 +84,8 @@ def make_dataset(
         seeds: of the states.
         say: takes lines of progress.
         gown: of all states; None leaves it to each seed.
+        deep: whether the states are deep grasps, see `hung_state`.
+        pixels: that the oracle tries in a view, the first of `PIXELS`.
         jobs: shards made at once; more than one needs Ray.
         address: of a Ray cluster.
 
@@ -88,16 +94,15 @@ def make_dataset(
     """
     folder, seeds = Path(folder), list(seeds)
     folder.mkdir(parents=True, exist_ok=True)
-    about: dict[str, Any] = {"format": FORMAT, "first": seeds[0], "gown": gown}
+    about: dict[str, Any] = {"format": FORMAT, "first": seeds[0], "gown": gown, "deep": deep, "pixels": pixels}
     old = read_index(folder) if (folder / INDEX).is_file() else {**about, "shards": []}
     if any(old[key] != about[key] for key in about):
-        raise CaretreeError(
-            f"{folder} holds states from seed {old['first']} with gown {old['gown']}, not from seed {seeds[0]} with "
-            f"gown {gown}; choose another folder"
-        )
+        theirs = ", ".join(f"{key} {old[key]}" for key in about if old[key] != about[key])
+        mine = ", ".join(f"{key} {about[key]}" for key in about if old[key] != about[key])
+        raise CaretreeError(f"{folder} holds states with {theirs}, not with {mine}; choose another folder")
     whole = {s["file"]: s for s in old["shards"] if s["states"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-len(seeds) // SHARD)) if shard_name(n) not in whole]
-    for number, shard in each_shard(make_shard, missing, seeds, gown, jobs=jobs, address=address):
+    for number, shard in each_shard(make_shard, missing, seeds, gown, deep, pixels, jobs=jobs, address=address):
         replace_file(folder / shard_name(number), shard.pop("bytes"))
         spent = shard.pop("seconds")
         whole[shard_name(number)] = shard
@@ -109,18 +114,18 @@ def make_dataset(
     return folder
 
 
-def make_shard(number: int, seeds: Sequence[int], gown: str | None) -> dict[str, Any]:
+def make_shard(number: int, seeds: Sequence[int], gown: str | None, deep: bool, pixels: int) -> dict[str, Any]:
     """States of one shard, tried by the oracle: `file`, `states`, `attempts`, `sha256`, `seconds`, `bytes`."""
     start, mine = time.process_time(), seeds[number * SHARD : (number + 1) * SHARD]
     rgb, depth, gowns, rows = [], [], [], []
     for k, seed in enumerate(mine):
-        state = hang(seed, gown)
+        state = hang(seed, gown, deep)
         views = photograph(state)
         rgb.append(views.rgb)
         depth.append(np.round(views.depth * 1e3).astype(np.uint16))
         gowns.append(state.gown)
         kept = Views(rgb=views.rgb, depth=depth[-1].astype(np.float32) / 1e3)  # what a reader of the folder will have
-        rows += [row_of(k, one) for one in try_all(state, kept)]
+        rows += [row_of(k, one) for one in try_all(state, kept, pixels)]
     buffer = io.BytesIO()
     attempts = np.array(rows, np.int16).reshape(-1, len(COLUMNS))
     np.savez_compressed(
@@ -179,4 +184,5 @@ def load_dataset(folder: str | Path) -> Dataset:
     if not parts:
         raise CaretreeError(f"{folder}: the dataset is empty")
     digest = hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
-    return Dataset(**{key: np.concatenate([part[key] for part in parts]) for key in parts[0]}, digest=digest)
+    joined = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    return Dataset(**joined, digest=digest, deep=index["deep"])

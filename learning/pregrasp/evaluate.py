@@ -45,7 +45,7 @@ def policy_wins(data: Dataset, policy: Policy, say: Callable[[str], None] = lamb
     """(2, S) bool: success of the policy's best action, and of its best direct grasp, in every state."""
     wins = np.zeros((2, len(data.seeds)), bool)
     for k, seed in enumerate(data.seeds.tolist()):
-        state, views = hang(seed, str(data.gowns[k])), data.views(k)
+        state, views = hang(seed, str(data.gowns[k]), data.deep), data.views(k)
         values = policy.values(seen(views))
         for n in range(2):
             wins[n, k] = attempt(state, views, best_action(values, views, grasp_only=n == 1)).success

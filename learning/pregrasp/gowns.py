@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
 
@@ -44,7 +45,28 @@ def mesh_of(name: str) -> GownMesh:
 
 
 @lru_cache(maxsize=8)
-def sheet_of(name: str) -> Sheet:
-    """A sheet of that gown to be placed anew by whoever uses it next: sewing costs far more than a roll-out."""
+def sheet_of(name: str, deep: bool = False, air_drag: float | None = None) -> Sheet:
+    """A sheet of that gown to be placed anew by whoever uses it next: sewing costs far more than a roll-out.
+
+    Args:
+        name: of the gown.
+        deep: whether it meets itself.
+        air_drag: instead of the gown's own [N s^2/m^4].
+    """
     mesh = mesh_of(name)
-    return Sheet(mesh, mesh.vertices, HANG.step)
+    if air_drag is not None:
+        mesh = replace(mesh, spec=replace(mesh.spec, air_drag=air_drag))
+    return Sheet(mesh, mesh.vertices, HANG.step, meets_itself=deep)
+
+
+def held_sheet(
+    name: str, held: Collection[int], vertices: np.ndarray, deep: bool = False, air_drag: float | None = None
+) -> Sheet:
+    """That sheet at rest with its vertices (V, 3) [m] in their places, some of them held."""
+    sheet = sheet_of(name, deep, air_drag)
+    if sheet.held != set(held):
+        sheet.held.clear()
+        sheet.hold(held)
+    sheet.place(vertices)
+    sheet.forget_layers()
+    return sheet

@@ -19,6 +19,9 @@ class HangNumbers(Quantities):
     air_drag: float = quantity(1.5, "N s^2/m^4", "while it swings out", "choice: five times air, to wait less")
     calm: float = quantity(0.8, "s", "in which the swing is damped to 37 %", "choice: less than half a swing")
     time: float = quantity(3.5, "s", "that it swings out", "choice: then all gowns move by 1 cm/s at most")
+    deepest: float = quantity(
+        0.25, "1", "share of the neckline at each end that a deep grasp spares", "choice: its middle half"
+    )
     gather: float = quantity(0.3, "1", "share of their distance at which held vertices are pinched", "choice: fingers")
 
 
@@ -48,6 +51,9 @@ class ActionNumbers(Quantities):
     run_up: float = quantity(0.10, "m", "from which the hand comes straight in", "choice: as the skill's")
     approach_speed: float = quantity(0.25, "m/s", "of the hand on its way in", "measured: cloth stays stable")
     sweep_speed: float = quantity(0.15, "m/s", "of the hand that sweeps", "choice: the cloth gives way")
+    margin: float = quantity(
+        0.0065, "m", "that cloth keeps from fingers in the spring engine", "measured: a loose triangle in PyBullet"
+    )
     friction: float = quantity(0.2, "1", "of fingers on cloth", "choice: 0.4 on cloth times 0.5 of the fingers")
 
 

@@ -50,14 +50,14 @@ def corner_pixel(state: HungState, views: Views, view: int) -> tuple[int, int] |
     return (int(rows[best]), int(columns[best])) if best >= 0 and away[best] <= NEAREST else None
 
 
-def choices(state: HungState, views: Views) -> Iterator[tuple[int, Action]]:
-    """Every action of the oracle in a state, with the index of its pixel."""
+def choices(state: HungState, views: Views, pixels: int = len(PIXELS)) -> Iterator[tuple[int, Action]]:
+    """Every action of the oracle in a state, with the index of its pixel; only the first `pixels` of them."""
     height, width = views.depth.shape[1:]
     for view in range(len(views.depth)):
         middle = corner_pixel(state, views, view)
         if middle is None:
             continue
-        for n, (down, right) in enumerate(PIXELS):
+        for n, (down, right) in enumerate(PIXELS[:pixels]):
             row, column = middle[0] + down, middle[1] + right
             if 0 <= row < height and 0 <= column < width and views.depth[view, row, column] > 0:
                 for primitive in range(len(PRIMITIVES)):
@@ -74,6 +74,6 @@ def attempt(
     return Attempt(action=action, pixel=pixel, layers=grasp.layers, corner=grasp.corner)
 
 
-def try_all(state: HungState, views: Views) -> list[Attempt]:
-    """What comes of every action of the oracle."""
-    return [attempt(state, views, action, pixel) for pixel, action in choices(state, views)]
+def try_all(state: HungState, views: Views, pixels: int = len(PIXELS)) -> list[Attempt]:
+    """What comes of every action of the oracle; only at the first `pixels` of them."""
+    return [attempt(state, views, action, pixel) for pixel, action in choices(state, views, pixels)]

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...sim.bullet.grip import cloth_between
-from ...sim.bullet.soft_world import MARGIN
+from ...sim.bullet.handle import FOLLOWS
 from ...sim.robot.hand_boxes import boxes_of
-from ...sim.spring.fingers import PLACES, near_boxes, push_aside
-from ...sim.spring.sheet import Sheet
+from ...sim.spring.fingers import near_boxes, push_aside
 from .action import HandPath
-from .gowns import sheet_of
+from .gowns import held_sheet
 from .hung_state import HungState
 from .numbers import ACTION, HANG, ActionNumbers
 
@@ -61,37 +60,32 @@ def waypoints(path: HandPath, dt: float, numbers: ActionNumbers = ACTION) -> np.
 def roll_out(state: HungState, path: HandPath, numbers: ActionNumbers = ACTION) -> Grasp:
     """Carry out an action; the same state and path give the same grasp.
 
+    The hand is a little behind its path, as the handle is in PyBullet, and closes where it then is.  Stays meet the
+    fingers too.
+
     Args:
         state: the gown, at rest.
         path: of the hand.
         numbers: of the primitives.
     """
-    sheet = _held(state)
-    faces, dt = sheet.mesh.faces, HANG.step
+    sheet = held_sheet(state.gown, state.held, state.vertices, state.deep)
+    faces, dt = np.ascontiguousarray(sheet.mesh.sewn), HANG.step
     room = np.empty((3 * len(faces), 2), np.int64)
     before, count = path.start, 0
     speeds = np.zeros((3, 6))
-    for k, tip in enumerate(waypoints(path, dt, numbers)):
+    for k, target in enumerate(waypoints(path, dt, numbers)):
+        tip = before + FOLLOWS * (target - before)
         boxes = boxes_of(path.turn, before, numbers.opening)
         speeds[:, :3] = (tip - before) / dt
         if k % LOOK == 0:
             count = near_boxes(sheet.x, faces, boxes, REACH, room)
         sheet.free_step()
+        sheet.keep_apart(k % LOOK == 0)
         if count:
             push_aside(
-                *(sheet.x, sheet.v, sheet.loose, faces, room[:count], boxes, speeds, PLACES),
-                *(numbers.friction, MARGIN, dt, 3),
+                *(sheet.x, sheet.v, sheet.loose, faces, room[:count], boxes, speeds),
+                *(numbers.friction, numbers.margin, dt, 3),
             )
         sheet.move_on()
         before = tip
-    return grasp_of(state, sheet.x, path, numbers.opening)
-
-
-def _held(state: HungState) -> Sheet:
-    """The sheet of a gown, held and placed as in the state."""
-    sheet = sheet_of(state.gown)
-    if sheet.held != set(state.held):
-        sheet.held.clear()
-        sheet.hold(state.held)
-    sheet.place(state.vertices)
-    return sheet
+    return grasp_of(state, sheet.x, replace(path, end=before), numbers.opening)

@@ -65,7 +65,7 @@ class Training:
 
     def __init__(self, data: Dataset, plan: Plan) -> None:
         torch.manual_seed(plan.seed)
-        self.plan, self.network = plan, PolicyNetwork()
+        self.plan, self.deep, self.network = plan, data.deep, PolicyNetwork()
         self.optimiser = torch.optim.Adam(self.network.parameters(), RATE)
         self.steps, self.trials = 0, 0
         self.curve: list[int] = []
@@ -123,7 +123,7 @@ class Training:
         """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded."""
         plan, k = self.plan, self.trials
         rng = np.random.default_rng([plan.seed, 19, k])
-        state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS))
+        state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS), deep=self.deep)
         views = photograph(state)
         image = seen(views)
         if rng.random() < EPSILON * np.exp(-k / DECAY):

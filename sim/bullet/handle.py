@@ -35,9 +35,11 @@ _CARRIED = (
     MASS + 3 * LINK_MASS,
 )  # what the motors along x, y and z move [kg]
 _JOINTS = tuple(range(6))
-_POSITION_GAINS, _VELOCITY_GAINS = (0.3,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
+FOLLOWS = 0.3  # share of the way that is left which a motor goes in one step
+_POSITION_GAINS, _VELOCITY_GAINS = (FOLLOWS,) * 6, (1.0,) * 6  # stiff, and damped as PyBullet's motors are by default
 _FORCES = (ROOM.force(300.0),) * 3 + (ROOM.force(20.0),) * 3  # of the motors, 300 N and 20 N m
 _FORCE, _RATE = ROOM.force(1.0), ROOM.rate(1.0)
+_UPRIGHT = 1e-6  # below this cosine of the pitch, roll and yaw cannot be told apart
 _SMOOTHING = 0.05  # share of a new reading: about 40 ms at a 2 ms step
 
 
@@ -128,7 +130,7 @@ class Handle:
 
 def _fingers(turn: np.ndarray, opening: float) -> str:
     """Collision shapes of two fingers and a palm on a link whose axes are the map's."""
-    roll, pitch, yaw = np.arctan2(turn[2, 1], turn[2, 2]), -np.arcsin(turn[2, 0]), np.arctan2(turn[1, 0], turn[0, 0])
+    roll, pitch, yaw = roll_pitch_yaw(turn)
     parts = []
     for middle, half in zip(*local_boxes(opening), strict=True):
         x, y, z = turn @ middle
@@ -138,6 +140,17 @@ def _fingers(turn: np.ndarray, opening: float) -> str:
             f'<geometry><box size="{a:.6f} {b:.6f} {c:.6f}"/></geometry></collision>'
         )
     return "".join(parts)
+
+
+def roll_pitch_yaw(turn: np.ndarray) -> tuple[float, float, float]:
+    """Angles [rad] about the fixed axes x, y and z, as URDF has them, of a rotation (3, 3).
+
+    A hand that comes in level has its x axis upright, where roll and yaw turn about the same axis: roll is then 0.
+    """
+    pitch = float(np.arctan2(-turn[2, 0], np.hypot(turn[2, 1], turn[2, 2])))
+    if np.hypot(turn[2, 1], turn[2, 2]) < _UPRIGHT:
+        return 0.0, pitch, float(np.arctan2(-turn[0, 1], turn[1, 1]))
+    return float(np.arctan2(turn[2, 1], turn[2, 2])), pitch, float(np.arctan2(turn[1, 0], turn[0, 0]))
 
 
 def _urdf(fingers: str = "") -> str:

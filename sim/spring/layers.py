@@ -39,6 +39,11 @@ class Layers:
         _sort_out(x, self.faces, self._side, self.pairs, found)
         self.pairs = found
 
+    def forget(self) -> None:
+        """Forget which vertices are near, and their sides."""
+        self._side[self.pairs[:, 0], self.pairs[:, 1]] = 0
+        self.pairs = np.zeros((0, 2), np.int64)
+
     def part(self, x: np.ndarray, v: np.ndarray, loose: np.ndarray, dt: float, rounds: int) -> None:
         """Change `v` (V, 3) so that no pair closes in the next step of `dt` [s]; `loose` is one over each mass."""
         _part(x, v, loose, self.faces, self._side, self.pairs, dt, rounds)

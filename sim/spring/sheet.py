@@ -137,6 +137,22 @@ class Sheet:
         )
         return force
 
+    def keep_apart(self, anew: bool) -> None:
+        """Change the velocities so that no fold passes through another in the next step, where the cloth meets itself.
+
+        Args:
+            anew: whether to look for folds that are near each other; the ones found last are kept otherwise.
+        """
+        if self._layers is not None:
+            if anew:
+                self._layers.look(self.x, REACH / 2)
+            self._layers.part(self.x, self.v, self._loose, self.dt, ROUNDS)
+
+    def forget_layers(self) -> None:
+        """Take every vertex to be on the side of each fold on which it is seen next."""
+        if self._layers is not None:
+            self._layers.forget()
+
     def move_on(self) -> None:
         """Go where the velocities lead in one step."""
         self.x += self.dt * self.v

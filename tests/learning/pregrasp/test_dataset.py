@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from caretree.learning.pregrasp import dataset
 from caretree.learning.pregrasp.action import Action
+from caretree.learning.pregrasp.agreement import paired
 from caretree.learning.pregrasp.ceiling import ceiling, table
 from caretree.learning.pregrasp.cli import main
 from caretree.learning.pregrasp.oracle import Attempt
 from caretree.sim.errors import CaretreeError
 
 
-def few(state: object, views: dataset.Views) -> list[Attempt]:
+def few(state: object, views: dataset.Views, pixels: int) -> list[Attempt]:
     """Two attempts instead of ninety: a direct grasp that fails and a sweep that succeeds."""
     row, column = (int(k) for k in np.argwhere(views.depth[0] > 0)[0])
     return [
@@ -64,3 +65,16 @@ def test_kept_seeds_are_refused(capsys: pytest.CaptureFixture[str], tmp_path: Pa
     with pytest.raises((SystemExit, CaretreeError)):
         main(["data", str(tmp_path / "x"), "--seeds", "8999-9000"])
     assert not (tmp_path / "x").exists()
+
+
+def test_deep_grasps_are_told_apart_and_not_repeated_in_pybullet(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dataset, "try_all", few)
+    assert main(["data", str(tmp_path / "a"), "--seeds", "110", "--deep", "--pixels", "1"]) == 0
+    data = dataset.load_dataset(tmp_path / "a")
+    assert data.deep
+    with pytest.raises(CaretreeError, match="meet itself"):
+        paired(data, 2, 0)
+    with pytest.raises(CaretreeError, match="deep True, pixels 1, not with deep False, pixels 5"):
+        main(["data", str(tmp_path / "a"), "--seeds", "110"])

@@ -77,3 +77,18 @@ def test_a_grasp_far_from_the_gown_takes_nothing(state: HungState) -> None:
 
 def test_kept_seeds_are_those_from_9000_on() -> None:
     assert KEPT_SEEDS == 9000
+
+
+def test_a_deep_grasp_holds_the_middle_of_the_neckline_and_repeats() -> None:
+    deep = hang(SEED, deep=True)
+    mesh = mesh_of(deep.gown)
+    held = [int(k) for k in mesh.collar if k in deep.held]
+    assert held
+    assert not set(mesh.corners) & set(deep.held)
+    assert deep.deep
+    assert deep.wanted in mesh.corners
+    assert np.array_equal(hang(SEED, deep=True).vertices, deep.vertices)
+    path = path_to(deep.vertices[deep.wanted].astype(float), 1, 1)
+    first = roll_out(deep, path)
+    roll_out(deep, path_to(deep.vertices[deep.wanted].astype(float), 4, 2))
+    assert np.array_equal(roll_out(deep, path).vertices, first.vertices)

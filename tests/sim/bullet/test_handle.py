@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.bullet.cloth import Cloth, UnstableClothError
-from caretree.sim.bullet.handle import Handle
+from caretree.sim.bullet.handle import Handle, roll_pitch_yaw
 from caretree.sim.bullet.soft_world import GRAVITY, SoftWorld
 from caretree.sim.scene.gown import GOWNS, build_gown
 
@@ -89,3 +89,26 @@ def test_a_handle_is_told_once_where_to_be_and_anew_after_it_was_put_elsewhere(w
             world.step()
         np.testing.assert_allclose(handle.position(), there[:3, 3], atol=0.003)
         handle.reset(here)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.26, 1.3, -2.6])
+def test_fingers_of_a_level_hand_turn_with_it(world: SoftWorld, yaw: float) -> None:
+    approach = np.array((np.cos(yaw), np.sin(yaw), 0.0))  # level: the x axis of the hand is upright
+    across = np.cross(approach, (0.0, 0.0, 1.0))
+    turn = np.column_stack([np.cross(across, approach), across, approach])
+    pose = np.eye(4)
+    pose[:3, :3] = turn
+    handle = Handle(world.client, pose, opening=0.05)
+    shapes = world.client.getCollisionShapeData(handle.body, handle.link)
+    assert len(shapes) == 3
+    for shape in shapes:
+        assert np.reshape(world.client.getMatrixFromQuaternion(shape[6]), (3, 3)) == pytest.approx(turn, abs=1e-5)
+
+
+def test_angles_of_any_rotation_turn_back_to_it(world: SoftWorld) -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        turn *= np.sign(np.linalg.det(turn))
+        quaternion = world.client.getQuaternionFromEuler(roll_pitch_yaw(turn))
+        assert np.reshape(world.client.getMatrixFromQuaternion(quaternion), (3, 3)) == pytest.approx(turn, abs=1e-6)
