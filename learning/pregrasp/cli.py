@@ -45,6 +45,9 @@ def parser() -> argparse.ArgumentParser:
     test = sub.add_parser("evaluate", help="ceiling of the oracle, success of a policy, agreement with PyBullet")
     test.add_argument("data", type=Path, metavar="DATA", help="folder of `data` that no training saw")
     test.add_argument("--policy", type=Path, metavar="FILE", help="a pregrasp.onnx")
+    test.add_argument(
+        "--engine", choices=("spring", "bullet"), default="spring", help="that tries the policy (default spring)"
+    )
     test.add_argument("--bullet", type=int, default=0, metavar="N", help="repeat N attempts in PyBullet (0.5 s each)")
     test.add_argument("--seed", type=seed, default=0, metavar="N", help="of which attempts these are (default 0)")
     test.add_argument("--out", type=Path, metavar="FILE", help="also write the tables, Markdown")
