@@ -1,4 +1,4 @@
-"""Lay the unfolded gown on the person, outside up, the neckline just beyond the fingertips of the resting arms."""
+"""Bring the unfolded gown down on the person, outside up, the neckline beyond the fingertips of the resting arms."""
 
 from __future__ import annotations
 
@@ -9,12 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import SIDES, Side
 from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
 from .control.even_out import EvenOutTuning, even_out
-from .control.fingers import open_gripper
-from .control.hands import hand_now, move_hands
 from .control.held_neckline import HeldNeckline, NecklineTuning
 from .core.ports import Input
 from .core.reasons import Reason
@@ -54,19 +51,13 @@ class LayGownTuning(Quantities):
     even: EvenOutTuning = field(default_factory=EvenOutTuning)
     approach_speed: float = quantity(0.4, "m/s", "of the base on its way to the bed", "choice: the gown hardly swings")
     base_speed: float = quantity(0.35, "m/s", "of the base along the bed", "choice: the gown is drawn, not dropped")
-    withdrawal: tuple[float, float, float] = quantity(
-        (0.0, 0.06, 0.22), "m", "of the open hands in the map", "choice: up and off the cloth, towards the feet"
-    )
-    withdrawal_speed: float = quantity(0.3, "m/s", "of the open hands", "choice: they hold nothing")
-    final_y: float = quantity(1.6, "m", "of the base in the end", "choice: the arms are clear of the bed")
 
 
 class LayGown(Skill):
-    """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
+    """Slides along the bed towards the head while the hands come down; both end at the bed and still hold the gown.
 
     The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
-    far side, is drawn across to the near side before it is let go of, and one of which more hangs over one edge of the
-    bed to the other side.
+    far side, is drawn across to the near side, and one of which more hangs over one edge of the bed to the other side.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -74,7 +65,7 @@ class LayGown(Skill):
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.PATH_BLOCKED, Reason.TIMEOUT)
 
     def steps(self) -> Iterator[None]:
-        """Drive and lower in turn; then open, rise, drive back."""
+        """Drive and lower in turn, draw it straight, lay it down."""
         tuning = self.tuning
         self.note("lays the gown on the person")
         neckline = HeldNeckline(self, self.width, tuning.middle_x, tuning.neckline)
@@ -94,15 +85,6 @@ class LayGown(Skill):
         yield from even_out(neckline, *tuning.descent[-1], tuning.even)
         yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)
         yield from self._lay_down(neckline)
-        for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
-            yield from open_gripper(self, side)
-        self.note("withdraws")
-        up: dict[Side, np.ndarray] = {side: hand_now(self, side) for side in SIDES}
-        for pose in up.values():
-            pose[:3, 3] += tuning.withdrawal
-        yield from move_hands(self, up, speed=tuning.withdrawal_speed, free="any", retreat=True)
-        away = np.array((STANCES.lane, tuning.final_y, STANCES.heading))
-        yield from drive_to(self, away, straight=True, retreat=True)
 
     def _base_for(self, y: float) -> np.ndarray:
         """Base pose (3,) in the map from which the hands hold the neckline at `y` [m, m, rad]."""

@@ -20,6 +20,7 @@ from ....skills.stretch_neckline import StretchNeckline
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import Stage, timed_stage
+from .let_gown_go import LetGownGo
 from .patience import patient
 from .take_down import LEVEL, corner_by_corner, holds_gown_with, look_and_take
 from .tuning import DRESSING
@@ -32,7 +33,12 @@ def lay(context: Context) -> Stage:
         "lay",
         by_both_ends(context, gown),
         patient(gown, FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence)),
-        LayGown("lay it on the person", gown),
+        fallback(
+            "on the person",
+            LayGown("lay it on the person", gown),
+            Condition("it is down already", is_down, Reason.MOTION_BLOCKED),
+        ),
+        LetGownGo("let it go", gown),
         precondition=holds_gown,
         seconds=DRESSING.lay_timeout,
     )
@@ -68,3 +74,9 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
 def holds_gown(context: Context) -> bool:
     """Both hands together carry what a gown weighs [N]."""
     return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > DRESSING.gown_weight)
+
+
+def is_down(context: Context) -> bool:
+    """Both hands are as low as the person lies: one that met a leg, or a hand, on its way down can let the gown go."""
+    heights = context.world.observe().pose_hand_in_map[:, 2, 3] - context.world.room.bed[1, 2]
+    return bool(np.all(heights < DRESSING.laid_below))

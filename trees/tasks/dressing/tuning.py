@@ -52,6 +52,9 @@ class DressingTuning(Quantities):
     patience: float = quantity(
         30.0, "s", "for cameras to show again", "design requirement: cameras that are dead for 20 s end no run"
     )
+    laid_below: float = quantity(
+        0.20, "m", "of both hands above the mattress, at which a gown is down", "choice: as high as a person lies"
+    )
     # taking the gown down
     neckline: tuple[float, float] = quantity(
         (0.70, 0.98),
