@@ -1,4 +1,4 @@
-"""Bring the unfolded gown down on the person, outside up, the neckline beyond the fingertips of the resting arms."""
+"""Lay the unfolded gown on the person, outside up, the neckline just beyond the fingertips of the resting arms."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
 from .control.even_out import EvenOutTuning, even_out
 from .control.held_neckline import HeldNeckline, NecklineTuning
+from .control.leave_gown import LeaveGownTuning, leave_gown
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -49,15 +50,17 @@ class LayGownTuning(Quantities):
     neckline: NecklineTuning = field(default_factory=NecklineTuning)
     across: DrawAcrossTuning = field(default_factory=DrawAcrossTuning)
     even: EvenOutTuning = field(default_factory=EvenOutTuning)
+    leave: LeaveGownTuning = field(default_factory=LeaveGownTuning)
     approach_speed: float = quantity(0.4, "m/s", "of the base on its way to the bed", "choice: the gown hardly swings")
     base_speed: float = quantity(0.35, "m/s", "of the base along the bed", "choice: the gown is drawn, not dropped")
 
 
 class LayGown(Skill):
-    """Slides along the bed towards the head while the hands come down; both end at the bed and still hold the gown.
+    """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
     The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
-    far side, is drawn across to the near side, and one of which more hangs over one edge of the bed to the other side.
+    far side, is drawn across to the near side before it is let go of, and one of which more hangs over one edge of the
+    bed to the other side.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -65,7 +68,7 @@ class LayGown(Skill):
     reasons = (Reason.UNREACHABLE, Reason.MOTION_BLOCKED, Reason.COMMAND_LOST, Reason.PATH_BLOCKED, Reason.TIMEOUT)
 
     def steps(self) -> Iterator[None]:
-        """Drive and lower in turn, draw it straight, lay it down."""
+        """Drive and lower in turn; then open, rise, drive back."""
         tuning = self.tuning
         self.note("lays the gown on the person")
         neckline = HeldNeckline(self, self.width, tuning.middle_x, tuning.neckline)
@@ -85,6 +88,7 @@ class LayGown(Skill):
         yield from even_out(neckline, *tuning.descent[-1], tuning.even)
         yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)
         yield from self._lay_down(neckline)
+        yield from leave_gown(self, tuning.leave)
 
     def _base_for(self, y: float) -> np.ndarray:
         """Base pose (3,) in the map from which the hands hold the neckline at `y` [m, m, rad]."""

@@ -33,12 +33,7 @@ def lay(context: Context) -> Stage:
         "lay",
         by_both_ends(context, gown),
         patient(gown, FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence)),
-        fallback(
-            "on the person",
-            LayGown("lay it on the person", gown),
-            Condition("it is down already", is_down, Reason.MOTION_BLOCKED),
-        ),
-        LetGownGo("let it go", gown),
+        fallback("on the person", LayGown("lay it on the person", gown), where_it_is(gown)),
         precondition=holds_gown,
         seconds=DRESSING.lay_timeout,
     )
@@ -74,6 +69,12 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
 def holds_gown(context: Context) -> bool:
     """Both hands together carry what a gown weighs [N]."""
     return bool(-np.sum(context.world.observe().wrench_hand_in_map[:, 2]) > DRESSING.gown_weight)
+
+
+def where_it_is(gown: Scope) -> Behaviour:
+    """A gown that is down is let go of although a hand met a leg on its last centimetres."""
+    down = Condition("it is down already", is_down, Reason.MOTION_BLOCKED)
+    return sequence("let it go where it is", down, LetGownGo("let it go", gown))
 
 
 def is_down(context: Context) -> bool:
