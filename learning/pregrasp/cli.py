@@ -109,7 +109,7 @@ def _evaluate(options: argparse.Namespace) -> None:
     if options.policy:
         from .evaluate import policy_table
 
-        texts.append(policy_table(data, options.policy, _say))
+        texts.append(policy_table(data, options.policy, _say, engine=options.engine))
     if options.bullet > 0:
         from .agreement import agreement_table
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from caretree.learning.pregrasp import dataset
+from caretree.learning.pregrasp import ceiling, dataset, evaluate
 from caretree.learning.pregrasp.cli import main
 from caretree.learning.pregrasp.evaluate import ENGINES, policy_wins
 from caretree.learning.pregrasp.hung_state import hang
@@ -52,3 +52,14 @@ def test_the_corner_is_won_and_the_edge_of_the_gown_is_not(data: dataset.Dataset
 def test_deep_grasps_are_not_tried_in_pybullet(data: dataset.Dataset) -> None:
     with pytest.raises(CaretreeError, match="meet itself"):
         policy_wins(replace(data, deep=True), Told((0, 0)), engine="bullet")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_command_tries_the_policy_in_the_engine_it_is_told(
+    data: dataset.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, engine: str
+) -> None:
+    tried: list[str] = []
+    monkeypatch.setattr(ceiling, "table", lambda _: "")  # of no attempts there is none
+    monkeypatch.setattr(evaluate, "policy_table", lambda *_, engine: tried.append(engine) or "")
+    assert main(["evaluate", str(tmp_path / "a"), "--policy", "any.onnx", "--engine", engine]) == 0
+    assert tried == [engine]
