@@ -11,6 +11,7 @@ from caretree.learning.gap.cloth.simulate import simulate
 from caretree.learning.gap.record import hung_path
 from caretree.learning.physics.engine.bullet import bullet_fall
 from caretree.learning.physics.engine.fall import RATE, steps_per_frame
+from caretree.sim.bullet import coupled_room
 from caretree.sim.bullet import world as room
 from caretree.sim.bullet.soft_world import SoftWorld
 from caretree.sim.scene.gown import GOWNS, GownSpec, build_gown
@@ -75,7 +76,7 @@ def in_prediction(mesh, start, monkeypatch):
 
 def in_dressing_world(mesh, start, monkeypatch):
     monkeypatch.setitem(GOWNS, "small", SMALL)
-    monkeypatch.setattr(room, "TIME_STEP", 1.0 / RATE / STEPS)
+    monkeypatch.setattr(coupled_room, "TIME_STEP", 1.0 / RATE / STEPS)
     with closing(room.BulletWorld(seed=0, gown="small")) as world:
         world._hook.release()
         world._cloth.place(start)

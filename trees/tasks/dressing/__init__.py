@@ -27,10 +27,12 @@ from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe
 from ...run.stages import TaskStage
 from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the task's own leaves here
+from .check_face import CheckFace as CheckFace
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
 from .dress import dress
-from .lay import holds_gown, lay
+from .lay import holds_gown, is_down, lay
+from .let_gown_go import LetGownGo as LetGownGo
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
@@ -50,6 +52,7 @@ CONDITIONS = (
     hands_open,
     holds_gown,
     holds_gown_with,
+    is_down,
     outside_out,
 )
 
