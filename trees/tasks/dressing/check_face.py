@@ -37,10 +37,13 @@ class CheckFaceTuning(Quantities):
 
 
 class CheckFace(Skill):
-    """Fails where cloth lies over mouth and nose; looks from the head of the bed, the hands drawn back."""
+    """Fails where cloth lies over mouth and nose, or where they are out of the picture.
+
+    It looks from the head of the bed, once the hands are drawn back.
+    """
 
     tuning = Input(CheckFaceTuning, default=CheckFaceTuning(), doc="numbers of this skill")
-    reasons = (Reason.FACE_COVERED, Reason.ARM_LOST, Reason.COMMAND_LOST)
+    reasons = (Reason.FACE_COVERED, Reason.NOTHING_SEEN, Reason.ARM_LOST, Reason.COMMAND_LOST)
 
     def steps(self) -> Iterator[None]:
         """Turn the head there, and one look."""
@@ -54,9 +57,8 @@ class CheckFace(Skill):
         yield from look_towards(self, face.mean(axis=0))
         try:
             seen = self.context.senses.skin_cover(self.world.look("head"), points_in_map=face)
-        except PerceptionFailure:
-            self.note("the face is out of the picture")
-            return
+        except PerceptionFailure as hidden:  # a face that is not seen is not known to be free
+            raise SkillFailure(Reason.NOTHING_SEEN, f"{hidden}") from None
         self.note(f"{1.0 - seen.share:.0%} of mouth and nose show")
         if seen.share > tuning.max_covered:
             raise SkillFailure(Reason.FACE_COVERED, f"{1.0 - seen.share:.0%} of mouth and nose show")

@@ -40,7 +40,7 @@ def look(seen, asked=None):
         (cover(0.3), None),
         (cover(0.5), Reason.FACE_COVERED),
         (cover(1.0), Reason.FACE_COVERED),
-        (PerceptionFailure(Problem.OUT_OF_REACH, "face"), None),
+        (PerceptionFailure(Problem.OUT_OF_REACH, "face"), Reason.NOTHING_SEEN),
     ],
 )
 def test_cloth_over_mouth_and_nose_is_no_success(seen, reason):
