@@ -96,6 +96,7 @@ class GuardedWorld:
         )
         self._fault: Failure | None = None
         self._last: Observation | None = None
+        self._judged_at = -np.inf  # world clock when it was [s]
 
     # -- what skills tell and ask ------------------------------------------------------------------------
 
@@ -170,8 +171,11 @@ class GuardedWorld:
 
     def observe(self) -> Observation:
         """Latest proprioception, judged; raises SensorLost, also where it is too old."""
-        seen = fresh_observation(self._inner.observe(), self.clock.now(), self.limits.stale_after)
-        self._watchdog.sample(seen, self.clock.now())
+        seen, now = self._inner.observe(), self.clock.now()
+        if seen is self._last and now == self._judged_at:  # asked again at this very instant: it has been judged
+            return seen
+        seen = fresh_observation(seen, now, self.limits.stale_after)
+        self._watchdog.sample(seen, now)
         for fault in self._load.judge(seen):
             self._hold_against(fault)
         if self._last is None or seen.time > self._last.time:
@@ -179,7 +183,7 @@ class GuardedWorld:
             self._grips.carry(seen)
             if fault := self._overspeed.judge(seen, self._last):
                 self._hold_against(fault)
-        self._last = seen
+        self._last, self._judged_at = seen, now
         return seen
 
     def look(self, camera: str) -> Frame:
