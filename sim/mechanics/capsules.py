@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiled import fma, njit
 from ..extras import later
-from .kinematics import Kinematics
+from .kinematics import Kinematics, joint_places
 
 if TYPE_CHECKING:
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
@@ -43,7 +43,7 @@ class RobotCapsules:
                 for capsule, frame in zip(self.capsules, frames, strict=True)
             ]
         )  # (r, 2, 3) in the frame of the joint that moves the link
-        self._places = _places(kinematics.data)
+        self._places = joint_places(kinematics.data)
 
     def ends(
         self,
@@ -87,16 +87,6 @@ class RobotCapsules:
     def rows(self, ends: np.ndarray) -> np.ndarray:
         """(r, 7) ends and radius of every capsule, from `ends` (r, 2, 3)."""
         return np.column_stack((ends.reshape(-1, 6), self.radii))
-
-
-def _places(data: pin.Data) -> np.ndarray:
-    """(joints, 12) where pinocchio keeps every joint's pose in the map: rotation by columns, then place.
-
-    A view of its memory, which lives as long as `data` does: asking for the poses one by one would take ten times
-    as long as computing them.
-    """
-    first = data.oMi[0].rotation[:1, 0]
-    return np.lib.stride_tricks.as_strided(first, (len(data.oMi), 12), (12 * first.itemsize, first.itemsize))
 
 
 @njit()

@@ -64,6 +64,7 @@ class Kinematics:
         full = self.model
         neutral = pin.neutral(full)
         self._arms: dict[Side, tuple[pin.Model, pin.Data, int]] = {}
+        self._places_of_joints: dict[Side, np.ndarray] = {}  # (n, 3) of each arm where pinocchio keeps them [m]
         self.limits: dict[Side, ArmLimits] = {}
         self._arm_index = np.array(
             [[full.joints[full.getJointId(name)].idx_q for name in robot.joints_of(side)] for side in SIDES]
@@ -82,7 +83,9 @@ class Kinematics:
             keep = set(robot.joints_of(side))
             locked = [full.getJointId(name) for name in full.names[1:] if name not in keep]
             arm = pin.buildReducedModel(full, locked, neutral)
-            self._arms[side] = (arm, arm.createData(), arm.getFrameId(robot.hands[side]))
+            data = arm.createData()
+            self._arms[side] = (arm, data, arm.getFrameId(robot.hands[side]))
+            self._places_of_joints[side] = joint_places(data)[1:, 9:]
             index = self._arm_index[n]
             self.limits[side] = ArmLimits(
                 lower=full.lowerPositionLimit[index].copy(),
@@ -130,8 +133,7 @@ class Kinematics:
     def hand_and_joints(self, side: Side, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Hand pose (4, 4) in `base`, Jacobian (6, n) along the hand's axes, places (n, 3) of the joints in `base`."""
         pose, jacobian = self.pose_and_jacobian_local(side, q)
-        placed = self._arms[side][1].oMi
-        return pose.homogeneous, jacobian, np.array([placed[n + 1].translation for n in range(len(q))])
+        return pose.homogeneous, jacobian, self._places_of_joints[side].copy()
 
     def configuration(
         self,
@@ -183,6 +185,16 @@ class Kinematics:
         velocity[self._arm_index] = arm_velocities
         acceleration[self._arm_index] = arm_accelerations
         return pin.rnea(self.model, self.data, q, velocity, acceleration)[self._arm_index]
+
+
+def joint_places(data: pin.Data) -> np.ndarray:
+    """(joints, 12) where pinocchio keeps the pose of every joint of a model: rotation by columns, then place.
+
+    A view of its memory, which lives as long as `data` does: asking for the poses one by one would take ten times
+    as long as computing them.
+    """
+    first = data.oMi[0].rotation[:1, 0]
+    return np.lib.stride_tricks.as_strided(first, (len(data.oMi), 12), (12 * first.itemsize, first.itemsize))
 
 
 def _place(index: np.ndarray) -> Any:
