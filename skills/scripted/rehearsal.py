@@ -14,6 +14,7 @@ import numpy as np
 from ...sim.known_robots import robot_named
 from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.mechanics.robot_model import RobotModel
+from ...sim.mechanics.servo import PERIOD
 from ...sim.quantity import Quantities, quantity
 from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import room_map
@@ -44,6 +45,9 @@ class RehearsalTuning(Quantities):
         "measured: shipped tasks end alike from 2.5 to 15, and at 1.9 miss time limits",
     )
     steps: int = quantity(4, "1", "of the integration from tick to tick, at most", "choice: as at the usual 15 ticks")
+    twist_steps: int = quantity(
+        7, "1", "in which a hand follows a twist from tick to tick, at most", "choice: as at the usual 15 ticks"
+    )
     stiffness: float = quantity(100.0, "N/m", "with which cloth holds a hand back", "choice: felt within centimetres")
     max_drag: float = quantity(
         1.1, "N", "with which cloth holds a hand back at most", "choice: below the loads at which skills stop"
@@ -80,6 +84,7 @@ class RehearsalWorld(ScriptedWorld):
         self._tuning = tuning
         self.tick_rate = tuning.tick_rate
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
+        self._sample: Observation | None = None  # of this instant
 
     def set_initial_state(self, name: str) -> None:
         """Begin with the gown in both hands, or with empty ones wherever else it is said to be.
@@ -104,18 +109,32 @@ class RehearsalWorld(ScriptedWorld):
                 away = min(_distance(hand, *limb) for arm in arms for limb in itertools.pairwise(arm))
                 met = self._tuning.arm_width if away < self._tuning.arm_radius else self._tuning.cloth_width
                 self.between_fingers[command.side] = met
+        self._sample = None
         return super().send(command)
 
+    def stop(self) -> None:
+        """End every motion."""
+        self._sample = None
+        super().stop()
+
     def observe(self) -> Observation:
-        """The scripted world's senses, with the load of what the hands hold."""
-        for side in SIDES:
-            self.load[side] = np.zeros(6)
-            if side in self._taken and self.between_fingers[side] > 0.0:
-                self.load[side][:3] = self.held_back(side)
-        return super().observe()
+        """The scripted world's senses, with the load of what the hands hold.
+
+        They sample once an instant: guard and skills ask four times a tick, and are told the same, noise included,
+        until time has passed or a command was sent.
+        """
+        if self._sample is None or self._sample.time < self.time.time:
+            for side in SIDES:
+                self.load[side] = np.zeros(6)
+                if side in self._taken and self.between_fingers[side] > 0.0:
+                    self.load[side][:3] = self.held_back(side)
+            self._sample = super().observe()
+        return self._sample
 
     def _advance_to(self, time: float) -> None:
-        self._longest_step = max(STEP, (time - self.time.time) / self._tuning.steps)
+        ahead = time - self.time.time
+        self._longest_step = max(STEP, ahead / self._tuning.steps)
+        self._twist_step = max(PERIOD, ahead / self._tuning.twist_steps)
         super()._advance_to(time)
 
     def held_back(self, side: Side) -> np.ndarray:

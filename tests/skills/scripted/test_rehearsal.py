@@ -1,9 +1,11 @@
 """A rehearsal that is ticked as seldom as it suffices is the same rehearsal."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.sim.mechanics.kinematics import kinematics_of
-from caretree.sim.world import SIDES, BaseVelocity
+from caretree.sim.world import SIDES, BaseVelocity, HandTwist
 from caretree.skills.core.skill import Skill
 from caretree.skills.scripted.rehearsal import REHEARSAL, RehearsalWorld
 from caretree.trees.run.runner import Run
@@ -68,3 +70,39 @@ def test_a_velocity_holds_until_the_next_tick_however_late(rate_hz, lasts):
     assert run.run().outcome == "success"
     turned = 0.1 * np.sin(RehearsalWorld().observe().pose_base_in_map[2])
     assert run.root.way == pytest.approx(turned * lasts, abs=1e-9)
+
+
+def test_the_senses_sample_once_an_instant_and_anew_after_a_command():
+    world = RehearsalWorld()
+    first = world.observe()
+    assert world.observe() is first
+    world.clock.wait_until(0.1)
+    later = world.observe()
+    assert (later.wrench_hand_in_map != first.wrench_hand_in_map).all(), "their noise is drawn anew"
+    world.send(BaseVelocity(velocity=np.array((0.1, 0.0, 0.0)), duration=0.2))
+    assert world.observe().twist_base[0] == 0.1, "a command shows at once"
+    world.stop()
+    assert world.observe() is not later
+
+
+def led(rate_hz, steps=None):
+    """Where a twist of 0.1 m/s for a second leads the left hand, ticked at a rate; and in how many steps."""
+    tuning = REHEARSAL if steps is None else replace(REHEARSAL, twist_steps=steps)
+    world = RehearsalWorld(tuning=tuning)
+    step, taken = world._step, []
+    world._step = lambda dt: (taken.append(dt), step(dt))
+    world.send(HandTwist(side="left", twist_in_map=np.array((0.0, -0.1, 0.0, 0.0, 0.0, 0.0)), duration=1.0))
+    for tick in range(1, round(2 * rate_hz) + 1):
+        world.clock.wait_until(tick / rate_hz)
+    return world.observe().pose_hand_in_map[0, :3, 3], len(taken)
+
+
+def test_a_hand_follows_a_twist_as_well_in_the_few_steps_of_a_rare_tick():
+    place, steps = led(REHEARSAL.tick_rate)
+    exact, many = led(REHEARSAL.tick_rate, steps=1000)
+    assert steps < many / 3
+    assert place == pytest.approx(exact, abs=0.005)  # [m]
+
+
+def test_at_the_usual_rate_a_hand_follows_as_in_the_simulated_room():
+    assert led(TICK_RATE)[1] == led(TICK_RATE, steps=1000)[1]
