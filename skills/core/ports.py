@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import types
 import typing
-from collections.abc import Iterator
+from functools import cache
 from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
@@ -232,12 +232,11 @@ class Output(_Port[T]):
             owner.bindings[self.name] = _REQUIRED
 
 
-def ports_of(kind: type) -> Iterator[tuple[str, Input[Any] | Output[Any]]]:
-    """Ports declared by a class and its bases, sorted by name."""
+@cache
+def ports_of(kind: type) -> tuple[tuple[str, Input[Any] | Output[Any]], ...]:
+    """Ports declared by a class and its bases, sorted by name; kept, as every leaf of a tree is asked for its own."""
     found = {name: port for base in reversed(kind.__mro__) for name, port in vars(base).items()}
-    for name in sorted(found):
-        if isinstance(found[name], (Input, Output)):
-            yield name, found[name]
+    return tuple((name, found[name]) for name in sorted(found) if isinstance(found[name], (Input, Output)))
 
 
 def bind_ports(owner: Any, given: dict[str, Any]) -> dict[str, Any]:

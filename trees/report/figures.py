@@ -1,10 +1,10 @@
-"""The pictures of a report: timeline, curves and key frames, each as the bytes of an image file."""
+"""The pictures of a report: curves and key frames, each as the bytes of an image file."""
 
 from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ...sim.evaluate.series import Series
-    from .timeline import Span
 
 WIDTH = 9.6  # [in] of every figure, so that their time axes line up
 COLOURS = {"left": "#1f6fb2", "right": "#c8641b"}
@@ -34,8 +33,6 @@ OTHERS = {"head": "#7b3fa0", "trunk": "#566573", "torso": "#566573", "legs": "#8
 STATUS = {"success": "#4c9a5b", "failure": "#c0433a", "invalid": "#9aa3ad", "running": "#d9a53a"}
 FAULT = {"color": "#7b3fa0", "linewidth": 1.0, "linestyle": ":"}
 LIMIT = {"color": "#c0433a", "linewidth": 0.9, "linestyle": "--"}
-ROWS_MAX = 60  # skills drawn in the timeline; a whole dressing run has 70 to 110
-LETTERS = 60  # of a name that is written beside its bar; the longest of the package have 40
 
 
 def _figure(rows: int, height: float) -> tuple[Figure, list[Axes]]:
@@ -60,87 +57,6 @@ def _png(figure: Figure) -> bytes:
         warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
         figure.savefig(buffer, format="png", dpi=130)
     return buffer.getvalue()
-
-
-def telling_skills(spans: Sequence[Span], most: int = ROWS_MAX) -> tuple[list[str], int]:
-    """Names of the skills that are drawn, in order of their start, and how many are left out.
-
-    Of too many, those that failed come before those that took longest: what decided a run may be its last skill.
-    """
-    took: dict[str, tuple[bool, float]] = {}
-    for span in spans:
-        failed, seconds = took.get(span.name, (False, 0.0))
-        took[span.name] = failed or span.status == "FAILURE", seconds + span.t_end - span.t_start
-    drawn = set(sorted(took, key=took.__getitem__, reverse=True)[:most])
-    return [name for name in took if name in drawn], max(len(took) - most, 0)
-
-
-def timeline(
-    stages: Sequence[Mapping[str, Any]],
-    spans: Sequence[Span],
-    end: float,
-    faults: Sequence[tuple[float, str]] = (),
-) -> bytes:
-    """Stages and skills as bars over time, failures and faults marked (PNG).
-
-    Args:
-        stages: of run.json.
-        spans: of the skills, in order of their start.
-        end: of the time axis [s].
-        faults: that were played, when [s] and which.
-    """
-    bars: list[tuple[str, list[tuple[float, float, str]]]] = []
-    for stage in stages:
-        if stage.get("t_start") is not None:
-            stop = stage.get("t_end")
-            stop = end if stop is None else float(stop)
-            bars.append((str(stage.get("name")), [(float(stage["t_start"]), stop, str(stage.get("status")))]))
-    first_skill = len(bars)
-    names, left_out = telling_skills(spans)
-    for name in names:
-        bars.append((name, [(span.t_start, span.t_end, span.status.lower()) for span in spans if span.name == name]))
-    faults = [(t, _shortened(which)) for t, which in faults]
-    above = 0.03 * max((len(which) for _, which in faults), default=0)  # [in] that the slanting names of faults rise
-    figure, (axis,) = _figure(1, 0.6 + 0.235 * max(2, len(bars)) + above)
-    for row, (_, pieces) in enumerate(bars):
-        for start, stop, status in pieces:
-            axis.barh(
-                row,
-                max(stop - start, 0.004 * end),
-                left=start,
-                height=0.72,
-                linewidth=0,
-                color=STATUS.get(status, STATUS["running"]),
-                alpha=1.0 if row < first_skill else 0.75,
-            )
-    rows = {name: first_skill + k for k, name in enumerate(names)}
-    failed = [span for span in spans if span.status == "FAILURE" and span.name in rows]
-    axis.plot(
-        [span.t_end for span in failed],
-        [rows[span.name] for span in failed],
-        linestyle="",
-        marker="x",
-        markersize=4.5,
-        markeredgewidth=1.3,
-        color="#7d1f18",
-    )
-    for t, which in faults:
-        axis.axvline(t, **FAULT)
-        axis.annotate(which, (t, -0.6), rotation=30, fontsize=7, color=FAULT["color"], annotation_clip=False)
-    axis.set_yticks(range(len(bars)), [_shortened(name) for name, _ in bars])
-    for label in axis.get_yticklabels()[:first_skill]:
-        label.set_fontweight("bold")
-    axis.set_ylim(len(bars) - 0.4, -0.6)
-    axis.set_xlim(0, max(end, 1e-3))
-    axis.set_xlabel("time [s]", fontsize=8)
-    if left_out:
-        axis.set_title(f"skills that failed, and those that took longest; {left_out} more are left out", fontsize=8)
-    return _png(figure)
-
-
-def _shortened(name: str) -> str:
-    """A name that leaves room for what it names; a damaged record may have one of thousands of letters."""
-    return name if len(name) <= LETTERS else f"{name[: LETTERS - 1]}\u2026"
 
 
 def _line(axis: Axes, value: float, label: str) -> None:

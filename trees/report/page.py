@@ -22,6 +22,7 @@ from ...sim.record.video import read_pictures
 from ..run.judging import kept
 from ..run.task import JUDGED
 from . import figures as report_figures
+from .bars import timeline
 from .looks import Look, drawn, read_looks
 from .outline import outline_html, read_outline, states_at
 from .timeline import Span, read_trace, spans_of
@@ -348,8 +349,7 @@ def _timeline(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[
             ("running", "cut short"),
         )
     )
-    picture = report_figures.timeline(stages, spans, max(times), _faults(run))
-    return f"<p>{key}</p>" + _image(picture, "stages and skills over time")
+    return f"<p>{key}</p>" + timeline(stages, spans, max(times), _faults(run))
 
 
 def _frames(directory: Path, run: Mapping[str, Any], stages: Sequence[Mapping[str, Any]]) -> str:
