@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
 import types
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from .errors import CaretreeError
@@ -105,3 +108,22 @@ class Later(types.ModuleType):
 def later(package: str) -> Any:
     """The package of this name, imported when something of it is first used."""
     return Later(package)
+
+
+@contextmanager
+def put_off(package: str, module: str) -> Iterator[None]:
+    """Let what is imported meanwhile have `package.module` imported only when it uses something of it.
+
+    For packages that import at their top what a run never uses; nothing else of `package` can be had meanwhile.
+    """
+    if package in sys.modules:
+        yield
+        return
+    parent, child = types.ModuleType(package), later(f"{package}.{module}")
+    setattr(parent, module, child)
+    sys.modules.update({parent.__name__: parent, child.__name__: child})
+    try:
+        yield
+    finally:
+        for stand_in in (parent, child):
+            del sys.modules[stand_in.__name__]

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...sim.mechanics.collision import CollisionChecker
 from ...sim.mechanics.kinematics import Kinematics
+from ...sim.mechanics.path_timing import toppra
 from ...sim.quantity import Quantities, quantity
 from ...sim.vector import length as vector_length
 from ...sim.world import SIDES, JointTrajectory, Side
@@ -200,17 +201,16 @@ def _retime(
     tuning: TrajectoryTuning,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (k,) [s] and samples (k, n) [rad] of the fastest motion through points (m, n)."""
-    import toppra
-
-    toppra.setup_logging("ERROR")
+    timing = toppra()
+    timing.setup_logging("ERROR")
     length = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-    path = toppra.SplineInterpolator(length, points)
+    path = timing.SplineInterpolator(length, points)
     limits = [kinematics.limits[side] for side in sides]
     constraints = list(_joint_constraints(kinematics, tuple(sides), scale, tuning.limit_margin))
     if hand_speed is not None:
         constraints.append(_hand_speed_constraint(kinematics, sides, base, hand_speed, tuning.limit_margin))
     grid = np.linspace(0.0, length[-1], int(np.clip(length[-1] / tuning.grid_step, *tuning.grid_intervals)) + 1)
-    problem = toppra.algorithm.TOPPRA(constraints, path, gridpoints=grid, solver_wrapper="seidel")
+    problem = timing.algorithm.TOPPRA(constraints, path, gridpoints=grid, solver_wrapper="seidel")
     trajectory: Any = problem.compute_trajectory(0.0, 0.0)
     if trajectory is None:
         raise MotionBlocked("no timing of this joint path keeps the velocity and acceleration limits")
@@ -225,15 +225,14 @@ def _retime(
 @lru_cache(maxsize=64)
 def _joint_constraints(kinematics: Kinematics, sides: tuple[Side, ...], scale: float, margin: float) -> tuple[Any, ...]:
     """Toppra's constraints of the joints' rates; it writes a description of each, which takes longer than their use."""
-    import toppra
-
+    constraint = toppra().constraint
     limits = [kinematics.limits[side] for side in sides]
     velocity = scale * np.concatenate([limit.velocity for limit in limits])
     acceleration = margin * scale**2 * np.concatenate([limit.acceleration for limit in limits])
     return (
-        toppra.constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
-        toppra.constraint.JointAccelerationConstraint(
-            np.stack((-acceleration, acceleration), axis=1), toppra.constraint.DiscretizationType.Interpolation
+        constraint.JointVelocityConstraint(np.stack((-velocity, velocity), axis=1)),
+        constraint.JointAccelerationConstraint(
+            np.stack((-acceleration, acceleration), axis=1), constraint.DiscretizationType.Interpolation
         ),
     )
 

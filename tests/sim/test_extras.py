@@ -1,11 +1,12 @@
 import configparser
+import importlib
 import re
 import sys
 from pathlib import Path
 
 import pytest
 from caretree.sim.command_line import BAD_INPUT, answered
-from caretree.sim.extras import EXTRA_OF, MissingExtra, later, missing_extra, need
+from caretree.sim.extras import EXTRA_OF, MissingExtra, later, missing_extra, need, put_off
 
 SETUP = Path(__file__).parents[2] / "setup.cfg"
 NAMES = {  # as it is imported -> as it is installed, where the two differ
@@ -44,6 +45,23 @@ def test_what_is_used_is_the_packages_own():
     fractions = later("fractions")
     assert fractions.Fraction(1, 2) + fractions.Fraction(1, 2) == 1
     assert "Fraction" in vars(fractions), "found at once from then on"
+
+
+def test_what_another_package_imports_can_wait_until_it_is_used(tmp_path, monkeypatch):
+    (tmp_path / "drawing").mkdir()
+    (tmp_path / "drawing" / "__init__.py").write_text("")
+    (tmp_path / "drawing" / "lines.py").write_text("WIDTH = 3")
+    (tmp_path / "planner.py").write_text("import drawing.lines as lines\ndef width(): return lines.WIDTH\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("drawing", "drawing.lines", "planner"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    with put_off("drawing", "lines"):
+        planner = importlib.import_module("planner")
+    assert "drawing" not in sys.modules
+    assert planner.width() == 3, "it has the real one by now"
+    assert importlib.import_module("drawing").__file__
+    with put_off("drawing", "lines"):
+        assert sys.modules["drawing"].__file__, "what is there already stays"
 
 
 @pytest.fixture
