@@ -10,7 +10,6 @@ from ..world import SIDES, JointTrajectory
 from .kinematics import Kinematics
 from .robot_model import RobotModel
 
-LOOKS = 20  # at the speed of a trajectory, between two of its points
 ABOVE = 1.001  # share of a joint's speed that counts as too fast
 
 
@@ -64,15 +63,11 @@ class JointLimits:
 
         The joints have been checked: all of them are among `joints`.
         """
-        from scipy.interpolate import CubicHermiteSpline
-
         index = [self.joints.index(name) for name in command.joints]
         positions = np.clip(np.asarray(command.positions, float), self.lower[index], self.upper[index])
         times = np.asarray(command.times, float)
         slopes = smooth_slopes(times, positions)
-        looks = np.interp(np.linspace(0, len(times) - 1, LOOKS * (len(times) - 1) + 1), np.arange(len(times)), times)
-        rates = np.asarray(CubicHermiteSpline(times, positions, slopes).derivative()(looks))
-        peak = float((np.abs(rates) / self.velocity[index]).max(initial=0.0))
+        peak = float((fastest_rates(times, positions, slopes) / self.velocity[index]).max(initial=0.0))
         if peak > ABOVE:
             times, slopes = times * peak, slopes / peak
         return replace(command, times=times, positions=positions), slopes
@@ -85,3 +80,18 @@ def smooth_slopes(times: np.ndarray, positions: np.ndarray) -> np.ndarray:
     slopes = np.zeros_like(positions)
     slopes[1:-1] = PchipInterpolator(times, positions).c[2, 1:]  # the spline in powers of the time since a point
     return slopes
+
+
+def fastest_rates(times: np.ndarray, positions: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Greatest speeds (m,) on the way through points (k, m) [rad] with speeds (k, m) there [rad/s], cubic in between.
+
+    The speed between two points is a parabola over the share s of the time that has passed: start + b s + a s^2.  It is
+    greatest at an end or at the vertex.
+    """
+    start, end = slopes[:-1], slopes[1:]
+    mean = np.diff(positions, axis=0) / np.diff(times)[:, None]
+    a, b = 3.0 * (start + end - 2.0 * mean), 6.0 * mean - 4.0 * start - 2.0 * end
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = -b / (2.0 * a)
+        there = np.where((vertex > 0.0) & (vertex < 1.0), start + 0.5 * b * vertex, 0.0)
+    return np.maximum(np.abs(slopes).max(axis=0), np.abs(there).max(axis=0))

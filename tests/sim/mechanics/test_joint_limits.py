@@ -1,10 +1,12 @@
 """Limits of joints, told alike to the servo, the scripted world and a robot behind a master."""
 
 import numpy as np
-from caretree.sim.mechanics.joint_limits import JointLimits, smooth_slopes
+import pytest
+from caretree.sim.mechanics.joint_limits import JointLimits, fastest_rates, smooth_slopes
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES, JointTrajectory
+from scipy.interpolate import CubicHermiteSpline
 
 
 def test_they_are_those_of_the_arms_and_the_head():
@@ -42,3 +44,14 @@ def test_the_order_of_a_trajectory_s_joints_is_its_own():
 def test_slopes_never_overshoot():
     times, positions = np.arange(4.0), np.array(((0.0,), (1.0,), (1.0,), (2.0,)))
     assert np.array_equal(smooth_slopes(times, positions)[:, 0], np.zeros(4))
+
+
+@pytest.mark.parametrize("points", [2, 3, 30])
+def test_the_fastest_rates_are_those_of_the_cubics(points):
+    rng = np.random.default_rng(points)
+    times = np.cumsum(rng.uniform(0.05, 1.0, points))
+    positions = rng.normal(size=(points, 4))
+    positions[:, 0] = 1.0  # a joint that rests
+    for slopes in (smooth_slopes(times, positions), rng.normal(size=(points, 4))):
+        rates = CubicHermiteSpline(times, positions, slopes).derivative()(np.linspace(times[0], times[-1], 20_000))
+        assert fastest_rates(times, positions, slopes) == pytest.approx(np.abs(rates).max(axis=0), rel=1e-3)
