@@ -76,9 +76,9 @@ class Wrapper(py_trees.composites.Composite):
         raise NotImplementedError
 
     def on(self, child: Behaviour) -> Iterator[Behaviour]:
-        """Tick one child."""
+        """Tick one child: its own iterator, as what is visited passes through every frame between it and the root."""
         self.current_child = child
-        yield from child.tick()
+        return child.tick()
 
     def stop(self, new_status: Status = Status.INVALID) -> None:
         """Stop children that still run, then end."""
