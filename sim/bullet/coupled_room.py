@@ -152,9 +152,7 @@ class CoupledRoom:
 
     def _step_robot(self) -> None:
         self._meet()
-        for side, grip in zip(SIDES, self._grips, strict=True):
-            if grip.kind != "nothing":
-                self._robot.apply_hand_force(side, grip.load)
+        self._robot.apply_hand_forces({SIDES[n]: self._grips[n].load for n in self._fingers.holding()})
         self._contact.push_robot(self._robot)
         self._robot.update(self.time.time)
         with self._in_bullet:

@@ -65,6 +65,7 @@ class Person:
         self.body = self._load()
         names = {client.getJointInfo(self.body, j)[1].decode(): j for j in range(client.getNumJoints(self.body))}
         self.joints = {side: [names[f"{side}_{axis}"] for axis in ARM_AXES] for side in SIDES}
+        self._joints = [j for side in SIDES for j in self.joints[side]]
         self.links = {
             side: [names[f"{side}_rotation"], names[f"{side}_flexion"], names[f"{side}_wrist"]] for side in SIDES
         }
@@ -96,26 +97,25 @@ class Person:
         is explicit and shakes these light arms apart.)  Beyond the end of its range a stiff joint is held at that end,
         with a bound that grows with the angle.
         """
-        joints = [j for side in SIDES for j in self.joints[side]]
-        states = self.client.getJointStates(self.body, joints)
-        angles = np.array([state[0] for state in states])
-        speeds = np.array([state[1] for state in states]) / ROOM.rate(1.0)
+        angles, speeds, *_ = zip(*self.client.getJointStates(self.body, self._joints), strict=True)
+        angles, speeds = np.array((angles, speeds))
+        speeds /= ROOM.rate(1.0)
         torques = self._dry + self.spec.viscous * np.abs(speeds) + BRACED * self._braced
         wanted = np.zeros(8)  # speeds
         if self._swing:
             self._stuck[::4], wanted[::4] = angles[::4], self._swing
             torques[::4] = np.maximum(torques[::4], max(STIR_TORQUE, self.spec.stirring))
         torques = torques + self._end_stiffness * np.maximum(angles - self._ends, 0.0)
-        self._stuck = np.minimum(np.clip(self._stuck, angles - BRISTLE, angles + BRISTLE), self._ends)
+        self._stuck = np.minimum(np.minimum(np.maximum(self._stuck, angles - BRISTLE), angles + BRISTLE), self._ends)
         self.client.setJointMotorControlArray(
             self.body,
-            joints,
+            self._joints,
             self.client.POSITION_CONTROL,
             targetPositions=self._stuck.tolist(),
-            targetVelocities=[ROOM.rate(speed) for speed in wanted],
+            targetVelocities=[ROOM.rate(speed) for speed in wanted.tolist()],
             positionGains=[0.2] * 8,
             velocityGains=[1.0] * 8,
-            forces=[ROOM.force(t) for t in torques],
+            forces=[ROOM.force(torque) for torque in torques.tolist()],
         )
 
     def spring(self) -> None:

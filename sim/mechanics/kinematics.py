@@ -110,7 +110,7 @@ class Kinematics:
         """Poses (2, 4, 4) of both hands for the angles of the arms (2, n) [rad] and a base pose (3,)."""
         base, poses = planar_pose(pose_base_in_map), np.empty((2, 4, 4))
         for n, side in enumerate(SIDES):
-            poses[n] = base @ self.pose_hand_in_base(side, arm_positions[n])
+            poses[n] = base.dot(self.pose_hand_in_base(side, arm_positions[n]))  # as @, in half the time
         return poses
 
     def jacobian_hand_in_base(self, side: Side, q: np.ndarray) -> np.ndarray:

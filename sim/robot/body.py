@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -170,26 +171,26 @@ class RobotBody:
         return self._reading
 
     def _read(self) -> JointReading:
-        states = self._client.getJointStates(self.body, self._joints)
-        columns = tuple(zip(*states, strict=True))  # called at every step of the robot
-        q, dq, torque = np.array(columns[0]), np.array(columns[1]), np.array(columns[3])
-        yaw = float(q[2])
-        c, s = np.cos(yaw), np.sin(yaw)
+        # called at every step of the robot: numbers are taken as PyBullet gives them, and put into arrays at once
+        q, dq, _, torque = zip(*self._client.getJointStates(self.body, self._joints), strict=True)
+        arms = np.array((q, dq, torque))[:, self._arms].reshape(3, 2, -1)
+        yaw = q[2]
+        c, s = float(np.cos(yaw)), float(np.sin(yaw))
         opening, squeeze = np.empty(2), np.empty(2)
         told, limit = self.servo.gripper_opening, self.servo.gripper_force_limit
         for n, one in enumerate((-4, -2)):
             other = one + 1
-            opening[n] = apart = columns[0][one] + columns[0][other]
+            opening[n] = apart = q[one] + q[other]
             # Each finger's motor pushes towards closed with minus its force.
-            squeeze[n] = max(0.0, (columns[3][one] + columns[3][other]) / -2.0)
+            squeeze[n] = max(0.0, (torque[one] + torque[other]) / -2.0)
             # PyBullet's stop at zero opening carries nothing; a real gripper told to close squeezes its own fingertips.
             if apart < _CLOSED and told[n] < _CLOSED:
                 squeeze[n] = limit[n]
         return JointReading(
-            arm_positions=q[self._arms].reshape(2, -1),
-            arm_velocities=dq[self._arms].reshape(2, -1),
-            motor_torques=torque[self._arms].reshape(2, -1),
-            head_pan=float(q[self._arms.stop]),
+            arm_positions=arms[0],
+            arm_velocities=arms[1],
+            motor_torques=arms[2],
+            head_pan=q[self._arms.stop],
             pose_base_in_map=np.array((q[0], q[1], (yaw + np.pi) % (2 * np.pi) - np.pi)),
             twist_base=np.array((c * dq[0] + s * dq[1], c * dq[1] - s * dq[0], dq[2])),
             gripper_opening=opening,
@@ -221,11 +222,12 @@ class RobotBody:
             reading.pose_base_in_map, reading.arm_positions, reading.head_pan, reading.gripper_opening
         )
 
-    def apply_hand_force(self, side: Side, force_in_map: np.ndarray) -> None:
-        """Load a hand between the fingertips with a force (3,) [N] for the next physics step."""
-        link = self.links[f"{side}_hand"]
-        point = self._client.getLinkState(self.body, link)[4]
-        self._client.applyExternalForce(self.body, link, force_in_map.tolist(), point, pybullet.WORLD_FRAME)
+    def apply_hand_forces(self, forces_in_map: Mapping[Side, np.ndarray]) -> None:
+        """Load hands between the fingertips with forces (3,) [N] for the next physics step."""
+        links = [self.links[f"{side}_hand"] for side in forces_in_map]
+        states = self._client.getLinkStates(self.body, links) if links else ()  # each call reads the whole robot
+        for link, force, state in zip(links, forces_in_map.values(), states, strict=True):
+            self._client.applyExternalForce(self.body, link, force.tolist(), state[4], pybullet.WORLD_FRAME)
 
     def push(self, link: str, force_in_map: np.ndarray, point_in_map: np.ndarray) -> None:
         """Load a link with a force (3,) [N] at a point (3,) [m] for the next physics step."""
@@ -235,8 +237,10 @@ class RobotBody:
 
     def _torque_limits(self, arms: np.ndarray) -> np.ndarray:
         """(2, n) what each motor may do in a posture (2, n), beside carrying the arm [N m]."""
-        moved = [self.kinematics.jacobian_hand_in_base(side, q)[:3] for side, q in zip(SIDES, arms, strict=True)]
-        levers = np.sqrt(np.array([np.add.reduce(each * each, axis=0) for each in moved]))
+        moved = np.array(
+            [self.kinematics.jacobian_hand_in_base(side, q)[:3] for side, q in zip(SIDES, arms, strict=True)]
+        )
+        levers = np.sqrt(np.add.reduce(moved * moved, axis=1))
         return np.minimum(self._rated, _HAND_FORCE * levers + self._robot.limits.motion_torque)
 
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:

@@ -76,7 +76,7 @@ def test_holding_torque_is_gravity_plus_the_load_on_the_hand(rig):
     gravity = rig.robot.kinematics.gravity_torque(rig.robot.configuration())
     np.testing.assert_allclose(before, gravity, atol=0.15)
     load = np.array((4.0, -3.0, -20.0))
-    rig.run(0.3, lambda: rig.robot.apply_hand_force("right", load))
+    rig.run(0.3, lambda: rig.robot.apply_hand_forces({"right": load}))
     after = rig.robot.read()
     jacobian = rig.robot.kinematics.jacobian_hand_in_map("right", after.arm_positions[1], after.pose_base_in_map)
     np.testing.assert_allclose((rig.robot.efforts(after) - before)[1], -jacobian[:3].T @ load, atol=0.1)
