@@ -69,7 +69,7 @@ def joint_block(effect: JointEffect, model: RigidModel, joint: int, shape: dict[
 
     def build(log: JointLog) -> np.ndarray:
         if log.name not in kept:
-            kept[log.name] = log.shared(effect.columns(log.motion(joint), shape), effect.sharp)[:, None, :]
+            kept[log.name] = log.columns(effect, joint, shape)[:, None, :]
         return kept[log.name]
 
     return Block(

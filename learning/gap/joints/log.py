@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
-from ....sim.effects.effect import JointMotion, Spread
+from ....sim.effects.effect import JointEffect, JointMotion, Shape, Spread
 from ..errors import GapError
 from ..measurement import Episode
 from ..smoothing import bandwidth, derivative, lowpass, lowpass_both, resample
@@ -15,6 +17,8 @@ from .rigid import RigidModel
 ROWS = 6000  # an episode is thinned to at most about this many rows
 FINE = 16  # rows per period of the cutoff where the log has as many: a sign, a threshold has to be met when it happens
 FEWEST = 10  # rows of an episode that the filters have to leave sound
+THINNED = 0.4  # cutoff of the filter a log is thinned through, over the rate of the rows
+RINGING = 5e-4  # of the usual speed: the error of a smoothed speed where a motion starts or ends, 99 of 100 samples
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
 
@@ -35,6 +39,7 @@ class JointLog:
         raw: measured load, thinned but not smoothed to the motion's bandwidth (T, n).
         slow: (n,) speed below which the sign of the velocity is not known.
         trim: rows at either end that the filters spoil.
+        step: samples recorded per row.
     """
 
     name: str
@@ -51,6 +56,7 @@ class JointLog:
     raw: np.ndarray
     slow: np.ndarray
     trim: int
+    step: int = 1
 
     @property
     def inner(self) -> slice:
@@ -68,6 +74,31 @@ class JointLog:
             measured=self.measured[:, joint],
             slow=float(self.slow[joint]),
         )
+
+    def columns(self, effect: JointEffect, joint: int, shape: Shape) -> np.ndarray:
+        """An effect's columns on one joint, through the shared filter, (T_inner, p).
+
+        One that jumps or bends is asked at every sample that was recorded, filtered and thinned as the load was: rows
+        alone would place each reversal wrongly by up to half a row, and just where the effect acts.
+        """
+        if not effect.sharp:
+            return self.shared(effect.columns(self.motion(joint), shape))
+        dt, cutoff = self.dt / self.step, min(self.cutoff, THINNED / self.dt if self.step > 1 else np.inf)
+        fine = effect.columns(self._recorded[joint], shape)
+        return lowpass_both(fine, dt, cutoff, self.cutoff / SHARED)[:: self.step][self.inner]
+
+    @cached_property
+    def _recorded(self) -> list[JointMotion]:
+        """The motion of each joint at every sample recorded; smooth as it is, a spline through the rows has it."""
+        motions = [self.motion(j) for j in range(self.q.shape[1])]
+        if self.step == 1:
+            return motions
+        t = self.t[0] + self.dt / self.step * np.arange((len(self.t) - 1) * self.step + 1)
+        table = CubicSpline(self.t, np.stack([self.q, self.dq, self.ddq, self.rigid, self.measured], axis=2))(t)
+        names = ("q", "dq", "ddq", "load", "measured")
+        return [
+            replace(m, t=t, **{name: table[:, j, k] for k, name in enumerate(names)}) for j, m in enumerate(motions)
+        ]
 
     def wide(self) -> JointLog:
         """The same log without the shared filter, to see what lies outside the motion's bandwidth."""
@@ -172,14 +203,14 @@ def _prepare(
 ) -> JointLog:
     t, dt, q, load, dq = raw.t, raw.dt, raw.q, raw.load, raw.dq
     step = max(1, int(np.ceil(len(t) / ROWS)), int(1.0 / (FINE * cut * dt)))
-    cut = min(cut, 0.4 / (dt * step))
+    cut = min(cut, THINNED / (dt * step))
     position = lowpass(q, dt, cut)
     speed, acceleration = derivative(q, dt, cut, 1), derivative(q, dt, cut, 2)
     if dq is not None and use_speed.any():
         speed[:, use_speed] = lowpass(dq, dt, cut)[:, use_speed]
         acceleration[:, use_speed] = derivative(dq, dt, cut, 1)[:, use_speed]
     smooth = lowpass(load, dt, cut)
-    thinned = lowpass(load, dt, 0.4 / (dt * step)) if step > 1 else load
+    thinned = lowpass(load, dt, THINNED / (dt * step)) if step > 1 else load
     pick = slice(None, None, step)
     t, position, speed, acceleration, smooth = t[pick], position[pick], speed[pick], acceleration[pick], smooth[pick]
     thinned = thinned[pick]
@@ -188,7 +219,7 @@ def _prepare(
     # the motion was smoothed before the model saw it, the load was smoothed once: one more filter for both
     shared = min(SHARED * cut, 0.5 / dt)
     residual = lowpass(smooth - rigid, dt, shared)
-    slow = np.maximum(4.0 * noise_v, 2e-3 * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
+    slow = np.maximum(4.0 * noise_v, RINGING * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
     trim = int(min(len(t) // 10, np.ceil(0.7 / (shared * dt))))
     if len(t) - 2 * trim < FEWEST:
         raise GapError(
@@ -210,6 +241,7 @@ def _prepare(
         raw=thinned,
         slow=slow,
         trim=trim,
+        step=step,
     )
 
 

@@ -89,8 +89,7 @@ class _ShapeProblem:
         y = self._y
         if any(p.lower > shape[p.name] or p.upper < shape[p.name] for p in self._block.shape_parameters):
             return float(y @ y)
-        columns = (self._effect.columns(log.motion(self._channel), shape) for log in self._logs)
-        Z = np.concatenate([log.shared(x, self._effect.sharp) for x, log in zip(columns, self._logs, strict=True)])
+        Z = np.concatenate([log.columns(self._effect, self._channel, shape) for log in self._logs])
         Z = Z - self._others @ (self._others.T @ Z)
         theta = np.linalg.lstsq(Z, y, rcond=1e-8)[0]
         linear = self._effect.linear

@@ -20,11 +20,17 @@ def distance_since_reversal(q: np.ndarray, dead: float) -> np.ndarray:
             best, at = x, i
         elif abs(x - best) > dead:
             # the rows since the turn are known to be beyond it only now; slow as they are, they are many
-            out[at + 1 : i] = np.abs(q[at + 1 : i] - best)
+            first = at if _turned(q, at) else at + 1
+            out[first:i] = np.abs(q[first:i] - best)
             turn, sign, best, at, seen = best, -sign, x, i, True
         if seen:
             out[i] = abs(x - turn)
     return out
+
+
+def _turned(q: np.ndarray, at: int) -> bool:
+    """Whether the joint had turned by the row that lies farthest out: it came a shorter way to it than it goes on."""
+    return at > 0 and abs(q[at] - q[at - 1]) < abs(q[at + 1] - q[at])
 
 
 class Backlash(JointEffect):

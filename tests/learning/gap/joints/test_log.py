@@ -1,7 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 from caretree.learning.gap.joints.log import FINE, SHARED
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
+from caretree.learning.gap.smoothing import lowpass_both
+from caretree.sim.effects.joint.joint_registry import JOINT_EFFECTS
 
 
 def test_a_log_balances_the_measured_load_and_the_models(axis_set):
@@ -28,3 +32,16 @@ def test_a_log_keeps_enough_rows_for_what_happens_at_once(axis_set):
     recorded = 0.01
     assert log.dt <= max(recorded, 1.0 / (FINE * log.cutoff / SHARED))
     assert FINE >= 16
+
+
+def test_what_jumps_is_asked_at_every_sample_recorded(axis_set):
+    fine = open_study(load_set(axis_set(noise=0.05))).fitted[0]
+    rows = slice(None, None, 8)
+    thin = {name: getattr(fine, name)[rows] for name in ("t", "q", "dq", "ddq", "rigid", "measured", "residual", "raw")}
+    log = replace(fine, step=8 * fine.step, dt=8 * fine.dt, cutoff=1.5, trim=0, **thin)
+    effect, shape = JOINT_EFFECTS["backlash"], {"width": 0.02}
+    wanted = lowpass_both(effect.columns(fine.motion(0), shape), fine.dt, 1.5, 1.5 / SHARED)[rows]
+    rough = log.shared(effect.columns(log.motion(0), shape), sharp=True)
+    error, before = (np.abs(x - wanted)[5:-5].max() for x in (log.columns(effect, 0, shape), rough))
+    assert error < 0.25 * before
+    assert error < 0.05 * np.abs(wanted).max()

@@ -25,6 +25,12 @@ def test_distance_counts_from_the_last_turn():
     assert distance_since_reversal(q, 0.01) == pytest.approx([np.inf, np.inf, np.inf, 0.2, 0.7, 0.4])
 
 
+def test_the_farthest_row_is_behind_the_turn_where_the_joint_had_turned_by_then():
+    early, late = np.array((0.0, 0.5, 0.9, 1.0, 0.8, 0.3)), np.array((0.0, 0.5, 0.8, 1.0, 0.9, 0.3))
+    assert distance_since_reversal(early, 0.01)[3] == 0.0
+    assert np.isinf(distance_since_reversal(late, 0.01)[3])
+
+
 def test_a_tremble_is_no_reversal():
     q = np.array((0.0, 0.5, 0.499, 0.6))
     assert np.isinf(distance_since_reversal(q, 0.01)).all()
