@@ -2,7 +2,8 @@
 
 The least-squares estimate errs by inv(A) s, where A are the normal equations and s = sum_t x(t) w e(t).  Noise that
 does not depend on the motion gives s the covariance sum_f X(f)* X(f)' w^2 S(f): the columns' own spectrum times that of
-the noise.  S is read off what the fit leaves, band by band, and divided by the part of the band that the fit could not
+the noise.  S is read off what the fit leaves, log by log (noise differs from one to the next) and band by band, and
+divided by the part of the band that the fit could not
 take up itself.  A slow column (an offset, a payload) rests on the few lowest bands, a fast one on many: how many
 independent numbers its variance was estimated from follows (Satterthwaite), and with it Student's t for its interval.
 
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from scipy.stats import t as student
@@ -79,9 +81,9 @@ def intervals(
         A[np.arange(k), np.arange(k)] += ridge / size[:k] ** 2
     inverse = np.linalg.pinv(A, rcond=1e-10, hermitian=True)
     half = np.zeros((2, k + len(free)))  # variance, and the same squared over what it was estimated from
-    for j, c in enumerate(channels):
+    for (j, c), (X, y, log) in product(enumerate(channels), zip(columns, left, logs, strict=True)):
         w = weight[c]
-        for S, spread, numbers in _bands([X[:, j] for X in columns], [y[:, j] for y in left], inverse, w, logs):
+        for S, spread, numbers in _bands(X[:, j], y[:, j], inverse, w, log.dt):
             part = w**2 * S * np.einsum("pi,ij,pj->p", inverse, spread, inverse)
             half[0] += part
             half[1] += part**2 / numbers
@@ -123,23 +125,17 @@ def value_within(parameter: Parameter, unit: str, value: float, low: float, high
 
 
 def _bands(
-    columns: list[np.ndarray], left: list[np.ndarray], inverse: np.ndarray, weight: float, logs: list[JointLog]
+    columns: np.ndarray, left: np.ndarray, inverse: np.ndarray, weight: float, dt: float
 ) -> list[tuple[float, np.ndarray, float]]:
-    """Per band of frequencies: power of the noise, products of the columns (P, P), and numbers the power rests on."""
-    f, X, power, count = [], [], [], []
-    for x, y, log in zip(columns, left, logs, strict=True):
-        n = len(y)
-        twice = np.full(n // 2 + 1, 2.0)
-        twice[0] = 1.0
-        if n % 2 == 0:
-            twice[-1] = 1.0
-        f.append(np.fft.rfftfreq(n, log.dt))
-        X.append(np.fft.rfft(x, axis=0) * np.sqrt(twice / n)[:, None])
-        power.append(np.abs(np.fft.rfft(y)) ** 2 * twice / n)
-        count.append(twice)
-    f, X, power, count = np.concatenate(f), np.concatenate(X), np.concatenate(power), np.concatenate(count)
-    order = np.argsort(f, kind="stable")
-    f, X, power, count = f[order], X[order], power[order], count[order]
+    """Per band of one log's frequencies: power of the noise, products of the columns (P, P), numbers it rests on."""
+    n = len(left)
+    count = np.full(n // 2 + 1, 2.0)
+    count[0] = 1.0
+    if n % 2 == 0:
+        count[-1] = 1.0
+    f = np.fft.rfftfreq(n, dt)
+    X = np.fft.rfft(columns, axis=0) * np.sqrt(count / n)[:, None]
+    power = np.abs(np.fft.rfft(left)) ** 2 * count / n
     taken = weight * np.einsum("fp,pq,fq->f", X.conj(), inverse, X).real
     out, start = [], 0
     while start < len(f):

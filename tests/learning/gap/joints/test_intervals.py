@@ -60,6 +60,21 @@ def test_noise_with_a_memory_is_allowed_for(column):
     assert too_sure / draws < 0.85
 
 
+def test_every_log_has_noise_of_its_own():
+    rng, wave, held, draws = np.random.default_rng(5), np.sin(2.0 * np.pi * 0.5 * T), 0, 200
+    kept = {"a": wave, "b": 0.1 * wave}  # what tells of the number is in the log that is loud
+    whole = Block(**{**vars(block(wave)), "build": lambda log: kept[log.name][:, None, None]})
+    for _ in range(draws):
+        logs = [
+            log(kept["a"] + rng.normal(size=len(T))),
+            replace(log(kept["b"] + 0.1 * rng.normal(size=len(T))), name="b"),
+        ]
+        x, y = np.concatenate([kept["a"], kept["b"]]), np.concatenate([each.residual[:, 0] for each in logs])
+        theta = np.array([x @ y / (x @ x)])
+        held += abs(theta[0] - 1.0) <= intervals((whole,), theta, np.ones(1), logs).linear[0]
+    assert 0.9 < held / draws < 0.99
+
+
 def test_what_a_column_shares_with_another_is_not_known_of_either():
     rng = np.random.default_rng(4)
     one, near = np.sin(T), np.sin(T) + 0.01 * np.cos(3.0 * T)
