@@ -12,6 +12,7 @@ from .log import JointLog
 SHORT = 0.3  # [s]
 LONGEST = 0.35  # a burst may last this part of an episode
 END = 0.05  # bursts this close to either end of a log may be the filter's
+LOUDER = 2.0  # root mean square inside a burst over the usual one, behind the shared filter
 PEAK = 8.0  # smoothed leftover over its robust deviation before anything counts as a burst
 
 
@@ -64,6 +65,20 @@ def bursts(logs: list[JointLog], left: list[np.ndarray], channel: int) -> list[B
                     )
                 )
     return out
+
+
+def stands_out(burst: Burst, logs: list[JointLog], left: list[np.ndarray]) -> bool:
+    """Whether a leftover (T_inner, C) per log is louder inside a burst than the rest of its log is.
+
+    Args:
+        burst: found in a leftover of the same logs.
+        logs: the logs.
+        left: what is left of them behind the filter both sides of the balance go through.
+    """
+    log, x = next((log, x[:, burst.channel]) for log, x in zip(logs, left, strict=True) if log.name == burst.episode)
+    t = log.t[log.inner]
+    spread = 1.4826 * float(np.median(np.abs(x - np.median(x))))
+    return bool(np.sqrt(np.mean(x[(t >= burst.t0) & (t <= burst.t1)] ** 2)) > LOUDER * spread)
 
 
 def burst_share(logs: list[JointLog], left: list[np.ndarray], channel: int, found: list[Burst]) -> float:

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from ..findings import EffectFinding, Value, VerdictName
 from .block import Block
-from .events import Burst, burst_share, bursts
+from .events import Burst, burst_share, bursts, stands_out
 from .log import JointLog
 from .remainder import Remainder, leftover
 from .symbolic import guess
@@ -70,7 +70,7 @@ def judge(
     left = unexplained(named, logs)
     broad = [log.wide() for log in logs]
     wide = unexplained(named, broad)
-    found = _contact_bursts(logs, broad, wide)
+    found = _contact_bursts(logs, broad, wide, left)
     calm, calm_wide = _without(logs, left, found), _without(logs, wide, found)
     remainders = tuple(leftover(logs, calm, calm_wide, c) for c in range(left[0].shape[1]))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
@@ -145,19 +145,23 @@ def _bursts_of_channel(broad: list[JointLog], wide: list[np.ndarray], channel: i
     return [replace(b, episode=b.episode.rstrip("~")) for b in bursts(broad, wide, channel)]
 
 
-def _contact_bursts(logs: list[JointLog], broad: list[JointLog], wide: list[np.ndarray]) -> list[Burst]:
+def _contact_bursts(
+    logs: list[JointLog], broad: list[JointLog], wide: list[np.ndarray], left: list[np.ndarray]
+) -> list[Burst]:
     """Bursts of the channels in which they hold a material part of what is left.
 
-    A short contact is broader in frequency than the motion, so bursts are looked for without the shared filter.
+    A short contact is broader in frequency than the motion, so bursts are looked for without the shared filter.  But
+    there the model's own load is smoother than the one measured, so a burst has to stand out behind that filter too.
 
     Args:
         logs: the logs the effects were fitted to.
         broad: the same logs without the shared filter.
         wide: (T_inner, C) per log, what the effects leave of `broad`.
+        left: the same of `logs`.
     """
     found: list[Burst] = []
     for c in range(wide[0].shape[1]):
-        mine = _bursts_of_channel(broad, wide, c)
+        mine = [b for b in _bursts_of_channel(broad, wide, c) if stands_out(b, logs, left)]
         total = np.mean(np.concatenate([w.residual[w.inner][:, c] for w in broad]) ** 2)
         rest = np.mean(np.concatenate([x[:, c] for x in wide]) ** 2)
         share = burst_share(logs, wide, c, mine) if mine else 0.0

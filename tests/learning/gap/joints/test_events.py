@@ -1,4 +1,7 @@
 import numpy as np
+from caretree.learning.gap.joints.events import Burst, stands_out
+from caretree.learning.gap.measurement import load_set
+from caretree.learning.gap.open_study import open_study
 
 from ..solved import solved
 
@@ -37,3 +40,12 @@ def test_a_contact_at_a_time_is_named_and_placed(axis_set):
     for w in places:
         a, b = truth[w.episode]
         assert (min(w.t1, b) - max(w.t0, a)) / (max(w.t1, b) - min(w.t0, a)) > 0.7
+
+
+def test_a_burst_has_to_stand_out_behind_the_shared_filter_too(axis_set):
+    log = open_study(load_set(axis_set())).fitted[0]
+    t, rng = log.t[log.inner], np.random.default_rng(0)
+    quiet = rng.normal(size=(len(t), 1))
+    burst = Burst(episode=log.name, channel=0, t0=3.0, t1=3.5, load=1.0, strength=20.0)
+    assert not stands_out(burst, [log], [quiet])
+    assert stands_out(burst, [log], [quiet + 5.0 * ((t > 3.0) & (t < 3.5))[:, None]])
