@@ -101,7 +101,10 @@ def _backlash(m, rng):
     gap = reach * np.exp(rng.uniform(np.log(0.004), np.log(0.05)))
     out = []
     for x in m:
-        turn = np.flatnonzero(np.diff(np.sign(x.v)) != 0) + 1
+        way = _sign(x.v)
+        moving = np.flatnonzero(way)
+        # a joint at rest has not turned: the last way it went counts until it goes another
+        turn = moving[1:][np.diff(way[moving]) != 0]
         load = np.zeros_like(x.u)
         for i, start in enumerate(turn):
             stop = turn[i + 1] if i + 1 < len(turn) else len(x.q)

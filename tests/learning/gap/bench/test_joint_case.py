@@ -1,6 +1,6 @@
 import numpy as np
 from caretree.learning.gap.bench.joint_case import LEAST, write_joint_case
-from caretree.learning.gap.bench.joint_loads import OUTSIDE
+from caretree.learning.gap.bench.joint_loads import OUTSIDE, Trace, shape_of
 
 
 def test_nothing_is_hidden_that_is_too_small_to_matter(tmp_path):
@@ -24,3 +24,12 @@ def test_what_is_hidden_has_the_numbers_the_registry_gives_it(tmp_path):
         wanted = {"mass": {"mass"}, "spring": {"stiffness", "preload"}, "backlash": {"fraction", "width"}}[name]
         assert set(values) == wanted
         assert all(np.isfinite(v) for v in values.values())
+
+
+def test_play_opens_where_a_joint_turns_and_not_where_it_rests():
+    t = np.arange(0.0, 6.0, 0.01)
+    v = np.where(t < 2.0, 1.0, np.where(t < 3.0, 1e-15 * (-1.0) ** np.arange(len(t)), np.where(t < 4.0, 1.0, -1.0)))
+    trace = Trace(t=t, q=np.cumsum(v) * 0.01, v=v, a=0.0 * t, u=np.ones_like(t))
+    load = shape_of("backlash", [trace], np.random.default_rng(0)).load[0]
+    assert not load[t < 3.99].any()
+    assert load[(t > 4.0) & (t < 4.005)].all()
