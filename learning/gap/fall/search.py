@@ -32,6 +32,8 @@ CLOSE = 30.0  # criterion beyond the best from which on a set's own noise is not
 SAME = 6.0  # criterion within which two sets fit alike
 MOST_EQUAL = 4
 MOST_RIVALS = 6
+MOST_BESIDE = 3  # effects told that could act beside the named ones unseen
+HIDES = 1.0  # over the noise, from which on such an effect is told
 LARGEST = 2  # effects of a set that is named: with a third, five or six numbers follow any smooth force
 DRAUGHT = 1.0  # [m/s] of air that still air cannot be told from quadratic drag in, below which it is that
 MATERIAL = 0.05  # an effect's own part over the noise, root mean square, both whitened
@@ -244,6 +246,35 @@ def rivals(found: DropSearch, fit: DropFit, most: int = MOST_RIVALS) -> list[Can
     # a twin is told, however implausible it is beforehand
     twins = {_twin(n): out[_twin(n)] for n in (mine.effects, *likely) if _twin(n) in out}
     return list({**likely, **twins}.values())
+
+
+def beside(found: DropSearch, fit: DropFit, most: int = MOST_BESIDE) -> list[Candidate]:
+    """The set with one effect more that could be as large as the noise unseen, the best hidden first."""
+    mine = next(c for c in found.candidates if c.fit.names == fit.names and c.fit.mode == fit.mode)
+    out = []
+    for c in found.candidates:
+        more = c.effects - mine.effects
+        if not (mine.effects and mine.effects < c.effects and len(more) == 1 and len(c.effects) <= LARGEST):
+            continue
+        if "free" in (c.fit.mode, mine.fit.mode) and c.fit.mode != mine.fit.mode:
+            continue
+        load = _hidden(found, c.fit, next(iter(more)))
+        if load > HIDES * found.floor:
+            out.append((load, c))
+    return [c for _, c in sorted(out, key=lambda pair: -pair[0])][:most]
+
+
+def _hidden(found: DropSearch, fit: DropFit, name: str) -> float:
+    """Root mean square [m] that one effect of a fit may reach within two standard errors of its numbers."""
+    J = fit.jacobian
+    size = np.linalg.norm(J, axis=0) + 1e-12
+    white = found.colour.apply(J / size)
+    error = np.sqrt(np.diag(np.linalg.pinv(white.T @ white, rcond=1e-12, hermitian=True)) * fit.rss / found.worth)
+    first = len(fit.theta) + len(found.drops)  # of the release instants
+    if name != "delay":
+        first = sum(len(BODY_EFFECTS[n].parameters) for n in fit.names[: fit.names.index(name)])
+    count = 1 if name == "delay" else len(BODY_EFFECTS[name].parameters)
+    return 2.0 * float(error[first : first + count].max()) / float(np.sqrt(len(J)))
 
 
 def equals(found: DropSearch, name: str, fit: DropFit) -> list[tuple[str, DropFit]]:

@@ -21,7 +21,7 @@ from .follow_up import follow_up
 from .intervals import intervals
 from .leftover import Leftover, repeating
 from .recording import drop_of
-from .search import EFFECT, LARGEST, DropSearch, equals, foreseen, price_of, rivals, search
+from .search import EFFECT, LARGEST, DropSearch, beside, equals, foreseen, price_of, rivals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 VISIBLE = 0.1  # of the floor, with ballast: then the same numbers have to hold for every mass, and less has to be left
@@ -353,7 +353,7 @@ class FallStudy(Study):
                     self.fitted, self.chosen, (" + ".join(sorted(c.effects)), c.fit), self.found.floor
                 ),
             )
-            for c in rivals(self.found, self.chosen)
+            for c in (*rivals(self.found, self.chosen), *beside(self.found, self.chosen))
         )
 
     def follow_up(self) -> tuple[FollowUp, ...]:

@@ -2,7 +2,9 @@
 
 Prices are not counted here: a price says which explanation is likelier beforehand, not which the log rules out.  A set
 with one effect more fits better by construction; it is a rival where it does so by more than noise would, and yet not
-by as much as a new effect has to before it is named.  So what the named effects may have swallowed is told too.
+by as much as a new effect has to before it is named.  So what the named effects may have swallowed is told too, and so
+is what could act beside them, as large as the noise, without the log showing it: an offset beside friction that differs
+between the directions, in a log that never rests.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 from .alternatives import SAME, forget
 from .block import Block
@@ -18,6 +20,7 @@ from .log import JointLog
 from .search import Search, Set
 
 SWALLOWED = 0.05  # chance that noise alone gains as much as an effect that is told as perhaps swallowed
+HIDES = 1.0  # load over the noise from which on an effect that the log would not show is told
 TRIED = 6  # of the effects that could take the place of others, those that gain most
 MOST = 6
 
@@ -48,6 +51,33 @@ def rivals(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
         if keep and (names not in found or score < found[names][0]):
             found[names] = (score, other)
     return [other for _, other in sorted(found.values(), key=lambda pair: pair[0])][:most]
+
+
+def beside(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
+    """The named set with one effect more that could be as large as the noise unseen, the best hidden first.
+
+    What of its column the chosen ones cannot imitate is all that the log shows of it.
+
+    Args:
+        search: knows all blocks.
+        chosen: the named set.
+        most: how many at most.
+    """
+    columns, found = search.columns(chosen), dict[tuple[str, str], tuple[float, Set]]()
+    if not len(columns):
+        return []
+    inverse = np.linalg.pinv(search.G[np.ix_(columns, columns)], rcond=1e-10, hermitian=True)
+    for i, block in enumerate(search.blocks):
+        if block.recalibration or len(block.parameters) > 1 or i in chosen or search.clash(i, chosen):
+            continue
+        at = search.gram.spans[i].start
+        whole, cross = search.G[at, at], search.G[at, columns]
+        own = max(float(1.0 - cross @ inverse @ cross / (whole + 1e-30)), 1e-9)
+        rows = float(search.rows[list(block.channels)].sum())
+        load = float(norm.isf(SWALLOWED / 2) * np.sqrt(search.widening[i] / (rows * own)))
+        if whole > 0.0 and load > max(HIDES, found.get(block.key, (0.0,))[0]):
+            found[block.key] = load, (*chosen, i)
+    return [other for _, other in sorted(found.values(), key=lambda pair: -pair[0])][:most]
 
 
 def _misfit(search: Search, chosen: Set) -> float:

@@ -17,6 +17,7 @@ from .axis_model import AxisModel
 from .block import Block
 from .bootstrap import confident, kept_part
 from .detect import smallest_found
+from .gram import assemble
 from .heldout_gap import gap_of
 from .intervals import Intervals, intervals, value_within
 from .localise import places
@@ -26,9 +27,12 @@ from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplain
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .placebo import placebos
 from .rigid import RigidModel
-from .rivals import parting, rivals
+from .rivals import beside, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
+from .search import Search
 from .workflow import Named, explained, name_effects
+
+MOST_BESIDE = 3  # effects told that could act beside the named ones unseen
 
 
 class JointStudy(Study):
@@ -88,8 +92,20 @@ class JointStudy(Study):
             named = constant if farther(left[0], left[1], named.noise.rms) else named
         if not named.chosen or not makes_worse(named, self.heldout):
             return named, ""
-        worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks)
+        worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks) if self._pays(named) else ""
         return replace(named, blocks=(), chosen=(), theta=np.zeros(0)), worse
+
+    def _pays(self, named: Named) -> bool:
+        """Whether effects pay their price over all logs, or on those held out alone with numbers of their own.
+
+        What does neither was chance in those fitted, and nothing is missing for it.
+        """
+        whole, price = tuple(range(len(named.blocks))), float(named.search.price[list(named.chosen)].sum())
+        for logs in (self._logs[1], self.heldout):
+            search = Search(gram=assemble(list(named.blocks), logs), noise=named.noise)
+            if search.rows @ (np.log(search.rss(())) - np.log(search.rss(whole))) > price:
+                return True
+        return False
 
     @property
     def named(self) -> Named:
@@ -213,7 +229,7 @@ class JointStudy(Study):
             return ()
         search, chosen, floor = self.named.search, self.named.chosen, self.named.noise.rms
         out = []
-        for other in self._rival_sets:
+        for other in (*self._rival_sets, *beside(search, chosen, most=MOST_BESIDE)):
             blocks = [search.blocks[i] for i in other if not search.blocks[i].recalibration]
             text, apart = parting(search, chosen, other, self._motions, floor)
             name = " + ".join(b.name for b in self.named.blocks)

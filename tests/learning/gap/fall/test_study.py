@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.errors import GapError
+from caretree.learning.gap.fall.search import beside
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 from caretree.learning.gap.report import write_report
@@ -77,7 +78,7 @@ def test_sets_that_fit_as_well_are_listed_with_the_drop_that_tells_them_apart(dr
     assert named
     assert verdict.rivals
     for rival in verdict.rivals:
-        assert not set(rival.effects) >= named
+        assert set(rival.effects) != named
         assert len(rival.effects) <= 2
         assert rival.experiment
     asked = study.follow_up()
@@ -135,3 +136,16 @@ def test_a_lift_beside_a_drag_is_told_as_an_equal_of_a_wrong_scale_beside_one(dr
     sets = [{f.name for f in effects}, *({n for n, _ in r.effects} for r in study.rivals())]
     assert {"gain_error", "quadratic_drag"} in sets
     assert {"buoyancy", "quadratic_drag"} in sets
+
+
+def test_what_hides_beside_a_drag_is_told_where_it_may_be_as_large_as_the_noise(drop_set):
+    study = open_study(load_set(drop_set(0.02)))
+    found = study.found
+    fit = next(c.fit for c in found.candidates if c.effects == {"quadratic_drag"})
+    told = beside(found, fit)
+    assert told
+    for c in told:
+        assert c.effects > {"quadratic_drag"}
+        assert len(c.effects) == 2
+    still = next(c.fit for c in found.candidates if not c.effects)
+    assert beside(found, still) == []

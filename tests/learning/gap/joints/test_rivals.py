@@ -1,6 +1,6 @@
 import numpy as np
 from caretree.learning.gap.joints.alternatives import experiments
-from caretree.learning.gap.joints.rivals import parting, rivals
+from caretree.learning.gap.joints.rivals import beside, parting, rivals
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 
@@ -43,3 +43,15 @@ def test_the_motion_that_parts_two_sets_is_found(axis_set):
     assert "speed" in text
     assert apart > 1.0
     assert parting(search, (at["offset"],), (at["offset"],), motions, study.named.noise.rms)[1] == 0.0
+
+
+def test_what_hides_beside_the_named_effects_is_told_and_nothing_else(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: np.where(v > 0, 1.6, -0.5), noise=0.2)))
+    search = study.named.search
+    at = {b.key[0]: i for i, b in enumerate(search.blocks) if not b.shape}
+    unequal, viscous = ((at[name],) for name in ("asymmetric_friction", "viscous_friction"))
+    # a log that never rests has the offset in the friction
+    assert (*unequal, at["offset"]) in beside(search, unequal)
+    assert (*unequal, at["viscous_friction"]) not in beside(search, unequal)
+    assert (*viscous, at["offset"]) not in beside(search, viscous)
+    assert beside(search, ()) == []

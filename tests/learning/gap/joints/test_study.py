@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from caretree.learning.gap.joints.workflow import name_effects
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 
@@ -53,3 +54,21 @@ def test_no_interval_is_trusted_where_something_without_a_name_acts_too(axis_set
     values = [p for f in (*verdict.effects, *verdict.recalibration) for p in f.parameters]
     assert values
     assert all(p.doubt for p in values)
+
+
+def pushed(folder, pushes):
+    """The set with a constant force [N] added to each recording."""
+    for k, push in enumerate(pushes):
+        data = np.loadtxt(folder / f"e{k}.csv", delimiter=",", skiprows=1)
+        data[:, 3] += push
+        np.savetxt(folder / f"e{k}.csv", data, delimiter=",", header="t,q,dq,force", comments="")
+    return folder
+
+
+@pytest.mark.parametrize(("heldout", "verdict"), [(-0.05, "adequate"), (-1.0, "unknown")])
+def test_an_effect_that_the_held_out_log_denies_is_missing_only_where_that_log_asks_for_another(
+    axis_set, heldout, verdict
+):
+    study = open_study(load_set(pushed(axis_set(), (0.07, 0.07, heldout))))
+    assert name_effects(study.model, study.fitted, "axis").chosen
+    assert study.name()[:2] == (verdict, ())
