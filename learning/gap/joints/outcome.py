@@ -72,7 +72,7 @@ def judge(
     wide = unexplained(named, broad)
     found = _contact_bursts(logs, broad, wide, left)
     calm, calm_wide = _without(logs, left, found), _without(logs, wide, found)
-    remainders = tuple(leftover(logs, calm, calm_wide, c) for c in range(left[0].shape[1]))
+    remainders = tuple(leftover(logs, calm, calm_wide, c, named.blocks) for c in range(left[0].shape[1]))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)
     rest = np.mean(np.concatenate(calm) ** 2, axis=0)
     floor2 = np.maximum(_squared_floor(named, remainders, rest), error2)

@@ -8,12 +8,14 @@ the registry has no name for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import f as fisher
 from scipy.stats import t as student
 
+from .block import Block
 from .generic import clock_columns, generic_columns, other_columns, past_columns, place_columns, scales
 from .gram import fold_edges
 from .log import JointLog
@@ -50,7 +52,13 @@ class Remainder:
     detail: str
 
 
-def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray], channel: int) -> Remainder:
+def leftover(
+    logs: list[JointLog],
+    left: list[np.ndarray],
+    wide: list[np.ndarray],
+    channel: int,
+    blocks: Sequence[Block] = (),
+) -> Remainder:
     """The best out-of-sample prediction of one channel's leftover, over all kinds.
 
     Args:
@@ -58,6 +66,8 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         left: (T_inner, C) per log, residual after the named effects.
         wide: the same without the shared filter, for waves in time beyond the motion's bandwidth.
         channel: which joint.
+        blocks: the named effects, which give way to a memory of the way travelled: friction that builds up over a
+            distance is half a spring and half dry friction, and little of it is left beside them.
     """
     y = np.concatenate([x[:, channel] for x in left])
     loud = np.concatenate([x[:, channel] for x in wide])
@@ -76,6 +86,8 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         gain, p = _predict(X, target, _interleaved(fold, edges) if within else fold, within)
         if kind == "drift":
             gain, p = _wald(X, y, [len(x) for x in left])
+        elif kind == "past":
+            gain, p = _wald(*_giving_way(blocks, logs, channel, X, y), [len(x) for x in left])
         elif kind == "other joint":
             # few columns, so what noise does in sample is known; a shift in time leaves slow joints alike
             removed, p = _wald(X, y, [len(x) for x in left])
@@ -92,6 +104,20 @@ def leftover(logs: list[JointLog], left: list[np.ndarray], wide: list[np.ndarray
         )
     significant = [r for r in results if r.p_value < 0.01] or results
     return max(significant, key=lambda r: r.energy / max(r.base, 1e-30))
+
+
+def _giving_way(
+    blocks: Sequence[Block], logs: list[JointLog], channel: int, X: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Features (T_inner over all logs, p) and leftover without what the named effects can take of them."""
+    mine = [b for b in blocks if channel in b.channels]
+    if not mine:
+        return X, y
+    columns = [[b.build(log)[:, b.channels.index(channel), :] for b in mine] for log in logs]
+    basis = np.concatenate([np.concatenate(parts, axis=1) for parts in columns])
+    table = np.column_stack([X, y])
+    table = table - basis @ np.linalg.lstsq(basis, table, rcond=1e-10)[0]
+    return table[:, :-1], table[:, -1]
 
 
 Kind = tuple[np.ndarray, str]  # (T_inner over all logs, p) features, and the form for the reader

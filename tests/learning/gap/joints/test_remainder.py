@@ -24,6 +24,21 @@ def test_cogging_is_a_wave_in_position_of_its_own_period(axis_set):
     assert 0.0 < found.energy <= found.base
 
 
+def built_up(q, distance):
+    """Dahl's friction, which builds up over a distance (T,)."""
+    z = np.zeros(len(q))
+    for i, d in enumerate(np.diff(q) / distance):
+        z[i + 1] = np.clip(z[i] + d - abs(d) * z[i], -1.0, 1.0)
+    return z
+
+
+@pytest.mark.parametrize("noise", [0.5, 1.5])
+def test_friction_that_builds_up_is_not_taken_for_what_imitates_it(axis_set, noise):
+    study = open_study(load_set(axis_set(lambda q, v, a: built_up(q, 0.04), noise=noise)))
+    assert study.named.chosen  # a spring or viscous friction follows most of it
+    assert study.name()[0] == "unknown"
+
+
 @pytest.mark.parametrize("cable", [4.0, 0.0])
 def test_a_load_that_follows_another_joint_is_no_noise(cable):
     """Three joints; what is left on the first follows the third's position, as a cable along them makes it."""
