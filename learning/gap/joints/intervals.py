@@ -117,10 +117,10 @@ def _columns(
     return columns, left
 
 
-def value_within(parameter: Parameter, unit: str, value: float, low: float, high: float) -> Value:
+def value_within(parameter: Parameter, unit: str, value: float, low: float, high: float, doubt: str = "") -> Value:
     """A fitted number with its interval, which ends where the number is bounded."""
     low, high = max(float(low), parameter.lower), min(float(high), parameter.upper)
-    doubt = "" if parameter.lower < value < parameter.upper else AT_BOUND
+    doubt = doubt if parameter.lower < value < parameter.upper else AT_BOUND
     return Value(name=parameter.name, unit=unit, value=float(value), low=low, high=high, doubt=doubt)
 
 

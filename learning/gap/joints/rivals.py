@@ -72,12 +72,26 @@ def beside(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
             continue
         at = search.gram.spans[i].start
         whole, cross = search.G[at, at], search.G[at, columns]
-        own = max(float(1.0 - cross @ inverse @ cross / (whole + 1e-30)), 1e-9)
-        rows = float(search.rows[list(block.channels)].sum())
-        load = float(norm.isf(SWALLOWED / 2) * np.sqrt(search.widening[i] / (rows * own)))
+        load = _unseen(search, i, float(1.0 - cross @ inverse @ cross / (whole + 1e-30)))
         if whole > 0.0 and load > max(HIDES, found.get(block.key, (0.0,))[0]):
             found[block.key] = load, (*chosen, i)
     return [other for _, other in sorted(found.values(), key=lambda pair: -pair[0])][:most]
+
+
+def determined(search: Search, chosen: Set) -> np.ndarray:
+    """Which numbers of a set the logs tell (k,): those that cannot carry a load as large as the noise unseen."""
+    columns = search.columns(chosen)
+    square = search.G[np.ix_(columns, columns)]
+    size = np.sqrt(np.diag(square)) + 1e-30
+    own = 1.0 / np.diag(np.linalg.pinv(square / np.outer(size, size), rcond=1e-12, hermitian=True))
+    blocks = np.concatenate([[i] * len(search.blocks[i].parameters) for i in chosen])
+    return np.array([_unseen(search, int(i), float(part)) <= HIDES for i, part in zip(blocks, own, strict=True)])
+
+
+def _unseen(search: Search, index: int, own: float) -> float:
+    """Load over the noise that a block may carry unseen where `own` of its column's energy is shared with no other."""
+    rows = float(search.rows[list(search.blocks[index].channels)].sum())
+    return float(norm.isf(SWALLOWED / 2) * np.sqrt(search.widening[index] / (rows * max(own, 1e-12))))
 
 
 def _misfit(search: Search, chosen: Set) -> float:

@@ -27,11 +27,12 @@ from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplain
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .placebo import placebos
 from .rigid import RigidModel
-from .rivals import beside, parting, rivals
+from .rivals import beside, determined, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
 from .search import Search
 from .workflow import Named, explained, name_effects
 
+SHARED_OUT = "beside another effect that fits as well, any part of it may be that one's"
 MOST_BESIDE = 3  # effects told that could act beside the named ones unseen
 
 
@@ -153,10 +154,10 @@ class JointStudy(Study):
 
     def _finding(self, k: int, block: Block, theta: np.ndarray, span: slice) -> EffectFinding:
         prismatic = self.model.prismatic[block.channels[0]]
-        low, high = self._ends(k, theta, self.intervals.linear[span])
+        low, high, told = self._ends(k, theta, self.intervals.linear[span])
         values = [
-            value_within(p, p.unit_for(prismatic), v, a, b)
-            for p, v, a, b in zip(block.parameters, theta, low, high, strict=True)
+            value_within(p, p.unit_for(prismatic), v, a, b, "" if sure else SHARED_OUT)
+            for p, v, a, b, sure in zip(block.parameters, theta, low, high, told, strict=True)
         ]
         if block.term is None:
             values += [
@@ -247,15 +248,22 @@ class JointStudy(Study):
         """What could be run next."""
         return experiments(self.model, self.fitted[0])
 
-    def _ends(self, k: int, theta: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Ends of the intervals of the `k`-th block's numbers, whichever of the sets that fit as well is right."""
+    def _ends(self, k: int, theta: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Ends of the intervals of the `k`-th block's numbers, whichever of the sets that fit as well is right.
+
+        Returns:
+            (lower ends, upper ends, whether every such set tells the number).
+        """
         search, index = self.named.search, self.named.chosen[k]
-        every = [theta]
+        every, told = [theta], np.ones(len(theta), dtype=bool)
         for other in self._rival_sets:
             if index in other:
                 at = len(search.columns(other[: other.index(index)]))
-                every.append(search.fit(other)[at : at + len(theta)])
-        return np.min(every, axis=0) - half, np.max(every, axis=0) + half
+                mine = slice(at, at + len(theta))
+                known = determined(search, other)[mine]
+                every.append(np.where(known, search.fit(other)[mine], theta))
+                told &= known
+        return np.min(every, axis=0) - half, np.max(every, axis=0) + half, told
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""
