@@ -14,7 +14,8 @@ from .case import STEPS, Truth, coloured, draw_kind, draw_size, moves, multisine
 from .joint_loads import INSIDE, OUTSIDE, Drawn, Trace, shape_of
 
 ROBOTS = ("ur5", "ur10", "panda", "z1", "xarm7")
-MOST = {"backlash": 1.0, "wrong_tool": 1.9}  # a gap or a missing tool (1: half the link) takes away what there is
+# a gap or a missing tool (1: half the link) takes away what there is; no drive pulls the other way than it is told to
+MOST = {"backlash": 1.0, "wrong_tool": 1.9, "gain_error": 0.95, "load_friction": 10.0}
 LEAST = 0.49  # size over the noise below which nothing is hidden: another effect is drawn instead
 DRY = {"coulomb_friction", "asymmetric_friction", "stribeck_friction"}
 ALIKE = {

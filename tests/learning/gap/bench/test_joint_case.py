@@ -1,6 +1,8 @@
 import numpy as np
+import pytest
 from caretree.learning.gap.bench.joint_case import LEAST, write_joint_case
 from caretree.learning.gap.bench.joint_loads import OUTSIDE, Trace, shape_of
+from caretree.sim.effects.joint.joint_registry import JOINT_EFFECTS
 
 
 def test_nothing_is_hidden_that_is_too_small_to_matter(tmp_path):
@@ -14,6 +16,14 @@ def test_no_more_tool_is_missing_than_there_is(tmp_path):
     tool = next(e for e in truth.effects if e["name"] == "wrong_tool")
     assert LEAST <= tool["size"] < 3.0
     assert np.isfinite(tool["size"])
+
+
+@pytest.mark.parametrize("seed", [4010, 4068, 4080])  # joints that carry next to nothing
+def test_nothing_is_hidden_that_no_joint_can_have(tmp_path, seed):
+    truth = write_joint_case("arm", seed, tmp_path)
+    for e in truth.effects:
+        bounds = {p.name: p for p in JOINT_EFFECTS[e["name"]].linear} if e["name"] in JOINT_EFFECTS else {}
+        assert all(bounds[n].lower <= v <= bounds[n].upper for n, v in e["values"].items() if n in bounds)
 
 
 def test_what_is_hidden_has_the_numbers_the_registry_gives_it(tmp_path):
