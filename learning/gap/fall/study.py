@@ -165,10 +165,13 @@ class FallStudy(Study):
             parameter: its bounds.
         """
         ends = []
-        for fit in (self.chosen, *(c.fit for c in rivals(self.found, self.chosen) if name in c.fit.names)):
-            first = sum(len(BODY_EFFECTS[n].parameters) for n in fit.names[: fit.names.index(name)])
-            ends.append([x[first + at] for x in self._ends(fit)])
-        low, high = np.min(ends, axis=0)[0], np.max(ends, axis=0)[1]
+        for fit in (self.chosen, *(c.fit for c in rivals(self.found, self.chosen))):
+            mine = "quadratic_drag" if name == "wind" and "quadratic_drag" in fit.names else name
+            if mine in fit.names:
+                first = sum(len(BODY_EFFECTS[n].parameters) for n in fit.names[: fit.names.index(mine)])
+                # quadratic drag is a wind of no speed
+                ends.append([x[first + at] for x in self._ends(fit)] if mine == name or at == 0 else [0.0, 0.0])
+        (low, _), (_, high) = np.min(ends, axis=0), np.max(ends, axis=0)
         return max(float(low), parameter.lower), min(float(high), parameter.upper)
 
     def _ends(self, fit: DropFit) -> tuple[np.ndarray, np.ndarray]:
@@ -291,10 +294,8 @@ class FallStudy(Study):
             others = equals(self.found, name, self.chosen)
             without = self.found.refit(tuple(n for n in self.chosen.names if n != name), self.chosen.mode)
             own = np.sqrt(max(_squares(without) - _squares(self.chosen), 0.0) / self.found.rows)
-            first_value = values[0].value
             gained = self.found.worth * np.log(without.rss / self.chosen.rss)
-            price = EFFECT + self.found.price * len(effect.parameters)
-            smallest = np.sqrt(price / max(gained, 1e-9))
+            smallest = np.sqrt((EFFECT + self.found.price * len(effect.parameters)) / max(gained, 1e-9))
             out.append(
                 EffectFinding(
                     name=name,
@@ -303,7 +304,7 @@ class FallStudy(Study):
                     confidence=kept[name],
                     equivalent=tuple(n for n, _ in others),
                     size=float(own / self.found.floor),
-                    smallest=float(smallest) if first_value else float("nan"),
+                    smallest=float(smallest) if values[0].value else float("nan"),
                     experiment=separating(self.fitted, self.chosen, others[0], self.found.floor) if others else "",
                 )
             )

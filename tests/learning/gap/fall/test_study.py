@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.errors import GapError
-from caretree.learning.gap.fall.search import beside
+from caretree.learning.gap.fall.search import beside, rivals
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 from caretree.learning.gap.report import write_report
+from caretree.sim.effects.body.body_registry import BODY_EFFECTS
 
 
 def test_drag_is_named_and_sized(drop_set):
@@ -149,3 +150,13 @@ def test_what_hides_beside_a_drag_is_told_where_it_may_be_as_large_as_the_noise(
         assert len(c.effects) == 2
     still = next(c.fit for c in found.candidates if not c.effects)
     assert beside(found, still) == []
+
+
+def test_a_wind_that_may_be_still_air_says_so(drop_set):
+    study = open_study(load_set(drop_set(0.02)))
+    found = study.found
+    study.__dict__["chosen"] = next(c.fit for c in found.candidates if c.effects == {"wind"})
+    assert {"quadratic_drag"} in [c.effects for c in rivals(found, study.chosen)]
+    coefficient, speed = BODY_EFFECTS["wind"].parameters
+    assert study._interval("wind", 1, speed)[0] <= 0.0 <= study._interval("wind", 1, speed)[1]
+    assert study._interval("wind", 0, coefficient)[0] < 0.02 < study._interval("wind", 0, coefficient)[1]
