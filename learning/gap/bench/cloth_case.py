@@ -139,7 +139,7 @@ def _draw(rng, kind, truth, vertices, limb, duration, noise, scene, parsed):
     if kind == "recalibration":
         key = str(rng.choice(["elastic_stiffness", "damping_stiffness"]))
         changed[key] = scene.physics.__dict__[key] * float(rng.choice([0.55, 1.8]))
-        truth.effects = [{"name": key, "target": "cloth", "size": float("nan")}]
+        truth.effects = [{"name": key, "target": "cloth", "size": float("nan"), "values": {key: changed[key]}}]
     pool = [n for n in INSIDE if limb or n not in ("contact_friction", "adhesion")]
     names = [str(n) for n in rng.choice(pool, size={"single": 1, "two": 2}.get(kind, 0), replace=False)]
     if set(names) == {"wind", "tilted_gravity"}:
@@ -153,7 +153,8 @@ def _draw(rng, kind, truth, vertices, limb, duration, noise, scene, parsed):
             name = spare.pop(int(rng.integers(len(spare))))
             entry, got = _sized(rng, name, size, vertices, duration, noise, scene, parsed)
         entries.append(entry)
-        truth.effects.append({"name": name, "target": _target(name), "size": got})
+        values = {k: float(v) for k, v in entry.parameters.items()}
+        truth.effects.append({"name": name, "target": _target(name), "size": got, "values": values})
         if name == "snag":
             v = entry.parameters
             truth.intervals += [(e.name, v["t0"], v["t1"]) for e in parsed]

@@ -12,6 +12,7 @@ import numpy as np
 
 from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ....sim.effects.model_file import EffectEntry
+from .intervals import half_widths
 from .scene import ClothEpisode
 from .simulate import Simulator
 
@@ -94,12 +95,19 @@ def measured(episode: ClothEpisode) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True)
 class ClothFit:
-    """A fitted model.  rss: weighted sum of squares; residuals: measured minus predicted, per episode."""
+    """A fitted model.
+
+    Attributes:
+        model: with its free parameters fitted.
+        rss: weighted sum of squares.
+        residuals: measured minus predicted, per episode.
+        half: (P,) half-widths of the 95 % intervals of the free parameters.
+    """
 
     model: ClothModel
     rss: float
     residuals: list[np.ndarray]
-    covariance: np.ndarray
+    half: np.ndarray
 
 
 class ClothFitter:
@@ -132,7 +140,7 @@ class ClothFitter:
         """
         residuals = self.residuals(model)
         best = self.rss(residuals)
-        covariance = np.zeros((len(model.free), len(model.free)))
+        J = np.zeros((0, len(model.free)))
         for _ in range(rounds):
             if not model.free:
                 break
@@ -141,7 +149,6 @@ class ClothFitter:
             A = J.T @ J
             size = np.sqrt(np.diag(A)) + 1e-12
             inverse = np.linalg.pinv(A / np.outer(size, size) + 1e-6 * np.eye(len(A))) / np.outer(size, size)
-            covariance = inverse
             change = inverse @ (J.T @ r)
             for shrink in (1.0, 0.5, 0.2):
                 tried = model.moved({f: model.value(f) + shrink * c for f, c in zip(model.free, change, strict=True)})
@@ -155,7 +162,15 @@ class ClothFitter:
             model, residuals, best = tried, left, rss
             if gained < least * best:
                 break
-        return ClothFit(model=model, rss=best, residuals=residuals, covariance=covariance)
+        return ClothFit(model=model, rss=best, residuals=residuals, half=self._half_widths(J, residuals))
+
+    def _half_widths(self, J: np.ndarray, residuals: list[np.ndarray]) -> np.ndarray:
+        """Half-widths (P,) from weighted columns (rows, P); not finite where nothing was fitted."""
+        if not len(J) or not J.shape[1]:
+            return np.full(J.shape[1], np.inf)
+        ends = np.cumsum([r.size for r in residuals])[:-1]
+        columns = [X.reshape(*r.shape, -1) for X, r in zip(np.split(J, ends), residuals, strict=True)]
+        return half_widths(columns, [r * self.weights for r in residuals])
 
     def sized(self, models: list[ClothModel], without: ClothModel, which: Free) -> list[tuple[float, ClothModel]]:
         """Each model with one size scaled to what the recordings want, by one simulation; best first.

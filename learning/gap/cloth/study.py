@@ -28,6 +28,8 @@ from .simulate import Simulator
 REMAINDER = 0.12  # `unknown` above this part of the explainable energy left shared between neighbours
 NOTHING = 1e-5  # a recalibrated number this small has run into its bound
 STRETCHES = 6  # per recording, resampled for the confidence
+TRIED = "the best of the values tried, not fitted with the others, so it has no interval"
+ALONE = "it rests on one coordinate of one marker, so nothing is known of how sure it is"
 SLOW = 0.8  # [s] for one run
 UNITS = {"mass": "kg", "elastic_stiffness": "N/m", "damping_stiffness": "N s/m", "bending_stiffness": "N/m"}
 
@@ -192,21 +194,25 @@ class ClothStudy(Study):
         f = self.found
         effects, recalibration = [], []
         fitter = self._fitter(self.fitted)
-        # the covariance is that of columns weighted by the noise, so the residual must be weighted too
-        scale = float(np.sqrt(f.fit.rss / max(f.worth, 1.0)))
-        half = 1.96 * scale * np.sqrt(np.maximum(np.diag(f.fit.covariance), 0.0))
+        # a slip happens between two steps of the simulation
+        half = [
+            h + (self.scene.physics.time_step if parameter == ("grip_slip", "time") else 0.0)
+            for parameter, h in zip(f.fit.model.free, f.fit.half, strict=True)
+        ]
         for c in f.chosen:
             values = []
             for k, (name, p) in enumerate(f.fit.model.free):
                 if name == c.name or (name == "physics" and p == c.name):
                     x = f.fit.model.value((name, p))
                     unit = UNITS.get(p, "") if name == "physics" else _unit(name, p)
-                    values.append(Value(name=p, unit=unit, value=x, low=x - float(half[k]), high=x + float(half[k])))
+                    doubt = "" if np.isfinite(half[k]) else ALONE
+                    low, high = x - float(half[k]), x + float(half[k])
+                    values.append(Value(name=p, unit=unit, value=x, low=low, high=high, doubt=doubt))
             entry = next((e for e in f.fit.model.effects if e.name == c.name), None)
             fixed = {v.name for v in values}
             for p, x in (entry.parameters if entry else {}).items():
                 if p not in fixed:
-                    values.append(Value(name=p, unit=_unit(c.name, p), value=x, low=x, high=x))
+                    values.append(Value(name=p, unit=_unit(c.name, p), value=x, low=x, high=x, doubt=TRIED))
             without = fitter.residuals(f.fit.model.without(c.name))
             own = max(_mean2(without, self) - _mean2(f.fit.residuals, self), 0.0)
             size = float(np.sqrt(own) / f.after.floor)

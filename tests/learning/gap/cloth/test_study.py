@@ -33,7 +33,7 @@ def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth
     start = ClothModel(physics={"elastic_stiffness": 40.0}, free=(("physics", "elastic_stiffness"),))
 
     def fit(model, load):
-        return ClothFit(model=model, rss=1.0, residuals=[noise + load * off], covariance=np.eye(1))
+        return ClothFit(model=model, rss=1.0, residuals=[noise + load * off], half=np.ones(1))
 
     calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
     study.__dict__["found"] = ClothSearch(
@@ -57,14 +57,14 @@ def test_what_makes_the_held_out_recording_worse_is_never_found(cloth_set, monke
     rows = len(study.episodes[0].t)
     off = 1e-3 * np.random.default_rng(0).normal(size=(rows, 18))
     calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
-    fit = ClothFit(model=start, rss=1.0, residuals=[0.1 * off], covariance=np.eye(1))
+    fit = ClothFit(model=start, rss=1.0, residuals=[0.1 * off], half=np.ones(1))
     candidate = Candidate(
         name="elastic_stiffness", target="cloth", start=start, push=start, steps={}, recalibration=True
     )
     found = ClothSearch(
         chosen=(candidate,),
         fit=fit,
-        plain=ClothFit(model=ClothModel(), rss=1.0, residuals=[off], covariance=np.eye(0)),
+        plain=ClothFit(model=ClothModel(), rss=1.0, residuals=[off], half=np.ones(0)),
         before=calm,
         after=calm,
         rivals={},
