@@ -26,6 +26,7 @@ WAVES = 60
 FOLDS = 6
 SHIFTS = 40
 STRETCHES = 24
+IMITATED = 1e-6  # part of a feature's energy below which the named effects are the same thing
 REPEATS = 0.05  # p-value of the gain over stretches above which it does not repeat
 ALIKE = 3  # neighbouring stretches that may be alike
 TRIED = {"position wave": 100, "time wave": 20, "other joint": 6}  # the period, the joint was picked from the same data
@@ -116,8 +117,9 @@ def _giving_way(
     columns = [[b.build(log)[:, b.channels.index(channel), :] for b in mine] for log in logs]
     basis = np.concatenate([np.concatenate(parts, axis=1) for parts in columns])
     table = np.column_stack([X, y])
-    table = table - basis @ np.linalg.lstsq(basis, table, rcond=1e-10)[0]
-    return table[:, :-1], table[:, -1]
+    left = table - basis @ np.linalg.lstsq(basis, table, rcond=1e-10)[0]
+    own = np.sum(left**2, axis=0) > IMITATED * np.sum(table**2, axis=0)
+    return left[:, :-1] * own[:-1], left[:, -1]
 
 
 Kind = tuple[np.ndarray, str]  # (T_inner over all logs, p) features, and the form for the reader
@@ -179,6 +181,8 @@ def _wald(X: np.ndarray, y: np.ndarray, lengths: list[int]) -> tuple[float, floa
     X = X / (np.sqrt(np.mean(X**2, axis=0)) + 1e-12)
     u, s, _ = np.linalg.svd(X, full_matrices=False)
     u = u[:, s > 1e-4 * s[0]]
+    if not u.shape[1]:
+        return 0.0, 1.0
     after = y - u @ (u.T @ y)
     ends = np.cumsum(lengths)[:-1]
     parts = [x[:, None] for x in np.split(after, ends)]
