@@ -188,6 +188,8 @@ def _effect_questions(rows: list[Row]) -> list[Question]:
         ("two effects, exact set", two, "exact"),
         ("two effects, up to stated equivalents", two, "up_to_equivalents"),
         ("two effects, exact or listed among the sets that fit as well", two, "together"),
+        ("single effect, exact or told as equal", [r for r in rows if r["kind"] == "single"], "told"),
+        ("two effects, exact or told as equal", two, "told"),
         ("wrong set named, the truth among its equals", wrong, "told"),
         ("two effects, both >= 2, exact set", [r for r in two if r["size"] >= 2], "exact"),
         (f"two effects, apart >= {APART:g} sd, exact set", _distinct(two), "exact"),

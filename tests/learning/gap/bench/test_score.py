@@ -38,6 +38,13 @@ def test_stated_equivalents_count_apart():
     assert row["up_to_equivalents"]
 
 
+def test_exact_and_told_as_equal_are_counted_together():
+    equal = case(["asymmetric_friction"], ["coulomb_friction"], equivalent=["asymmetric_friction"])
+    asked = {r[0]: r[2:4] for r in table([equal, case(["offset"], ["offset"]), case(["offset"], ["spring"])])}
+    assert asked["single effect, exact or told as equal"] == (2, 3)
+    assert asked["wrong set named, the truth among its equals"] == (1, 2)
+
+
 def test_a_set_listed_beside_the_one_named_counts_apart():
     truth = {"system": "fall", "seed": 1, "kind": "two", "intervals": [], "effects": [two("wind"), two("delay")]}
     said = {
