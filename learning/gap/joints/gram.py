@@ -87,8 +87,12 @@ def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6) -> Gram:
     acf, every, places = [], [], []
     for c in range(channels):
         local = [(i, block.channels.index(c)) for i, block in enumerate(blocks) if c in block.channels]
-        index = np.concatenate([np.arange(spans[i].start, spans[i].stop) for i, _ in local])
-        tables = [np.concatenate([parts[i][:, j, :] for i, j in local], axis=1) for parts in built]
+        index = np.array([k for i, _ in local for k in range(spans[i].start, spans[i].stop)], dtype=int)
+        empty = [np.zeros((len(log.t[log.inner]), 0)) for log in logs]  # of a channel that no block touches
+        tables = [
+            np.concatenate([x, *(parts[i][:, j, :] for i, j in local)], axis=1)
+            for x, parts in zip(empty, built, strict=True)
+        ]
         for log, X, parts in zip(logs, tables, edges, strict=True):
             y = log.residual[log.inner, c]
             for fold, start, stop in parts:
@@ -98,7 +102,8 @@ def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6) -> Gram:
                 yy[fold, c] += r @ r
                 rows[fold, c] += len(r)
         whole = np.zeros((lags, k))
-        whole[:, index] = autocorrelation(tables, lags)
+        if local:
+            whole[:, index] = autocorrelation(tables, lags)
         acf.append(whole)
         every.append(tables)
         places.append(index)

@@ -6,6 +6,8 @@ import numpy as np
 
 from ..effect import JointEffect, JointMotion, Parameter, Shape, Spread
 
+TREMBLE = 0.1  # of the gap
+
 
 def distance_since_reversal(q: np.ndarray, dead: float) -> np.ndarray:
     """How far the joint has moved since it last turned, (T,); turns smaller than `dead` do not count."""
@@ -45,8 +47,9 @@ class Backlash(JointEffect):
 
     def columns(self, motion: JointMotion, shape: Shape) -> np.ndarray:
         """Minus the rigid load inside the gap, (T, 1)."""
-        travelled = distance_since_reversal(motion.q, 1e-4 * max(float(np.ptp(motion.q)), 1e-9))
         width = max(shape["width"], 1e-12)
+        # a joint that rests trembles, or its smoothed position does: a tenth of the gap is no turn
+        travelled = distance_since_reversal(motion.q, max(1e-4 * float(np.ptp(motion.q)), TREMBLE * width, 1e-13))
         inside = 0.5 * (1.0 - np.tanh((travelled - width) / (0.1 * width)))
         return -(motion.load * inside)[:, None]
 

@@ -39,3 +39,11 @@ def test_a_tremble_is_no_reversal():
 def test_the_slow_start_after_a_turn_counts():
     q = np.array((0.0, 0.5, 1.0, 0.999, 0.996, 0.98, 0.9))
     assert distance_since_reversal(q, 0.01)[3:] == pytest.approx([0.001, 0.004, 0.02, 0.1])
+
+
+def test_a_joint_that_rests_and_goes_on_has_not_turned():
+    t = np.arange(0.0, 3.0, 0.01)
+    rest = 0.5 + 1e-3 * np.sin(20.0 * t) * ((t > 1.0) & (t < 2.0))  # trembling by a tenth of the gap, and less
+    q = np.where(t < 1.0, 0.5 * t, np.where(t < 2.0, rest, 0.5 * (t - 1.0)))
+    motion = JointMotion(t=t, q=q, dq=np.gradient(q, t), ddq=0.0 * t, load=1.0 + 0.0 * t, measured=0.0 * t)
+    assert np.abs(Backlash().load(motion, {"fraction": 1.0, "width": 0.04})).max() < 1e-3
