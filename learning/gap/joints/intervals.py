@@ -3,9 +3,9 @@
 The least-squares estimate errs by inv(A) s, where A are the normal equations and s = sum_t x(t) w e(t).  Noise that
 does not depend on the motion gives s the covariance sum_f X(f)* X(f)' w^2 S(f): the columns' own spectrum times that of
 the noise.  S is read off what the fit leaves, log by log (noise differs from one to the next) and band by band, and
-divided by the part of the band that the fit could not
-take up itself.  A slow column (an offset, a payload) rests on the few lowest bands, a fast one on many: how many
-independent numbers its variance was estimated from follows (Satterthwaite), and with it Student's t for its interval.
+divided by the part of the band that the fit could not take up itself.  A slow column (an offset, a payload) rests on
+the few lowest bands, a fast one on many: how many independent numbers its variance was estimated from follows
+(Satterthwaite), and with it Student's t for its interval.
 
 Columns of numbers that enter nonlinearly (a threshold, a Stribeck speed) are derivatives, so what is not known about
 them widens the others' intervals too.
