@@ -27,6 +27,8 @@ from .geometry.arm_path import UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
 
+ELBOW = 1.0  # arm coordinate
+
 
 @dataclass(frozen=True, kw_only=True)
 class LiftGoal(Quantities):
@@ -50,6 +52,12 @@ class LiftGoal(Quantities):
         "of the upper arm away from the body in the end, along the bed, if it does not point there already",
         "measured: an armhole stops where arm and trunk part: pulled up arms spread by 0.5, 0.6, 0.75, 0.9 rad and let "
         "go of, it came to rest at 0.68, 0.75, 0.81, 0.82 of the upper arm (four gowns and persons, both sides)",
+    )
+    straight: float = quantity(
+        0.99,
+        "1",
+        "share of the arm's length between shoulder and grip in the end, where it is held beyond the elbow",
+        "choice: straight to what is known of its length; a bent elbow met the mattress before the hand was down (101)",
     )
     near_spread: float = quantity(
         0.4,
@@ -148,9 +156,12 @@ class LiftArm(Skill):
         yield from open_gripper(self, self.hand)
         above = over_arm(posture, tuning.goal.grip_coordinate, lift=tuning.goal.approach_height)
         place = ArmPath.of(posture).point(tuning.goal.grip_coordinate)
-        arc = Arc(posture.points_in_map[0], place, self._goal(posture))
+        arc = self._arc(posture, place)
         above = top_down_reachable(self, self.hand, above, (np.zeros(3), arc.at(arc.angle)[0] - place))
         yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, tuning.take.approach_speed))
+        if tuning.goal.grip_coordinate > ELBOW:
+            posture = self.look_again()
+            place = ArmPath.of(posture).point(tuning.goal.grip_coordinate)
         around = above.copy()
         around[:3, 3] = place + tuning.take.grip_depth * above[:3, 2]
         yield from close_around(self, self.hand, above, around, tuning=tuning.take)
@@ -158,14 +169,23 @@ class LiftArm(Skill):
         self.note(f"lifts the {self.side} arm")
         yield from self._swing(posture)
 
-    def _goal(self, posture: ArmPosture) -> np.ndarray:
-        """Unit vector (3,) from the shoulder to where the grip is brought."""
-        return lifted(posture, self.side, goal_for(self, self.side, self.tuning.goal))
+    def look_again(self) -> ArmPosture:
+        """Where the arm is by now: a forearm that nothing carries slides on while the hand comes (102)."""
+        return watch_arm(self, self.side, period=0.0)
+
+    def _arc(self, posture: ArmPosture, start: np.ndarray) -> Arc:
+        """From where the arm is held (3,) to where it is brought; held beyond the elbow, it is straightened as well."""
+        goal = goal_for(self, self.side, self.tuning.goal)
+        shoulder, reach = posture.points_in_map[0], None
+        if goal.grip_coordinate > ELBOW:
+            straight = goal.straight * ArmPath.of(posture).distance(0.0, goal.grip_coordinate)
+            reach = max(straight, float(np.linalg.norm(start - shoulder)))
+        return Arc(shoulder, start, lifted(posture, self.side, goal), reach=reach)
 
     def _swing(self, posture: ArmPosture) -> Iterator[None]:
         """Follow an arc about the tracked shoulder, a little further on every tick, slower under a heavy arm."""
         tuning, n = self.tuning, SIDES.index(self.hand)
-        arc = Arc(posture.points_in_map[0], hand_now(self, self.hand)[:3, 3], self._goal(posture))
+        arc = self._arc(posture, hand_now(self, self.hand)[:3, 3])
         end = self.now() + tuning.timeout_factor * tuning.duration
         last, swung = self.now(), 0.0
         while swung < arc.angle:
@@ -187,7 +207,7 @@ class LiftArm(Skill):
             give = arc.give_way(load, tangent, step)
             if np.linalg.norm(behind) > tuning.max_lag:
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand is {np.linalg.norm(behind):.2f} m behind")
-            linear = rate * arc.radius * tangent + give + tuning.lag_gain * behind
+            linear = arc.velocity(swung, rate) + give + tuning.lag_gain * behind
             twist = np.append(linear, tuning.turn_share * rate * arc.axis)
             self.world.send(HandTwist(side=self.hand, twist_in_map=twist))
             try:

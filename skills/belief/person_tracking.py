@@ -228,6 +228,24 @@ def take_from_hand(
     return watch_of(skill).arms[side]
 
 
+def swung_to(
+    skill: Skill, side: Side, coordinate: float, place: np.ndarray, *, tuning: PersonTrackingTuning = PERSON_TRACKING
+) -> ArmPosture:
+    """Posture of an arm that has swung about its shoulder, as one place of it was seen closely; the guard is told.
+
+    Args:
+        skill: that has looked.
+        side: of the person.
+        coordinate: arm coordinate of what was seen.
+        place: (3,) of the arm's axis there in the map [m].
+        tuning: what the guard is told.
+    """
+    known = watch_of(skill).arms[side]
+    posture = replace(known, points_in_map=turned_about_shoulder(known.points_in_map, coordinate, place))
+    _keep(skill, side, posture, tuning, moves=True)
+    return posture
+
+
 def visible_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> float:
     """Share of an arm in front of which a picture shows nothing: under cloth, a tracker follows what is not the arm.
 

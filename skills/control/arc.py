@@ -40,16 +40,25 @@ class Arc:
         shoulder: (3,) centre as it was seen [m].
         start: (3,) where the hand holds the arm [m].
         goal: (3,) unit vector from the shoulder to where the hand is to bring the arm.
+        reach: from the shoulder to the hand in the end [m], where the arm is straightened on the way; None to keep it.
         tuning: how it gives way.
 
     Attributes:
-        radius: of the circle [m].
+        radius: of the circle where it starts [m].
         angle: from start to goal [rad].
         axis: (3,) unit vector about which the arm turns.
         offset: (3,) how far the hand has given way so far [m].
     """
 
-    def __init__(self, shoulder: np.ndarray, start: np.ndarray, goal: np.ndarray, *, tuning: ArcTuning = ARC) -> None:
+    def __init__(
+        self,
+        shoulder: np.ndarray,
+        start: np.ndarray,
+        goal: np.ndarray,
+        *,
+        reach: float | None = None,
+        tuning: ArcTuning = ARC,
+    ) -> None:
         self._tuning = tuning
         self._shoulder = np.asarray(shoulder, float)
         arm = np.asarray(start, float) - self._shoulder
@@ -59,12 +68,26 @@ class Arc:
         across = np.cross(self._first, goal)
         self.axis = unit(across if np.linalg.norm(across) > 1e-9 else np.cross(self._first, UP))
         self.offset = np.zeros(3)
+        self._growth = 0.0 if reach is None else (reach - self.radius) / max(self.angle, 1e-9)  # [m/rad]
 
     def at(self, swung: float) -> tuple[np.ndarray, np.ndarray]:
-        """Point (3,) [m] of the circle `swung` [rad] from the start, and the unit direction of motion (3,) there."""
+        """Point (3,) [m] of the arc `swung` [rad] from the start, and the unit direction (3,) of the swing there."""
+        arm, tangent = self._directions(swung)
+        return self._shoulder + self._radius_at(swung) * arm, tangent
+
+    def velocity(self, swung: float, rate: float) -> np.ndarray:
+        """Velocity (3,) of the hand on the arc at that place, where it swings on at a `rate` [rad/s] [m/s]."""
+        arm, tangent = self._directions(swung)
+        return rate * self._radius_at(swung) * tangent + rate * self._growth * arm
+
+    def _directions(self, swung: float) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (3,) along the arm and along the swing."""
         onwards = np.cross(self.axis, self._first)
-        point = self._shoulder + self.radius * (np.cos(swung) * self._first + np.sin(swung) * onwards)
-        return point, -np.sin(swung) * self._first + np.cos(swung) * onwards
+        arm = np.cos(swung) * self._first + np.sin(swung) * onwards
+        return arm, -np.sin(swung) * self._first + np.cos(swung) * onwards
+
+    def _radius_at(self, swung: float) -> float:
+        return self.radius + self._growth * swung
 
     def give_way(self, load: np.ndarray, tangent: np.ndarray, step: float) -> np.ndarray:
         """Velocity (3,) [m/s] across the arc under a load (3,) [N]; moves `offset` on by `step` [s] of it."""

@@ -28,6 +28,9 @@ class FingersTuning(Quantities):
     meets: float = quantity(
         2.0, "N", "between fingers that stand open, from which something is between them", "choice: above the noise"
     )
+    met_something: float = quantity(
+        0.012, "m", "of fingers that close slowly behind where they should be", "choice: a few ticks of their way"
+    )
     rest_change: float = quantity(
         0.0005, "m", "from tick to tick below which the fingers rest", "choice: a few per cent of their speed"
     )
@@ -74,6 +77,7 @@ def close_gripper(
     *,
     opening: float = 0.0,
     force: float = FINGERS.grip_force,
+    speed: float = float("inf"),
     timeout: float = FINGERS.timeout,
     tuning: FingersTuning = FINGERS,
 ) -> Generator[None, None, float]:
@@ -84,7 +88,9 @@ def close_gripper(
         side: which hand.
         opening: where to stop at the latest [m].
         force: greatest squeezing force [N].
-        timeout: when to give up [s].
+        speed: at which the gap shrinks until it meets something, as fast as they go by default [m/s]: what lies loosely
+            between the fingers is then brought to their middle, not hit by one of them.
+        timeout: when to give up, from when they have met something [s].
         tuning: when the fingers move, and when they rest.
 
     Returns:
@@ -96,6 +102,9 @@ def close_gripper(
     """
     n = SIDES.index(side)
     before = start = float(skill.world.observe().gripper_opening[n])
+    if speed < float("inf"):
+        yield from _narrow(skill, side, opening, force, speed, tuning)
+        before = float(skill.world.observe().gripper_opening[n])
     skill.world.send(GripperOpening(side=side, opening=opening, force_limit=force))
     end, calm, moved, felt = skill.now() + timeout, 0, False, 0.0
     while calm < tuning.rest_ticks:
@@ -112,3 +121,17 @@ def close_gripper(
         calm = calm + 1 if abs(gap - before) < tuning.rest_change and moved else 0
         before = gap
     return before
+
+
+def _narrow(
+    skill: Skill, side: Side, opening: float, force: float, speed: float, tuning: FingersTuning
+) -> Iterator[None]:
+    """Close the fingers slowly to `opening` [m], or until they lag behind what they are told."""
+    n = SIDES.index(side)
+    wanted, last = float(skill.world.observe().gripper_opening[n]), skill.now()
+    while wanted > opening:
+        wanted, last = max(wanted - speed * (skill.now() - last), opening), skill.now()
+        skill.world.send(GripperOpening(side=side, opening=wanted, force_limit=force))
+        yield
+        if float(skill.world.observe().gripper_opening[n]) > wanted + tuning.met_something:
+            return

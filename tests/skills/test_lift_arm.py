@@ -9,7 +9,7 @@ from caretree.skills.belief.short_gown import short_gown
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
 from caretree.skills.geometry.stances import HEADWARD, outwards
-from caretree.skills.lift_arm import LiftArm, LiftGoal, lifted
+from caretree.skills.lift_arm import LiftArm, LiftArmTuning, LiftGoal, lifted
 from caretree.skills.scripted.scripted_person import lying_posture
 
 from .bench import ARM, LeafBench, beside_bed, pulls
@@ -18,7 +18,7 @@ LIES = lying_posture("right")
 SHOULDER, ELBOW = LIES.points_in_map[:2]
 
 
-def bench(*, weight=2.0, aside=0.0, between=ARM, arm=LIES, each_tick=lambda bench: None):
+def bench(*, weight=2.0, aside=0.0, between=ARM, arm=LIES, each_tick=lambda bench: None, **ports):
     """The left hand is to lift the right arm; held, that pulls with `weight` down and `aside` to the body [N]."""
 
     def hangs(bench):
@@ -27,7 +27,7 @@ def bench(*, weight=2.0, aside=0.0, between=ARM, arm=LIES, each_tick=lambda benc
         each_tick(bench)
 
     run = LeafBench(
-        lambda context: LiftArm("lift", context, side="right", hand="left"),
+        lambda context: LiftArm("lift", context, side="right", hand="left", **ports),
         beside_bed(arm=arm, relocalised_arm=arm),
         each_tick=hangs,
     )
@@ -70,6 +70,25 @@ def test_an_arm_beside_the_body_is_spread_unless_the_gown_does_not_reach_so_far(
     way = swing(run)
     assert np.arctan2(way[0, 0], way[0, 1]) == pytest.approx(0.51, abs=0.05)  # [rad]
     assert np.arctan2(way[-1, 0], way[-1, 1]) == pytest.approx(spread, abs=0.05)  # [rad]
+
+
+def test_a_forearm_is_taken_where_it_lies_by_then_and_a_bent_arm_straightened():
+    forearm = np.linalg.norm(LIES.points_in_map[2] - ELBOW)
+    bent = LIES.points_in_map.copy()
+    bent[2:] += ELBOW + forearm * np.array((-0.6, 0.8, 0.0)) - bent[2]  # inwards from the elbow on
+    slid = bent + np.array((0.0, 0.03, 0.0)) * np.array((0, 1, 1, 1))[:, None]
+
+    def slides(frame, side, **_):  # while the hand comes
+        return replace(LIES, points_in_map=slid if frame.stamp > 1.0 else bent)
+
+    tuning = LiftArmTuning(goal=LiftGoal(grip_coordinate=1.7, pitch=np.deg2rad(5.0)))
+    run = bench(arm=slides, tuning=tuning)
+    assert run.ended() is None
+    way = swing(run)
+    assert way[0] == pytest.approx(slid[1] + 0.7 * (slid[2] - slid[1]) - SHOULDER, abs=0.015)
+    length, reach = np.linalg.norm(slid[1] - SHOULDER) + 0.7 * forearm, np.linalg.norm(way, axis=1)
+    assert reach[0] < 0.95 * length
+    assert reach[-1] == pytest.approx(0.99 * length, abs=0.01)
 
 
 def test_it_takes_its_time():

@@ -12,6 +12,7 @@ from caretree.skills.belief.person_tracking import (
     doubt_arms,
     head_view,
     see_person,
+    swung_to,
     visible_share,
     watch_arm,
     watch_of,
@@ -122,6 +123,22 @@ def test_an_arm_that_is_seen_less_well_where_it_was_known_well_has_stayed(off, d
     watch_arm(skill, "right", period=0.0)
     again = watch_arm(skill, "right", period=0.0)
     np.testing.assert_array_equal(again.points_in_map, there.points_in_map if stays else aside)
+
+
+def test_an_arm_whose_wrist_was_seen_closely_has_swung_about_its_shoulder():
+    there = lying_posture("right")
+    skill, _ = make(lambda frame, side: there)
+    watch_arm(skill, "right", period=0.0)
+    arm = there.points_in_map[2] - there.points_in_map[0]
+    across = np.cross(arm, (0.0, 0.0, 1.0))
+    wrist = there.points_in_map[2] + 0.04 * across / np.linalg.norm(across)
+    swung = swung_to(skill, "right", 2.0, wrist).points_in_map
+    np.testing.assert_array_equal(swung[0], there.points_in_map[0])
+    assert np.linalg.norm(wrist - swung[2]) < 0.005, "as near as an arm of its length comes [m]"
+    assert np.linalg.norm(swung[3] - there.points_in_map[3]) > 0.04
+    assert watch_of(skill).arms["right"].points_in_map is swung
+    zone = skill.context.guard.zone
+    assert zone.distance(swung[3])[0] == 0.0 < zone.distance(there.points_in_map[3])[0], "the guard knows"
 
 
 def test_an_arm_that_is_found_elsewhere_is_taken_to_be_there():

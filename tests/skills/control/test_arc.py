@@ -34,3 +34,20 @@ def test_weight_along_the_arc_is_borne_and_a_pull_across_it_is_given_way_to():
     for _ in range(1000):
         arc.give_way(100.0 * inwards, tangent, 0.1)
     assert np.linalg.norm(arc.offset) <= 0.08 + 1e-9
+
+
+def test_a_bent_arm_is_straightened_on_the_way():
+    bent, straight = np.linalg.norm(ELBOW - SHOULDER), 0.5
+    arc = Arc(SHOULDER, ELBOW, GOAL, reach=straight)
+    np.testing.assert_allclose(arc.at(0.0)[0], ELBOW, atol=1e-12)
+    np.testing.assert_allclose(arc.at(arc.angle)[0], SHOULDER + straight * GOAL, atol=1e-12)
+    half = 0.5 * arc.angle
+    assert np.linalg.norm(arc.at(half)[0] - SHOULDER) == pytest.approx(0.5 * (bent + straight))
+    step = 1e-6
+    moved = (arc.at(half + step)[0] - arc.at(half)[0]) / step
+    np.testing.assert_allclose(arc.velocity(half, rate=0.3), 0.3 * moved, atol=1e-5)
+
+
+def test_a_straight_arm_keeps_its_circle():
+    arc = Arc(SHOULDER, ELBOW, GOAL)
+    np.testing.assert_allclose(arc.velocity(0.2, rate=0.3), 0.3 * arc.radius * arc.at(0.2)[1])

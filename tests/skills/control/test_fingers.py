@@ -20,6 +20,22 @@ def test_closing_tells_what_is_between_the_fingers():
     assert world.observe().gripper_opening[1] == pytest.approx(0.06, abs=0.005)
 
 
+def test_fingers_that_close_slowly_take_their_time_until_they_meet_something():
+    world, context = robot()
+    world.between_fingers["left"] = 0.05
+    gaps = []
+    carry_out(world, context, lambda skill: open_gripper(skill, "left", 0.09))
+    skill = carry_out(
+        world,
+        context,
+        lambda skill: close_gripper(skill, "left", speed=0.03),
+        each_tick=lambda skill: gaps.append(float(world.observe().gripper_opening[0])),
+    )
+    assert skill.result == pytest.approx(0.05, abs=1e-3)
+    assert -np.diff(gaps).min() * 15 < 0.04  # [m/s]
+    assert world._opening_goal[0] == 0.0, "they squeeze in the end"
+
+
 @pytest.mark.parametrize("motion", [close_gripper, open_gripper])
 def test_fingers_that_do_not_obey_are_told(motion):
     world, context = robot(deaf_to=GripperOpening)

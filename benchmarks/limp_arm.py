@@ -1,0 +1,144 @@
+"""How far a sleeve comes up an arm that falls: a task of its own for trials, and what its records say.
+
+    caretree run benchmarks/limp_arm.py --stage limp --seed 101 --world-kind easy+falling_arms --out DIR
+    python benchmarks/limp_arm.py DIR...
+
+Nobody lifts such an arm by its elbow within 30 N.  It is slid out straight until its hand lies beyond the edge of the
+bed, where nothing pins what is drawn over it; the hand of the robot that is nearer to the head draws the sleeve up to
+the elbow, the other one then raises the wrist, which is bare beyond the cuff, and the sleeve is drawn on past the
+elbow.  Nothing swaps hands, and the strap is never let go of.  What it came to: docs/dressing-findings.md.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from caretree.perception.estimates import ArmPosture
+from caretree.perception.person.skin import skin_on_bed
+from caretree.sim.world import Side
+from caretree.skills.belief.person_tracking import swung_to, watch_arm
+from caretree.skills.control.lowering import LoweringTuning
+from caretree.skills.control.take_arm import TakeArmTuning
+from caretree.skills.core.context import Context
+from caretree.skills.core.scope import Scope
+from caretree.skills.geometry.arm_path import UP, ArmPath
+from caretree.skills.geometry.stances import LIFTING, PULLING, outwards, stance
+from caretree.skills.grasp_sleeve import GraspSleeve
+from caretree.skills.lift_arm import LiftArm, LiftArmTuning, LiftGoal
+from caretree.skills.look_at_person import LookAtPerson
+from caretree.skills.look_for_sleeve import LookForSleeve
+from caretree.skills.navigate import Navigate
+from caretree.skills.present_sleeve import PresentSleeve
+from caretree.skills.pull_along_arm import PullAlongArm
+from caretree.skills.release_arm import ReleaseArm, ReleaseArmTuning
+from caretree.skills.retreat import Retreat
+from caretree.trees.nodes.composers import fallback, sequence
+from caretree.trees.nodes.decorators import FailSafe, Stage, timed_stage
+from caretree.trees.run.stages import TaskStage
+from caretree.trees.tasks.dressing import senses as senses
+from caretree.trees.tasks.dressing.arm import arm_in_view, back_off
+from caretree.trees.tasks.dressing.safe import make_safe
+from py_trees.behaviour import Behaviour
+
+SIDE: Side = "right"
+GENTLE = TakeArmTuning(closing_speed=0.03)
+SLIDE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=1.8, pitch=np.deg2rad(5.0), spread=0.6))
+RAISE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=2.4, pitch=np.deg2rad(8.0), spread=0.3))
+OVER_THE_EDGE = ReleaseArmTuning(lowering=LoweringTuning(edge=-0.4))
+STRAP_STANDS = ((1.1, 0.6), (1.1, 0.45), (1.2, 0.5))  # x and y of the base for a right arm, tried in turn [m]
+WRIST_STAND = (1.15, -0.15)
+WRIST_RADIUS, NEAR, ALONG = 0.03, 0.08, 0.03  # [m]; the last two bound the skin that is a wrist's ...
+LEAST = 30  # ... of which at least so many points show
+
+
+class LiftWrist(LiftArm):
+    """Looks at the wrist with the hand's own camera: robot and gown hide it from the head's by then."""
+
+    def look_again(self) -> ArmPosture:
+        """The arm swung to where its wrist shows; where little skin shows, as it was taken to be."""
+        posture, grip = watch_arm(self, self.side, period=0.0), self.tuning.goal.grip_coordinate
+        path = ArmPath.of(posture)
+        place, along = path.point(grip), path.direction(grip)
+        points, _ = skin_on_bed(self.world.look(f"{self.hand}_hand"), self.world.room.bed, inner=True)
+        away = points - place
+        aside = away - np.outer(away @ along, along)
+        away = away[(np.abs(away @ along) < ALONG) & (np.linalg.norm(aside, axis=1) < NEAR)]
+        if len(away) < LEAST:
+            return posture
+        across = np.cross(along, UP)
+        middle = np.percentile(away @ across, (5, 95)).mean() * across
+        return swung_to(self, self.side, grip, place + middle + (np.percentile(away[:, 2], 90) - WRIST_RADIUS) * UP)
+
+
+def limp(context: Context) -> Stage:
+    """One arm into its sleeve as far as it goes, begun with the gown on the legs."""
+    head, foot = LIFTING[SIDE], PULLING[SIDE]
+    arm = Scope(context, f"{SIDE} arm", keys=("grip",), side=SIDE)
+    slid, held = Scope(arm, keys=("hold",)), Scope(arm, "wrist", keys=("hold",))
+
+    def strap_from(x: float, y: float) -> Behaviour:
+        here = Scope(arm, f"at {y}")
+        return sequence(
+            f"the strap from {x}, {y}",
+            back_off("free", here),
+            Navigate("go", here, goal=at(x, y)),
+            LookAtPerson("look", here),
+            LookForSleeve("look for it", here, hand=head),
+            GraspSleeve("grasp", here, hand=head),
+        )
+
+    def lower(name: str, scope: Scope, hand: Side) -> ReleaseArm:
+        return ReleaseArm(name, scope, hand=hand, lower=True, ready="if possible", tuning=OVER_THE_EDGE)
+
+    return timed_stage(
+        "limp",
+        Retreat("bring the arms back", arm, hand_distance=0.05),
+        Navigate("go to its side", arm, goal=f"bed_{SIDE}"),
+        Navigate("come to it", arm, goal=stance(SIDE, "lift")),
+        arm_in_view(arm),
+        LiftArm("slide it out", slid, hand=head, tuning=SLIDE),
+        lower("leave it there", arm, head),
+        fallback("the strap", *(strap_from(*stand) for stand in STRAP_STANDS)),
+        PresentSleeve("present", arm, max_load=4.0),
+        PullAlongArm("to the elbow", arm, grip_goal=0.98, stand=at(*WRIST_STAND)),
+        LookAtPerson("look at the hand", arm),
+        LiftWrist("raise it", held, hand=foot, tuning=RAISE),
+        PullAlongArm("past the elbow", held, grip_goal=0.15, max_load=4.2),
+        lower("lower it", held, foot),
+        back_off("back off", arm, 0.25),
+        seconds=400.0,
+    )
+
+
+def at(x: float, y: float) -> np.ndarray:
+    """Base pose (3,) at `x` and `y` of a right arm's side, mirrored for a left one, facing the bed [m, m, rad]."""
+    return np.array((x * outwards(SIDE)[0], y, np.pi if SIDE == "right" else 0.0))
+
+
+STAGES = {"limp": TaskStage(limp, begins="gown_on_person")}
+
+
+def build(context: Context, stages: tuple[str, ...] = tuple(STAGES)) -> Behaviour:
+    """The stage, and what is owed to the person where it fails."""
+    body = sequence("limp arm", *(STAGES[stage].build(context) for stage in stages))
+    return FailSafe("safely", body, make_safe(context))
+
+
+def furthest(record: Path) -> tuple[float, float]:
+    """How far up the upper arm the middle of the armhole came, and when [s]; 0 is the elbow, 1 the shoulder."""
+    with np.load(record / "truth.npz") as truth:
+        shoulder, elbow = truth["arms"][:, 1, 0], truth["arms"][:, 1, 1]
+        armhole = truth["vertices"][:, truth[f"loop_armhole_{SIDE}"]].mean(axis=1)
+        times = truth["t"]
+    upper = shoulder - elbow
+    up = np.einsum("ij,ij->i", armhole - elbow, upper) / np.einsum("ij,ij->i", upper, upper)
+    beside = np.linalg.norm(armhole - elbow - up[:, None] * upper, axis=1)
+    best = int(np.argmax(np.where(beside < NEAR, up, -np.inf)))
+    return float(up[best]), float(times[best])
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        print(name, "armhole at most {:.2f} up the upper arm, at {:.1f} s".format(*furthest(Path(name))))
