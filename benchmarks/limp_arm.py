@@ -106,6 +106,7 @@ def limp(context: Context) -> Stage:
         LookAtPerson("look at the hand", arm),
         LiftWrist("raise it", held, hand=foot, tuning=RAISE),
         PullAlongArm("past the elbow", held, grip_goal=0.15, max_load=4.2),
+        Retreat("let the strap go", arm, hands=head, ready="never"),
         lower("lower it", held, foot),
         back_off("back off", arm, 0.25),
         seconds=400.0,
