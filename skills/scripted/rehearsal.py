@@ -42,7 +42,8 @@ class RehearsalTuning(Quantities):
         3.0,
         "Hz",
         "ticks a second that suffice where nobody injects faults",
-        "measured: shipped tasks end alike from 2.5 to 15, and at 1.9 miss time limits",
+        "measured: shipped tasks end alike from 3 to 15; at 2.6 pulls that wait count as stalled, at 1.9 time limits "
+        "are missed",
     )
     steps: int = quantity(4, "1", "of the integration from tick to tick, at most", "choice: as at the usual 15 ticks")
     twist_steps: int = quantity(
