@@ -12,18 +12,25 @@ elbow.  Nothing swaps hands, and the strap is never let go of.  What it came to:
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from caretree.perception.estimates import ArmPosture
 from caretree.perception.person.skin import skin_on_bed
-from caretree.sim.world import Side
+from caretree.sim.world import SIDES, HandTwist, Side
 from caretree.skills.belief.person_tracking import swung_to, watch_arm
+from caretree.skills.control.arm_grip import lost_arm
+from caretree.skills.control.hands import hand_now
 from caretree.skills.control.lowering import LoweringTuning
 from caretree.skills.control.take_arm import TakeArmTuning
 from caretree.skills.core.context import Context
+from caretree.skills.core.ports import Input
+from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.core.scope import Scope
+from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.arm_path import UP, ArmPath
+from caretree.skills.geometry.hold import Hold
 from caretree.skills.geometry.stances import LIFTING, PULLING, outwards, stance
 from caretree.skills.grasp_sleeve import GraspSleeve
 from caretree.skills.lift_arm import LiftArm, LiftArmTuning, LiftGoal
@@ -72,6 +79,28 @@ class LiftWrist(LiftArm):
         return swung_to(self, self.side, grip, place + middle + (np.percentile(away[:, 2], 90) - WRIST_RADIUS) * UP)
 
 
+class RaiseWrist(Skill):
+    """Raises a wrist that a hand holds, straight up, no harder than an arm may be held."""
+
+    hold = Input(Hold, doc="the hand that holds the arm")
+    height = Input(float, unit="m", default=0.1, doc="of the way")
+    reasons = (Reason.ARM_SLIPPED,)
+
+    def steps(self) -> Iterator[None]:
+        """Up, slower under a heavy arm, until the way or the time is over."""
+        n, end = SIDES.index(self.hold.hand), self.now() + 15.0
+        goal = hand_now(self, self.hold.hand)[2, 3] + self.height
+        load = 0.0
+        while hand_now(self, self.hold.hand)[2, 3] < goal and self.now() < end:
+            if lost_arm(self, self.hold.hand):
+                raise SkillFailure(Reason.ARM_SLIPPED, "on the way up")
+            load = float(np.linalg.norm(self.world.observe().wrench_hand_in_map[n, :3]))
+            up = 0.02 * float(np.clip((27.0 - load) / 8.0, 0.0, 1.0)) * UP
+            self.world.send(HandTwist(side=self.hold.hand, twist_in_map=np.append(up, np.zeros(3))))
+            yield
+        self.note(f"{load:.0f} N at the top")
+
+
 def limp(context: Context) -> Stage:
     """One arm into its sleeve as far as it goes, begun with the gown on the legs."""
     head, foot = LIFTING[SIDE], PULLING[SIDE]
@@ -106,7 +135,8 @@ def limp(context: Context) -> Stage:
         LookAtPerson("look at the hand", arm),
         LiftWrist("raise it", held, hand=foot, tuning=RAISE),
         PullAlongArm("past the elbow", held, grip_goal=0.15, max_load=4.2),
-        Retreat("let the strap go", arm, hands=head, ready="never"),
+        RaiseWrist("raise it on", held),
+        PullAlongArm("to the shoulder", held, grip_goal=-0.45, armhole_goal=-0.25, max_load=4.2),
         lower("lower it", held, foot),
         back_off("back off", arm, 0.25),
         seconds=400.0,

@@ -196,7 +196,7 @@ def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: Low
         turn = tuning.turn_gain * np.cross(pose[:3, 2], -UP)
         turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
         skill.world.send(HandTwist(side=hand, twist_in_map=np.append(linear, turn)), retreat=True)
-        _bring_cloth(skill, hand, down, tuning)
+        _bring_cloth(skill, hand, held, down, tuning)
         yield
 
 
@@ -249,16 +249,40 @@ def _carried(
     raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stands {height:.2f} m above the mattress")
 
 
-def _bring_cloth(skill: Skill, hand: Side, down: np.ndarray, tuning: LoweringTuning) -> None:
+def _bring_cloth(
+    skill: Skill, hand: Side, held: tuple[Side, Hold] | None, down: np.ndarray, tuning: LoweringTuning
+) -> None:
     """A hand that holds cloth on the arm goes `down` (3,) with it [m/s], and follows what pulls at it.
 
-    Left where it is, the hand that lowers the arm would have to pass through it.
+    Left where it is, the hand that lowers the arm would have to pass through it.  Nearer to the shoulder the arm comes
+    down by less: there a hand that went down as fast as the wrist pressed the upper arm with 27 to 32 N (101, 102).
     """
     other: Side = SIDES[1 - SIDES.index(hand)]
     load = cloth_load(skill, other)
-    velocity = down if skill.context.guard.grip(other) == "cloth" else np.zeros(3)
+    holds_cloth = skill.context.guard.grip(other) == "cloth"
+    velocity = share_of_way(skill, hand, other, held) * down if holds_cloth else np.zeros(3)
     over = float(np.linalg.norm(load)) - tuning.cloth_load
     if over > 0.0:
         velocity = velocity + min(tuning.cloth_compliance * over, tuning.cloth_speed) * unit(load)
     if velocity.any():
         skill.world.send(HandTwist(side=other, twist_in_map=np.append(velocity, np.zeros(3))), retreat=True)
+
+
+def share_of_way(skill: Skill, hand: Side, other: Side, held: tuple[Side, Hold] | None) -> float:
+    """How far an arm comes down where the other hand is, as a share of the way of the hand that lowers it.
+
+    Args:
+        skill: that lowers.
+        hand: of the robot that holds the arm.
+        other: hand of the robot.
+        held: which arm it holds where, None where that is not known.
+
+    Returns:
+        0 at the shoulder, 1 at the hand and beyond it, and where the arm is not known.
+    """
+    posture = None if held is None else posture_in_hand(skill, *held)
+    if posture is None:
+        return 1.0
+    shoulder = posture.points_in_map[0]
+    arm, cloth = (hand_now(skill, each)[:3, 3] - shoulder for each in (hand, other))
+    return float(np.clip(cloth @ arm / max(float(arm @ arm), 1e-9), 0.0, 1.0))

@@ -9,14 +9,14 @@ from caretree.perception.image.cloud import unit
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.skills.belief.person_tracking import Watch, doubt_arms, posture_in_hand
 from caretree.skills.control.arm_grip import over_arm
-from caretree.skills.control.lowering import LOWERING, held_arm, lies, lower_arm, resting_place
+from caretree.skills.control.lowering import LOWERING, held_arm, lies, lower_arm, resting_place, share_of_way
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.hold import Hold
 from caretree.skills.geometry.stances import HEADWARD, outwards
 from caretree.skills.scripted.scripted_person import lying_posture
 
-from ..bench import beside_bed
+from ..bench import above_arm, beside_bed
 from ..moving import idle
 
 
@@ -111,3 +111,14 @@ def test_what_is_known_of_an_arm_follows_a_hand_that_could_not_lower_it(doubted)
     assert failed.value.reason == Reason.TIMEOUT
     known = (watch.before if doubted else watch.arms)["right"]
     assert np.linalg.norm(ArmPath.of(known).point(1.3) - hand[:3, 3]) < 0.02
+
+
+@pytest.mark.parametrize(("coordinate", "share"), [(0.1, 0.1), (0.5, 0.5), (1.0, 1.0), (1.8, 1.0)])
+def test_cloth_nearer_to_the_shoulder_comes_down_by_less_as_the_arm_does(coordinate, share):
+    """As fast as the wrist, the hand with the strap pressed the upper arm with 32 N (102)."""
+    posture = lying_posture("right")
+    asks = skill(arm=posture, hands={"left": over_arm(posture, 1.0, 0.0), "right": above_arm(coordinate, 0.2)})
+    assert share_of_way(asks, "left", "right", ("right", Hold("left", 1.0))) == 1.0, "nobody knows of the arm"
+    asks.context.memory.of(Watch, Watch).arms["right"] = posture
+    assert share_of_way(asks, "left", "right", None) == 1.0
+    assert share_of_way(asks, "left", "right", ("right", Hold("left", 1.0))) == pytest.approx(share, abs=0.15)
