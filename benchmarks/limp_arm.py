@@ -157,19 +157,17 @@ def build(context: Context, stages: tuple[str, ...] = tuple(STAGES)) -> Behaviou
     return FailSafe("safely", body, make_safe(context))
 
 
-def furthest(record: Path) -> tuple[float, float]:
-    """How far up the upper arm the middle of the armhole came, and when [s]; 0 is the elbow, 1 the shoulder."""
+def armhole_up(record: Path) -> np.ndarray:
+    """How far up the upper arm the middle of the armhole is in each frame (T,): 0 elbow, 1 shoulder, nan beside it."""
     with np.load(record / "truth.npz") as truth:
         shoulder, elbow = truth["arms"][:, 1, 0], truth["arms"][:, 1, 1]
         armhole = truth["vertices"][:, truth[f"loop_armhole_{SIDE}"]].mean(axis=1)
-        times = truth["t"]
     upper = shoulder - elbow
     up = np.einsum("ij,ij->i", armhole - elbow, upper) / np.einsum("ij,ij->i", upper, upper)
-    beside = np.linalg.norm(armhole - elbow - up[:, None] * upper, axis=1)
-    best = int(np.argmax(np.where(beside < NEAR, up, -np.inf)))
-    return float(up[best]), float(times[best])
+    return np.where(np.linalg.norm(armhole - elbow - up[:, None] * upper, axis=1) < NEAR, up, np.nan)
 
 
 if __name__ == "__main__":
     for name in sys.argv[1:]:
-        print(name, "armhole at most {:.2f} up the upper arm, at {:.1f} s".format(*furthest(Path(name))))
+        up = armhole_up(Path(name))
+        print(f"{name}: the armhole at most {np.nanmax(up):.2f} up the upper arm, {up[-1]:.2f} in the end")

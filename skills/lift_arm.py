@@ -203,11 +203,11 @@ class LiftArm(Skill):
             behind = wanted + arc.offset - seen.pose_hand_in_map[n, :3, 3]
             ease *= np.clip(2.0 - np.linalg.norm(behind) / tuning.full_speed_lag, 0.0, 1.0)
             rate = arc.angle / tuning.duration * float(ease) * self._ramp(swung, arc.angle)
-            swung += rate * step
+            onwards, swung = arc.velocity(swung, rate), swung + rate * step
             give = arc.give_way(load, tangent, step)
             if np.linalg.norm(behind) > tuning.max_lag:
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand is {np.linalg.norm(behind):.2f} m behind")
-            linear = arc.velocity(swung, rate) + give + tuning.lag_gain * behind
+            linear = onwards + give + tuning.lag_gain * behind
             twist = np.append(linear, tuning.turn_share * rate * arc.axis)
             self.world.send(HandTwist(side=self.hand, twist_in_map=twist))
             try:
