@@ -31,7 +31,7 @@ from caretree.skills.core.scope import Scope
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.arm_path import UP, ArmPath
 from caretree.skills.geometry.hold import Hold
-from caretree.skills.geometry.stances import LIFTING, PULLING, outwards, stance
+from caretree.skills.geometry.stances import LIFTING, PULLING, outwards
 from caretree.skills.grasp_sleeve import GraspSleeve
 from caretree.skills.lift_arm import LiftArm, LiftArmTuning, LiftGoal
 from caretree.skills.look_at_person import LookAtPerson
@@ -54,6 +54,7 @@ GENTLE = TakeArmTuning(closing_speed=0.03)
 SLIDE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=1.8, pitch=np.deg2rad(5.0), spread=0.6))
 RAISE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=2.4, pitch=np.deg2rad(8.0), spread=0.3))
 OVER_THE_EDGE = ReleaseArmTuning(lowering=LoweringTuning(edge=-0.4))
+ARM_STAND = (1.05, -0.30)
 STRAP_STANDS = ((1.1, 0.6), (1.1, 0.45), (1.2, 0.5))  # x and y of the base for a right arm, tried in turn [m]
 WRIST_STAND = (1.15, -0.15)
 WRIST_RADIUS, NEAR, ALONG = 0.03, 0.08, 0.03  # [m]; the last two bound the skin that is a wrist's ...
@@ -125,7 +126,7 @@ def limp(context: Context) -> Stage:
         "limp",
         Retreat("bring the arms back", arm, hand_distance=0.05),
         Navigate("go to its side", arm, goal=f"bed_{SIDE}"),
-        Navigate("come to it", arm, goal=stance(SIDE, "lift")),
+        Navigate("come to it", arm, goal=at(*ARM_STAND)),
         arm_in_view(arm),
         LiftArm("slide it out", slid, hand=head, tuning=SLIDE),
         lower("leave it there", arm, head),
