@@ -51,7 +51,7 @@ from py_trees.behaviour import Behaviour
 
 SIDE: Side = "right"
 GENTLE = TakeArmTuning(closing_speed=0.03)
-SLIDE = LiftArmTuning(take=GENTLE, duration=10.0, goal=LiftGoal(grip_coordinate=1.8, pitch=np.deg2rad(5.0), spread=0.6))
+SLIDE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=1.8, pitch=np.deg2rad(5.0), spread=0.6))
 RAISE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=2.4, pitch=np.deg2rad(8.0), spread=0.3))
 OVER_THE_EDGE = ReleaseArmTuning(lowering=LoweringTuning(edge=-0.4))
 ARM_STAND = (1.05, -0.30)
