@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import importlib.util
 
 from ..commands import run as run
 from ..proof.check import rehearse
@@ -11,5 +12,6 @@ from ..run.task import load_task, task_names
 
 for _name in task_names():
     load_task(_name)
-rehearse(load_task("wash_arm"))  # planners and compiled loops are loaded on first use
+if importlib.util.find_spec("pinocchio"):  # which the core lacks, and the tasks that need no kinematics
+    rehearse(load_task("wash_arm"))  # planners and compiled loops are loaded on first use
 gc.freeze()  # what is never looked at again stays shared with the copies
