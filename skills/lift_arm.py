@@ -23,11 +23,9 @@ from .control.take_arm import TakeArmTuning, close_around
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .geometry.arm_path import UP, ArmPath
+from .geometry.arm_path import ELBOW, UP, ArmPath
 from .geometry.hold import Hold
 from .geometry.stances import HEADWARD, outwards
-
-ELBOW = 1.0  # arm coordinate
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +118,8 @@ class LiftArm(Skill):
     """Takes the upper arm just above the elbow from above and swings it up and outwards about the shoulder.
 
     The hand moves on an arc: a straight line would pull the arm out of its joint.  Elbow and wrist of a person who
-    cannot move keep forearm and hand nearly in line.
+    cannot move keep forearm and hand nearly in line.  Taken beyond the elbow, the arm is looked at again from above it,
+    and straightened on the way.
 
     It fails where the arm is not seen or out of reach, where the fingers close on nothing or lose the arm, where the
     swing is blocked or takes too long, and where the person moves.  When it fails after the fingers have closed, the

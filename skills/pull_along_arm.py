@@ -22,12 +22,10 @@ from .control.pull_law import PullLaw
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
-from .geometry.arm_path import ArmPath
+from .geometry.arm_path import ELBOW, ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
-
-ELBOW = 1.0  # arm coordinate: a pull whose grip ends before it, coming from the hand, ends on the forearm
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,7 +192,7 @@ class PullAlongArm(Skill):
             self._drive(pull, now.seen)
             self.note(f"pulls the {self.grip.arm} sleeve: at {now.coordinate:.2f}, {now.size:.1f} N")
             yield
-        if self.grip_goal > ELBOW:
+        if self.grip_goal > ELBOW:  # the pull ends on the forearm
             yield from self._see_arm_inside(pull.armhole)
 
     def _observe(self, pull: _Pull) -> _Now:

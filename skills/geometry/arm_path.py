@@ -17,6 +17,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross
 
 UP = np.array((0.0, 0.0, 1.0))  # in the map
+ELBOW = 1.0  # arm coordinate
 
 
 @dataclass(frozen=True, kw_only=True)
