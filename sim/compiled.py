@@ -41,6 +41,16 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     return compiled
 
 
+@njit()
+def _itself(value: float) -> float:
+    return value
+
+
+def load() -> None:
+    """Have numba load now what it loads at the first call of any loop: 0.4 s on a busy machine, else within a tick."""
+    _itself(0.0)
+
+
 def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """The sum a * b + c rounded once, for compiled loops: so BLAS adds up, whose results they give to the last bit."""
 

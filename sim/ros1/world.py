@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import threading
 import time as wall
 from dataclasses import replace
 
@@ -28,6 +27,7 @@ from ..world import (
 )
 from .cameras import Cameras, Posture
 from .clock import PACE, SIMULATED, Ros1Clock, RosTime, SteppedRos1Clock, parameter
+from .master_watch import TIMES, UNHURRIED, MasterWatch
 from .motions import Motions
 from .rehearsal import BEGINS_WITH, Rehearsal
 from .room import read_room
@@ -35,8 +35,6 @@ from .ros import ask_master, node, others_have, publisher, ros
 from .senses import Senses
 from .site import DEFAULT, read_site
 
-MASTER_LOOK = 0.1  # [s] between two looks whether the master is there
-MASTER_PATIENCE = 2.0  # [s] that it may take to answer; where nobody is there, the computer says so at once
 ALIVE = 0.05  # [s] of wall time between two signs of life
 
 
@@ -70,9 +68,9 @@ class Ros1World(World):
         # a simulated robot shows its map once the master knows whose time counts: until then `/clock` is not asked for
         self.room: RoomMap = read_room(rospy, self.site, patience)
         self._closed = False
-        self._lost = ""
         self._time = RosTime(rospy, bool(parameter(SIMULATED, False)))
         stepped = parameter(PACE, "wall") == "tree"
+        self._master = MasterWatch(self.stop, UNHURRIED if stepped else TIMES)
         self._senses = Senses(rospy, self.site, self._time.changed)
         self._senses.now = self._time.now
         self._motions = Motions(rospy, self.site, self._senses, self._time.now, at_once=stepped)
@@ -92,8 +90,7 @@ class Ros1World(World):
             if stepped
             else Ros1Clock(self._time, self._origin, self._tell)
         )
-        self._watching = threading.Event()
-        threading.Thread(target=self._watch_master, args=(self._watching,), name="master", daemon=True).start()
+        self._master.begin()
 
     def observe(self) -> Observation:
         """Latest proprioception; raises SensorLost."""
@@ -112,6 +109,8 @@ class Ros1World(World):
     def send(self, command: Command) -> Command:
         """Start a command."""
         self._check()
+        if silent := self._master.silent:
+            raise SensorLost(silent)
         self._tell(self.clock.now())
         if stopped := self._senses.stopped():
             raise EmergencyStop(stopped)
@@ -179,11 +178,10 @@ class Ros1World(World):
 
     def _disconnect(self, *more: Rehearsal) -> None:
         self._closed = True
-        if hasattr(self, "_watching"):
-            self._watching.set()
+        self._master.end()
         self._senses.on_joints = lambda sample: None
         try:
-            ask_master("getPid", patience=MASTER_PATIENCE)
+            ask_master("getPid", patience=TIMES.gone)
         except WorldError:
             return  # each topic would wait for an answer that does not come
         for each in (self._motions, self._senses, self._cameras, self._time, *more):
@@ -211,8 +209,8 @@ class Ros1World(World):
     def _check(self) -> None:
         if self._closed:
             raise WorldError("this world has been closed")
-        if self._lost:
-            raise SensorLost(self._lost)
+        if self._master.lost:
+            raise SensorLost(self._master.lost)
 
     def _posture(self) -> Posture:
         joints = self._senses.joints
@@ -233,14 +231,3 @@ class Ros1World(World):
             step = min(until, max(self._motions.last_step() - self._origin, 0.0))
         self._alive.publish(ros().genpy.Time(0, int((step + self._origin) * 1e9)))
         return step
-
-    def _watch_master(self, ended: threading.Event) -> None:
-        """Without a master nothing new can be connected: the robot is stopped, and its senses count as lost."""
-        while not ended.wait(MASTER_LOOK):
-            try:
-                ask_master("getPid", patience=MASTER_PATIENCE)
-            except WorldError as error:
-                if not self._lost:
-                    self._lost = str(error)
-                with contextlib.suppress(Exception):
-                    self.stop()

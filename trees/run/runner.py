@@ -24,6 +24,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.senses import Senses
+from ...sim.compiled import load
 from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
 from ...sim.fence import fenced, said
@@ -111,6 +112,8 @@ class Run:
         self.world = world
         self.limits = limits
         stepped = isinstance(world.clock, SteppedClock)
+        if not stepped:
+            load()
         self._watchdog = None if stepped else TickWatchdog(world.stop, limits, now=wall)
         self._on_sample = fenced(on_sample or (lambda seen: None), self.lost)
         self.guard = GuardedWorld(
