@@ -24,10 +24,10 @@ class TimedFile(LogFile):
 
     seconds = 0.0
 
-    def write(self, time_: float, messages: Iterable[Message]) -> None:
+    def write(self, time_: float, messages: Iterable[Message], *, at_once: bool = False) -> None:
         """Append messages."""
         began = time.process_time()
-        super().write(time_, messages)
+        super().write(time_, messages, at_once=at_once)
         self.seconds += time.process_time() - began
 
     def close(self) -> None:

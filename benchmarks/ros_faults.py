@@ -155,7 +155,7 @@ def row(name: str, folder: Path, children: dict[str, subprocess.Popen]) -> None:
     run = ["ip", "netns", "exec", NAMESPACE, *run] if what == "network" else run
     children["tree"] = subprocess.Popen(run, stdout=log, stderr=log, env=its)
     ends = time.monotonic() + 90.0
-    while not motion.moving:
+    while not motion.moving and children["tree"].poll() is None:
         time.sleep(0.005)
         assert time.monotonic() < ends, (folder / "said.txt").read_text()
     time.sleep(2.0)

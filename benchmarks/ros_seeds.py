@@ -24,6 +24,7 @@ from caretree.trees.run.task import load_task
 PORT = 11610
 CARETREE = [sys.executable, "-P", "-m", "caretree.trees.cli"]
 PATIENCE = 3600.0  # [s] for one run, on a machine that has much else to do
+TOLD = 2000  # characters of what a robot has said last, where its tree did otherwise
 STARTING = 60.0  # [s] for the master, and for the robot
 
 
@@ -50,11 +51,15 @@ def tree(task: str, seed: int, world: str, folder: Path, *more: str) -> tuple[st
 def through_master(task: str, seed: int, folder: Path) -> tuple[str, list[tuple[str, str]]]:
     """Run it on a robot of its own behind the master."""
     serve = [*CARETREE, "serve-robot", "--task", task, "--seed", str(seed), "--pace", "tree"]
-    robot = subprocess.Popen(serve, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said = folder / "robot.txt"
+    with said.open("w") as file:  # into a pipe that nobody reads it would once write no more, and wait
+        robot = subprocess.Popen(serve, stdout=file, stderr=subprocess.STDOUT)
     try:
-        assert robot.stdout is not None
-        line = robot.stdout.readline()
-        assert "serving" in line, line
+        ends = time.monotonic() + STARTING
+        while "serving" not in said.read_text():
+            assert robot.poll() is None, said.read_text()
+            assert time.monotonic() < ends, "the robot does not come up"
+            time.sleep(0.1)
         senses = ("--senses", "scripted") if load_task(task).script is not None else ()
         return tree(task, seed, "ros1", folder, *senses)
     finally:
@@ -92,12 +97,14 @@ def main(task: str = "wave", first: str = "100", last: str = "119") -> None:
             with tempfile.TemporaryDirectory() as made:
                 began = time.monotonic()
                 here, there = tree(task, seed, "scripted", Path(made)), through_master(task, seed, Path(made))
+                robot = (Path(made) / "robot.txt").read_text()
             alike = here == there
             same += alike
             said = "same" if alike else f"other, {parted(here[1], there[1])}"
             print(
                 f"{task} {seed}: {said}; {here[0]} and {there[0]}, {len(here[1])} and {len(there[1])} ends of nodes, "
                 f"{time.monotonic() - began:.0f} s",
+                *([] if alike else [robot[-TOLD:]]),
                 flush=True,
             )
     finally:

@@ -77,7 +77,7 @@ class LoggedWorld(World):
         frame = self.inner.look(camera)
         if frame.stamp >= self._looked.get(camera, -float("inf")) + PICTURE_PERIOD:
             self._looked[camera] = frame.stamp
-            self._write(frame.stamp, messages.looked(frame))
+            self._write(frame.stamp, messages.looked(frame), at_once=True)  # a picture may be drawn over
         return frame
 
     def send(self, command: Command) -> Command:
@@ -97,9 +97,9 @@ class LoggedWorld(World):
         """Release the inner world."""
         self.inner.close()
 
-    def _write(self, time: float, these: Iterable[messages.Message]) -> None:
+    def _write(self, time: float, these: Iterable[messages.Message], *, at_once: bool = False) -> None:
         if self._file is not None:
-            self._file.write(time, these)
+            self._file.write(time, these, at_once=at_once)
 
 
 class _LoggedWorldWithFaults(LoggedWorld):

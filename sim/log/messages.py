@@ -44,23 +44,38 @@ class Observed:
         joints = [_slots({"name": name, "position": 0, "velocity": 0, "effort": 0}) for name in arms]
         joints += [_slots({"name": name, "position": 0, "effort": 0}) for name in fingers]
         joints += [_slots({"name": name, "position": 0}) for name in placed]
-        self._joints = f'{{"timestamp":{TIME_SLOT},"joints":[{",".join(joints)}]}}'
+        self._joints = _Text(f'{{"timestamp":{TIME_SLOT},"joints":[{",".join(joints)}]}}')
         wrench = {"force": dict.fromkeys("xyz", 0), "torque": dict.fromkeys("xyz", 0)}
         planar = dict.fromkeys(("x", "y", "yaw"), 0)
         rest = _slots({"base_in_map": planar, "twist_in_base": planar, **{f"{side}_hand": wrench for side in SIDES}})
-        self._rest = f'{{"timestamp":{TIME_SLOT},"emergency_stop":%s,{rest[1:]}'
+        self._rest = {
+            pressed: _Text(f'{{"timestamp":{TIME_SLOT},"emergency_stop":{json.dumps(pressed)},{rest[1:]}')
+            for pressed in (False, True)
+        }
 
     def messages(self, seen: Observation) -> Iterator[Message]:
         """The joints, and the rest: base, load on the hands, emergency stop."""
-        time = stamp(seen.time)
-        at = (time["sec"], time["nsec"])
-        arms = np.stack((seen.arm_positions, seen.arm_velocities, seen.arm_efforts), axis=-1)
-        fingers = np.stack((seen.gripper_opening / 2.0, seen.gripper_force), axis=-1)
-        joints = (arms.ravel(), np.repeat(fingers, 2, axis=0).ravel(), (seen.head_pan,), seen.pose_base_in_map)
-        yield "/joint_states", "foxglove.JointStates", self._joints % (*at, *_numbers(joints))
-        rest = (seen.pose_base_in_map, seen.twist_base, seen.wrench_hand_in_map.ravel())
-        pressed = "true" if seen.emergency_stop else "false"
-        yield "/measured", "caretree.Measured", self._rest % (*at, pressed, *_numbers(rest))
+        arms = np.array((seen.arm_positions, seen.arm_velocities, seen.arm_efforts)).reshape(3, -1)
+        fingers = np.array((seen.gripper_opening / 2.0, seen.gripper_force)).repeat(2, axis=1)
+        parts = (arms.T.ravel(), fingers.T.ravel(), (seen.head_pan,), seen.pose_base_in_map)
+        yield "/joint_states", "foxglove.JointStates", self._joints.of(seen.time, np.concatenate(parts))
+        rest = np.concatenate((seen.pose_base_in_map, seen.twist_base, seen.wrench_hand_in_map.ravel()))
+        yield "/measured", "caretree.Measured", self._rest[bool(seen.emergency_stop)].of(seen.time, rest)
+
+
+class _Text:
+    """JSON with slots for numbers, which it knows none of that is not finite: that is null."""
+
+    def __init__(self, text: str) -> None:
+        self._finite, self._any = text.replace("%s", "%.10g"), text
+
+    def of(self, time: float, numbers: np.ndarray) -> str:
+        """It with a time [s] and numbers (n,)."""
+        nanoseconds, values = round(time * 1e9), numbers.tolist()
+        at = (nanoseconds // 10**9, nanoseconds % 10**9)
+        if math.isfinite(sum(values)):
+            return self._finite % (*at, *values)
+        return self._any % (*at, *(f"{value:.10g}" if math.isfinite(value) else "null" for value in values))
 
 
 def looked(frame: Frame) -> Iterator[Message]:
@@ -146,11 +161,6 @@ def _named(names: str, values: list[float]) -> dict[str, float]:
 def _slots(content: dict[str, Any]) -> str:
     """Content as JSON, with a slot for text in the place of every 0."""
     return json.dumps(content, separators=(",", ":")).replace(":0", ":%s")
-
-
-def _numbers(parts: tuple[Any, ...]) -> list[str]:
-    """Numbers as JSON has them, which knows none that is not finite: that is null."""
-    return [f"{value:.10g}" if math.isfinite(value) else "null" for value in np.concatenate(parts).tolist()]
 
 
 def _raw(picture: np.ndarray, encoding: str) -> dict[str, Any]:

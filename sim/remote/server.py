@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ..compiled import load
 from ..scripted.clock import SteppedClock
 from ..world import World, WorldError
 from .messages import VERSION, Connection
@@ -41,6 +42,7 @@ class WorldServer:
         self._world = world
         self._now = now
         self._stepped = isinstance(world.clock, SteppedClock)
+        load()  # else within the first motion, which would leave the tree without an answer
         self._listener = socket.create_server((host, port))
         self.address = "{}:{}".format(*self._listener.getsockname()[:2])
         self._answers: dict[str, Callable[..., Any]] = {name: getattr(world, name) for name in CALLS}

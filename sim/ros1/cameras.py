@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time as wall
 from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any
@@ -15,6 +16,8 @@ from .site import Camera, Site, transform
 
 KEPT = 8  # images of each kind that wait for their fellow
 TOGETHER = 0.02  # [s] between colour and depth of one frame
+LATE = 5.0  # [s] of wall time that is waited for a frame where the robot's time waits too
+LOOK = 0.002  # [s] between two looks whether it has come
 # what a pose of the camera is made of: base pose (3,), arm joints (2, n), head [rad]
 Posture = tuple[np.ndarray, np.ndarray, float]
 
@@ -61,6 +64,12 @@ class Cameras:
             intrinsics=(float(k[0]), float(k[4]), float(k[2]), float(k[5])),
             pose_camera_in_map=pose @ transform(self._site.cameras[camera].xyz, self._site.cameras[camera].rpy),
         )
+
+    def wait(self, camera: str, stamp: float) -> None:
+        """Wait for a frame of that time of the robot's [s] or later; for a moment only, as a camera may be dead."""
+        ends, eye = wall.monotonic() + LATE, self._eyes.get(camera)
+        while eye is not None and (eye.frame is None or eye.frame.stamp < stamp) and wall.monotonic() < ends:
+            wall.sleep(LOOK)
 
     def missing(self) -> list[str]:
         """Cameras of which no whole frame has come."""

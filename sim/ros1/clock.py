@@ -15,6 +15,7 @@ LOOK = 0.01  # [s] between two looks where nobody wakes who waits
 SLOW = 60.0  # [s] of wall time that a simulation may compute
 PACE = "/caretree/pace"  # parameter: `tree` where a simulated robot's time passes only as far as the tree waits
 SIMULATED = "/use_sim_time"
+CAMERA_PERIOD = "/caretree/camera_period"  # parameter: [s] of a simulated robot's time between two images
 
 
 def parameter(name: str, default: Any = None) -> Any:

@@ -22,9 +22,10 @@ from typing import Any, Literal
 import numpy as np
 
 from ..abilities import SupportsFaults, SupportsInitialStates, TakesJointVelocities
+from ..compiled import load
 from ..mechanics.kinematics import kinematics_of
 from ..world import SIDES, BaseVelocity, World, WorldError
-from .clock import PACE, SIMULATED
+from .clock import CAMERA_PERIOD, PACE, SIMULATED
 from .messages import message
 from .rehearsal import BEGIN_ANEW, BEGINS_WITH, BEGUN, GRIP_SLIP, PERSON_MOVES, PERSON_OFFSET
 from .robot_actions import RobotActions
@@ -79,6 +80,7 @@ class RobotSide:
         begins_with: str = "",
     ) -> None:
         rospy = node("robot", master)
+        load()  # else within the first motion, which would leave the tree without joint states
         world = make()
         if not isinstance(world, TakesJointVelocities):
             world.close()
@@ -94,6 +96,7 @@ class RobotSide:
         self._site = read_site(site)
         rospy.set_param(SIMULATED, True)
         rospy.set_param(PACE, pace)
+        rospy.set_param(CAMERA_PERIOD, 1.0 / camera_rate)
         rospy.set_param(BEGINS_WITH, begins_with or _first_state(world))
         grid, notes = room_messages(world.room)
         rospy.set_param(self._site.room.annotations, notes)

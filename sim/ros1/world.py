@@ -26,7 +26,7 @@ from ..world import (
     WorldError,
 )
 from .cameras import Cameras, Posture
-from .clock import PACE, SIMULATED, Ros1Clock, RosTime, SteppedRos1Clock, parameter
+from .clock import CAMERA_PERIOD, PACE, SIMULATED, Ros1Clock, RosTime, SteppedRos1Clock, parameter
 from .master_watch import TIMES, UNHURRIED, MasterWatch
 from .motions import Motions
 from .rehearsal import BEGINS_WITH, Rehearsal
@@ -35,6 +35,7 @@ from .ros import ask_master, node, others_have, publisher, ros
 from .senses import Senses
 from .site import DEFAULT, read_site
 
+WITHIN = 0.02  # [s] that a simulated robot's image may be late by its own clock
 ALIVE = 0.05  # [s] of wall time between two signs of life
 
 
@@ -70,6 +71,7 @@ class Ros1World(World):
         self._closed = False
         self._time = RosTime(rospy, bool(parameter(SIMULATED, False)))
         stepped = parameter(PACE, "wall") == "tree"
+        self._frames_apart = parameter(CAMERA_PERIOD, np.inf) if stepped else np.inf  # [s]
         self._master = MasterWatch(self.stop, UNHURRIED if stepped else TIMES)
         self._senses = Senses(rospy, self.site, self._time.changed)
         self._senses.now = self._time.now
@@ -103,6 +105,8 @@ class Ros1World(World):
     def look(self, camera: str) -> Frame:
         """Latest frame; raises SensorLost."""
         self._check()
+        # where time waits for the tree it waits for images too: on a busy machine they came seconds later
+        self._cameras.wait(camera, self._time.now() - self._frames_apart - WITHIN)
         frame = self._cameras.look(camera)
         return replace(frame, stamp=min(frame.stamp - self._origin, self.clock.now()))
 

@@ -5,6 +5,7 @@ from fractions import Fraction
 import numba
 import numpy as np
 import pytest
+from caretree.sim import compiled
 from caretree.sim.compiled import fma, njit
 
 
@@ -50,3 +51,10 @@ def test_sums_in_compiled_loops_are_rounded_once_a_term():
     assert [add(a, b) for a, b in pairs] == pytest.approx([float(each) for each in exact], abs=1e-15)
     tiny = 2.0**-60
     assert njit()(lambda x: fma(x, x, -1.0))(1.0 + 2.0**-30) == 2.0**-29 + tiny  # rounded once: the last bit stays
+
+
+def test_what_a_first_call_loads_can_be_loaded_before(monkeypatch):
+    fresh = njit()(lambda value: value)
+    monkeypatch.setattr(compiled, "_itself", fresh)
+    compiled.load()
+    assert len(fresh.signatures) == 1

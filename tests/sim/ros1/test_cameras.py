@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from caretree.sim.ros1.cameras import metres, pixels
+from caretree.sim.ros1 import cameras as module
+from caretree.sim.ros1.cameras import LATE, Cameras, metres, pixels
+from caretree.sim.ros1.senses import Sample
 from caretree.sim.world import SensorLost
 
 
@@ -37,3 +39,48 @@ def test_depths_come_in_metres_and_none_is_zero():
     assert np.array_equal(metres(image(depths, "32FC1")), np.array(((0.0, 1.5), (0.0, 0.0)), np.float32))
     with pytest.raises(SensorLost, match="a depth image comes as 8UC1"):
         metres(image(millimetres, "8UC1"))
+
+
+class Wall:
+    """Time passes while somebody sleeps; a frame comes meanwhile."""
+
+    def __init__(self, eye, *frames):
+        self.time, self.eye, self.frames = 0.0, eye, list(frames)
+
+    def monotonic(self):
+        return self.time
+
+    def sleep(self, time):
+        self.time += time
+        if self.frames:
+            self.eye.frame = self.frames.pop(0)
+
+
+@pytest.fixture
+def eye():
+    return SimpleNamespace(frame=Sample(1.0, None))
+
+
+@pytest.fixture
+def looking(eye):
+    cameras = Cameras.__new__(Cameras)
+    cameras._eyes = {"head": eye}
+    return cameras
+
+
+def test_where_time_waits_it_waits_for_an_image(looking, eye, monkeypatch):
+    monkeypatch.setattr(module, "wall", wall := Wall(eye, Sample(1.2, None), Sample(1.4, None), Sample(1.6, None)))
+    looking.wait("head", 1.3)
+    assert eye.frame.stamp == 1.4
+    looking.wait("head", 1.4)
+    assert len(wall.frames) == 1, "what is there is not waited for"
+
+
+def test_a_camera_that_is_dead_is_waited_for_for_a_moment_and_none_at_all_that_there_is_not(looking, eye, monkeypatch):
+    monkeypatch.setattr(module, "wall", wall := Wall(eye))
+    looking.wait("tail", 1.3)
+    assert wall.time == 0.0
+    looking.wait("head", 1.3)
+    assert wall.time == pytest.approx(LATE, abs=0.01)
+    looking.wait("head", -np.inf)
+    assert wall.time == pytest.approx(LATE, abs=0.01)

@@ -11,6 +11,7 @@ from caretree.trees.guard.guard import GuardedWorld
 from caretree.trees.guard.limits import DEFAULT
 from caretree.trees.guard.tick_watchdog import AGAIN, PERIOD, TickWatchdog
 from caretree.trees.nodes.decorators import FailSafe, Stage
+from caretree.trees.run import runner
 from caretree.trees.run.runner import Run
 
 from ..planted import Plan, Release, run_of
@@ -157,3 +158,11 @@ def test_a_simulated_robot_waits_with_its_tree_and_needs_no_watchdog():
     run = run_of(lambda context: Plan("p", context, outcomes=[True]))
     assert isinstance(run, Run)
     assert run._watchdog is None
+
+
+@pytest.mark.parametrize(("world", "times"), [(OnItsOwn, 1), (ScriptedWorld, 0)])
+def test_what_a_first_tick_would_load_is_loaded_before_time_counts(monkeypatch, world, times):
+    loaded = []
+    monkeypatch.setattr(runner, "load", lambda: loaded.append(True))
+    run_of(lambda context: Plan("p", context, outcomes=[True]), world())
+    assert len(loaded) == times
