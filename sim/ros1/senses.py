@@ -16,6 +16,7 @@ from .messages import message
 from .ros import ros
 from .site import Site
 
+UNSTAMPED = 0.2  # [s] that the robot's state may have come before what is measured: three ticks
 KEPT = 200  # samples of odometry, to find the one at the time of a pose in the map
 
 
@@ -90,11 +91,12 @@ class Senses:
 
     @property
     def complete(self) -> float:
-        """Until when everything that has a stamp is measured, and `on_joints` is done [s]."""
+        """Until when everything is measured, and `on_joints` is done [s]; the state, which has no stamp, nearly so."""
         hands = [each[side] for each in (self._fingers, self._wrenches) for side in SIDES if side in each]
-        if len(hands) < 2 * len(SIDES) or not self._odometry:
+        if len(hands) < 2 * len(SIDES) or not self._odometry or self._state is None:
             return -np.inf
-        return min(self.measured, self._odometry[-1].stamp, *(each.stamp for each in hands))
+        state = self._state.stamp + UNSTAMPED  # as it counts in an observation, whose age is limited
+        return min(self.measured, self._odometry[-1].stamp, state, *(each.stamp for each in hands))
 
     def stopped(self) -> str:
         """Why nothing may move, as the robot's state says it; empty where it may."""
