@@ -22,6 +22,8 @@ ALLOWED_SIM = {
     "mechanics",
     "known_robots",
     "scripted",
+    "pregrasp",
+    "onnx_record",
     "faults",
     "fence",
     "freshness",

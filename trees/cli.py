@@ -152,6 +152,13 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
         help="what tells surfaces in a picture: rules on colours, or the network, for any gown and skin (default: "
         "classical)",
     )
+    run.add_argument(
+        "--pregrasp",
+        default="classical",
+        choices=("classical", "learned"),
+        help="what chooses how the other hand takes a gown that hangs from one: rules on colours, or the trained "
+        "policy (default: classical)",
+    )
     run.add_argument("--video", default="on", choices=("on", "off"), help="whether the record has one (default: on)")
     run.add_argument("--unchecked", action="store_true", help="run it although `caretree check` would find faults")
     run.add_argument("--view", action="store_true", help="serve a live 3D view to the browser; prints its address")

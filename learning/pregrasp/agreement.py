@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...sim.errors import CaretreeError
-from .action import Action, hand_path
+from ...sim.pregrasp.action import Action, hand_path
 from .bullet_roll_out import bullet_roll_out
 from .dataset import Dataset
 from .hung_state import hang

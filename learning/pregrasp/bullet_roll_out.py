@@ -9,10 +9,11 @@ import numpy as np
 from ...sim.bullet.cloth import Cloth
 from ...sim.bullet.handle import Handle
 from ...sim.bullet.soft_world import SoftWorld
-from .action import HandPath
+from ...sim.pregrasp.action import HandPath
+from ...sim.pregrasp.numbers import ACTION, ActionNumbers
 from .gowns import mesh_of
 from .hung_state import HungState
-from .numbers import ACTION, HANG, ActionNumbers
+from .numbers import HANG
 from .roll_out import Grasp, grasp_of, waypoints
 
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.errors import CaretreeError
+from ...sim.pregrasp.numbers import DIRECT
 from .dataset import Dataset
-from .oracle import DIRECT
 from .rate import rate_text, signs
 
 
@@ -34,7 +35,13 @@ class Ceiling:
 
 
 def ceiling(data: Dataset) -> Ceiling:
-    """The oracle's successes in the states of a dataset."""
+    """The oracle's successes in the states of a dataset.
+
+    Raises:
+        CaretreeError: too little was tried to tell what is the most that can be reached.
+    """
+    if not data.tells_ceiling:
+        raise CaretreeError(f"oracle {data.oracle} tells no ceiling; make the states with --oracle all or ceiling")
     count, tried = len(data.seeds), data.attempts
 
     def any_of(chosen: np.ndarray) -> np.ndarray:
@@ -65,8 +72,21 @@ def table(data: Dataset) -> str:
     lines = ["| oracle | all states | hard states |", "|---|---|---|"]
     for name, won in rows:
         lines.append(f"| {name} | {rate_text(won)} | {rate_text(won[found.hard])} |")
+    lines += _single(data) if data.oracle == "all" else []
+    sweeps, alone = signs(found.primitives, found.direct), signs(found.all, found.direct_pixels)
+    lines += [
+        "",
+        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g})"
+        + (f", and {alone[0]} at several pixels (p = {alone[2]:.2g})." if pixels > 1 else "."),
+        f"{len(data.seeds)} states, seeds {data.seeds.min()} to {data.seeds.max()}, data {data.digest}.",
+    ]
+    return "\n".join(lines)
+
+
+def _single(data: Dataset) -> list[str]:
+    """What single attempts come to, as lines; where the oracle stopped at success, they are not as they come."""
     tried, success = data.attempts, data.success
-    lines += ["", "| single attempt at the corner's pixel | success |", "|---|---|"]
+    lines = ["", "| single attempt at the corner's pixel | success |", "|---|---|"]
     for k, name in enumerate(("move left", "direct", "move right")):
         lines.append(f"| {name} | {rate_text(success[(tried[:, 1] == 0) & (tried[:, 2] == k)])} |")
     taken, corner = tried[:, 6], tried[:, 7] == 1
@@ -79,11 +99,4 @@ def table(data: Dataset) -> str:
         ("several layers without it", (taken > 1) & ~corner),
     ):
         lines.append(f"| {name} | {' | '.join(rate_text(what[kind]) for kind in kinds)} |")
-    sweeps, alone = signs(found.primitives, found.direct), signs(found.all, found.direct_pixels)
-    lines += [
-        "",
-        f"Sweeps win {sweeps[0]} states that direct grasps lose at the corner's pixel (sign test p = {sweeps[2]:.2g})"
-        + (f", and {alone[0]} at several pixels (p = {alone[2]:.2g})." if pixels > 1 else "."),
-        f"{len(data.seeds)} states, seeds {data.seeds.min()} to {data.seeds.max()}, data {data.digest}.",
-    ]
-    return "\n".join(lines)
+    return lines

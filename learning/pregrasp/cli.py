@@ -11,6 +11,7 @@ from ...sim.errors import CaretreeError
 from ...sim.scene.gown import GOWNS, HELD_OUT_GOWNS
 from ..seeds import span_of_seeds
 from ..shards import add_cluster_options
+from .numbers import ORACLES
 
 
 def parser() -> argparse.ArgumentParser:
@@ -33,6 +34,12 @@ def parser() -> argparse.ArgumentParser:
         default=5,
         help="that the oracle tries in a view (default 5)",
     )
+    data.add_argument(
+        "--oracle",
+        choices=ORACLES,
+        default="all",
+        help="which actions it tries: all, no more than tell the ceiling, some near the corner to train on, or none",
+    )
     add_cluster_options(data)
     train = sub.add_parser("train", help="train the policy and write it as ONNX")
     train.add_argument("data", type=Path, metavar="DATA", help="folder of `data`: its successes are demonstrations")
@@ -41,6 +48,9 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("--trials", type=int, default=1000, metavar="N", help="active trials after them (default 1000)")
     train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
     train.add_argument("--grasp-only", action="store_true", help="ablation: the direct grasp alone")
+    train.add_argument(
+        "--apart", type=Path, metavar="DATA", help="other states, in which it is tried to say how sure it can be"
+    )
     train.add_argument("--no-demonstrations", action="store_true", help="ablation: active trials alone")
     test = sub.add_parser("evaluate", help="ceiling of the oracle, success of a policy, agreement with PyBullet")
     test.add_argument("data", type=Path, metavar="DATA", help="folder of `data` that no training saw")
@@ -72,6 +82,7 @@ def main(argv: list[str]) -> int:
                 gown=options.gown,
                 deep=options.deep,
                 pixels=options.pixels,
+                oracle=options.oracle,
                 jobs=options.jobs,
                 address=options.address,
             )
@@ -97,7 +108,7 @@ def _train(options: argparse.Namespace) -> None:
         grasp_only=options.grasp_only,
         seed=options.seed,
     )
-    print(train(options.data, options.out, plan, _say))
+    print(train(options.data, options.out, plan, _say, options.apart))
 
 
 def _evaluate(options: argparse.Namespace) -> None:
@@ -105,7 +116,7 @@ def _evaluate(options: argparse.Namespace) -> None:
     from .dataset import load_dataset
 
     data = load_dataset(options.data)
-    texts = [table(data)]
+    texts = [table(data)] if data.tells_ceiling else []
     if options.policy:
         from .evaluate import policy_table
 

@@ -17,12 +17,13 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
+from ...sim.pregrasp.views import Views
 from ..shards import each_shard, replace_file, shard_name
-from .hung_state import hang
-from .oracle import PIXELS, Attempt, try_all
-from .views import Views, photograph
+from .hung_state import HungState, hang
+from .oracle import PIXELS, Attempt, try_all, try_drawn, try_until
+from .photograph import photograph
 
-FORMAT = "caretree-pregrasp-2"  # 2: fingers meet cloth at the nearest points; deep grasps
+FORMAT = "caretree-pregrasp-3"  # 2: fingers meet cloth at the nearest points; deep grasps.  3: corners, oracles
 INDEX = "dataset.json"
 SHARD = 10  # states
 COLUMNS = ("state", "pixel", "primitive", "view", "row", "column", "layers", "corner")  # of an attempt
@@ -37,23 +38,32 @@ class Dataset:
         gowns: (S,) their names.
         rgb: (S, 6, H, W, 3) uint8.
         depth: (S, 6, H, W) uint16 [mm], 0 where the gown does not show.
+        corners: (S, 3) float32, where the wanted end of the neckline is, in the frame of the holding hand [m].
         attempts: (A, 8) int, `COLUMNS`; `state` is an index into the others.
         digest: of everything.
         deep: whether the states are deep grasps, see `hung_state`.
+        oracle: of `ORACLES`, which actions were tried.
     """
 
     seeds: np.ndarray
     gowns: np.ndarray
     rgb: np.ndarray
     depth: np.ndarray
+    corners: np.ndarray
     attempts: np.ndarray
     digest: str
     deep: bool = False
+    oracle: str = "all"
 
     @property
     def success(self) -> np.ndarray:
         """(A,) bool: a single layer, at the wanted corner."""
         return (self.attempts[:, 6] == 1) & (self.attempts[:, 7] == 1)
+
+    @property
+    def tells_ceiling(self) -> bool:
+        """Whether enough was tried to tell what can be reached."""
+        return self.oracle in ("all", "ceiling")
 
     def views(self, state: int) -> Views:
         """The pictures of a state."""
@@ -74,6 +84,7 @@ def make_dataset(
     gown: str | None = None,
     deep: bool = False,
     pixels: int = len(PIXELS),
+    oracle: str = "all",
     jobs: int | None = None,
     address: str | None = None,
 ) -> Path:
@@ -86,6 +97,7 @@ def make_dataset(
         gown: of all states; None leaves it to each seed.
         deep: whether the states are deep grasps, see `hung_state`.
         pixels: that the oracle tries in a view, the first of `PIXELS`.
+        oracle: of `ORACLES`, which of its actions are tried.
         jobs: shards made at once; more than one needs Ray.
         address: of a Ray cluster.
 
@@ -94,7 +106,9 @@ def make_dataset(
     """
     folder, seeds = Path(folder), list(seeds)
     folder.mkdir(parents=True, exist_ok=True)
-    about: dict[str, Any] = {"format": FORMAT, "first": seeds[0], "gown": gown, "deep": deep, "pixels": pixels}
+    about: dict[str, Any] = {"format": FORMAT, "first": seeds[0], "gown": gown, "deep": deep, "pixels": pixels} | {
+        "oracle": oracle
+    }
     old = read_index(folder) if (folder / INDEX).is_file() else {**about, "shards": []}
     if any(old[key] != about[key] for key in about):
         theirs = ", ".join(f"{key} {old[key]}" for key in about if old[key] != about[key])
@@ -102,7 +116,7 @@ def make_dataset(
         raise CaretreeError(f"{folder} holds states with {theirs}, not with {mine}; choose another folder")
     whole = {s["file"]: s for s in old["shards"] if s["states"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-len(seeds) // SHARD)) if shard_name(n) not in whole]
-    for number, shard in each_shard(make_shard, missing, seeds, gown, deep, pixels, jobs=jobs, address=address):
+    for number, shard in each_shard(make_shard, missing, seeds, gown, deep, pixels, oracle, jobs=jobs, address=address):
         replace_file(folder / shard_name(number), shard.pop("bytes"))
         spent = shard.pop("seconds")
         whole[shard_name(number)] = shard
@@ -114,10 +128,12 @@ def make_dataset(
     return folder
 
 
-def make_shard(number: int, seeds: Sequence[int], gown: str | None, deep: bool, pixels: int) -> dict[str, Any]:
+def make_shard(
+    number: int, seeds: Sequence[int], gown: str | None, deep: bool, pixels: int, oracle: str
+) -> dict[str, Any]:
     """States of one shard, tried by the oracle: `file`, `states`, `attempts`, `sha256`, `seconds`, `bytes`."""
     start, mine = time.process_time(), seeds[number * SHARD : (number + 1) * SHARD]
-    rgb, depth, gowns, rows = [], [], [], []
+    rgb, depth, gowns, corners, rows = [], [], [], [], []
     for k, seed in enumerate(mine):
         state = hang(seed, gown, deep)
         views = photograph(state)
@@ -125,7 +141,8 @@ def make_shard(number: int, seeds: Sequence[int], gown: str | None, deep: bool, 
         depth.append(np.round(views.depth * 1e3).astype(np.uint16))
         gowns.append(state.gown)
         kept = Views(rgb=views.rgb, depth=depth[-1].astype(np.float32) / 1e3)  # what a reader of the folder will have
-        rows += [row_of(k, one) for one in try_all(state, kept, pixels)]
+        corners.append(state.vertices[state.wanted])
+        rows += [row_of(k, one) for one in _tried(state, kept, pixels, oracle)]
     buffer = io.BytesIO()
     attempts = np.array(rows, np.int16).reshape(-1, len(COLUMNS))
     np.savez_compressed(
@@ -134,6 +151,7 @@ def make_shard(number: int, seeds: Sequence[int], gown: str | None, deep: bool, 
         gowns=np.array(gowns),
         rgb=np.stack(rgb),
         depth=np.stack(depth),
+        corners=np.stack(corners).astype(np.float32),
         attempts=attempts,
     )
     data = buffer.getvalue()
@@ -145,6 +163,15 @@ def make_shard(number: int, seeds: Sequence[int], gown: str | None, deep: bool, 
         "seconds": time.process_time() - start,
         "bytes": data,
     }
+
+
+def _tried(state: HungState, views: Views, pixels: int, oracle: str) -> list[Attempt]:
+    """What an oracle of `ORACLES` tries."""
+    if oracle == "none":
+        return []
+    if oracle == "drawn":
+        return try_drawn(state, views)
+    return (try_until if oracle == "ceiling" else try_all)(state, views, pixels)
 
 
 def read_index(folder: str | Path) -> dict[str, Any]:
@@ -185,4 +212,4 @@ def load_dataset(folder: str | Path) -> Dataset:
         raise CaretreeError(f"{folder}: the dataset is empty")
     digest = hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
     joined = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    return Dataset(**joined, digest=digest, deep=index["deep"])
+    return Dataset(**joined, digest=digest, deep=index["deep"], oracle=index["oracle"])

@@ -3,53 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
 from ...sim.errors import CaretreeError
-from .action import Action, hand_path
-from .affordance import best_action, seen
+from ...sim.pregrasp.action import Action, hand_path
+from ...sim.pregrasp.affordance import best_action
+from ...sim.pregrasp.numbers import DIRECT
+from ...sim.pregrasp.policy import Policy
+from ...sim.pregrasp.views import Views
 from .bullet_roll_out import bullet_roll_out
+from .calibration import calibration_error
 from .ceiling import ceiling
 from .dataset import Dataset
 from .hung_state import HungState, hang
 from .oracle import attempt
 from .rate import rate_text, signs
-from .views import Views
 
 ENGINES = ("spring", "bullet")
 
 
-class Policy:
-    """A policy in an ONNX file, run by OpenCV alone.
+@dataclass(frozen=True, kw_only=True)
+class Tried:
+    """What a policy comes to in every state.
 
-    Args:
-        path: of `pregrasp.onnx`.
-
-    Raises:
-        CaretreeError: it cannot be read.
+    Attributes:
+        best: (S,) bool, success of its best action.
+        direct: (S,) bool, of its best direct grasp.
+        value: (S,) of its best action.
+        primitive: (S,) of its best action.
     """
 
-    def __init__(self, path: Path) -> None:
-        import cv2
-
-        try:
-            self._network: Any = cv2.dnn.readNetFromONNX(str(path))
-        except cv2.error as error:
-            raise CaretreeError(f"{path}: this is no policy in an ONNX file") from error
-
-    def values(self, image: np.ndarray) -> np.ndarray:
-        """(6, 3, H, W) expected rewards of what `seen` gives (6, 5, H, W)."""
-        self._network.setInput(np.ascontiguousarray(image))
-        return np.asarray(self._network.forward())
+    best: np.ndarray
+    direct: np.ndarray
+    value: np.ndarray
+    primitive: np.ndarray
 
 
-def policy_wins(
-    data: Dataset, policy: Policy, say: Callable[[str], None] = lambda text: None, *, engine: str = "spring"
-) -> np.ndarray:
-    """(2, S) bool: success of the policy's best action, and of its best direct grasp, in every state.
+class Chooser(Protocol):
+    """What is needed of a policy."""
+
+    def values(self, views: Views) -> np.ndarray:
+        """(6, 3, H, W) value of each action."""
+        ...
+
+
+def try_policy(
+    data: Dataset, policy: Chooser, say: Callable[[str], None] = lambda text: None, *, engine: str = "spring"
+) -> Tried:
+    """Carry out a policy's best action in every state, and its best direct grasp where that is another.
 
     Args:
         data: the states.
@@ -62,15 +67,18 @@ def policy_wins(
     """
     if data.deep and engine == "bullet":
         raise CaretreeError("PyBullet's cloth does not meet itself here: deep grasps are not tried in it")
-    wins = np.zeros((2, len(data.seeds)), bool)
+    rows = []
     for k, seed in enumerate(data.seeds.tolist()):
         state, views = hang(seed, str(data.gowns[k]), data.deep), data.views(k)
-        values = policy.values(seen(views))
-        for n in range(2):
-            wins[n, k] = _succeeds(state, views, best_action(values, views, grasp_only=n == 1), engine)
+        values = policy.values(views)
+        best, direct = best_action(values, views), best_action(values, views, grasp_only=True)
+        won = _succeeds(state, views, best, engine)
+        also = won if direct == best else _succeeds(state, views, direct, engine)
+        rows.append((won, also, values[best.view, best.primitive, best.row, best.column], best.primitive))
         if k % 20 == 19:
-            say(f"{k + 1} of {len(data.seeds)} states")
-    return wins
+            say(f"{k + 1} of {len(data.seeds)} states, {sum(row[0] for row in rows)} succeed")
+    won, also, value, primitive = (np.array(column) for column in zip(*rows, strict=True))
+    return Tried(best=won, direct=also, value=value, primitive=primitive)
 
 
 def _succeeds(state: HungState, views: Views, action: Action, engine: str) -> bool:
@@ -84,15 +92,22 @@ def _succeeds(state: HungState, views: Views, action: Action, engine: str) -> bo
 def policy_table(
     data: Dataset, path: Path, say: Callable[[str], None] = lambda text: None, *, engine: str = "spring"
 ) -> str:
-    """Success as Markdown, each rate with its n and Wilson's 95 % interval; arguments as of `policy_wins`."""
-    found = ceiling(data)
-    wins = policy_wins(data, Policy(path), say, engine=engine)
-    lines = [
-        f"| {path.name}, {engine} | all states | hard states | states that the oracle can win |",
-        "|---|---|---|---|",
+    """Success as Markdown, each rate with its n and Wilson's 95 % interval; arguments as of `try_policy`."""
+    policy, everywhere = Policy(path), np.ones(len(data.seeds), bool)
+    kinds = {"all states": everywhere}
+    if data.tells_ceiling:
+        found = ceiling(data)
+        kinds |= {"hard states": found.hard, "states that the oracle can win": found.all}
+    tried = try_policy(data, policy, say, engine=engine)
+    lines = [f"| {path.name}, {engine} | {' | '.join(kinds)} |", "|---|" + "---|" * len(kinds)]
+    for name, won in (("best of all maps", tried.best), ("best of the direct maps", tried.direct)):
+        lines.append(f"| {name} | {' | '.join(rate_text(won[kind]) for kind in kinds.values())} |")
+    told = np.array([policy.confidence(value) for value in tried.value])
+    mine, theirs, p = signs(tried.best, tried.direct)
+    lines += [
+        "",
+        f"All maps win {mine} states that direct maps lose, and lose {theirs} (sign test p = {p:.2g}).",
+        f"A sweep is chosen in {rate_text(tried.primitive != DIRECT)}.  Calibration error of the confidence "
+        f"{calibration_error(told, tried.best):.3f}, which is {told.mean():.2f} in the mean.",
     ]
-    for name, won in zip(("best of all maps", "best of the direct maps"), wins, strict=True):
-        lines.append(f"| {name} | {rate_text(won)} | {rate_text(won[found.hard])} | {rate_text(won[found.all])} |")
-    mine, theirs, p = signs(wins[0], wins[1])
-    lines += ["", f"All maps win {mine} states that direct maps lose, and lose {theirs} (sign test p = {p:.2g})."]
     return "\n".join(lines)

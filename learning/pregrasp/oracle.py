@@ -7,16 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .action import Action, hand_path
+from ...sim.pregrasp.action import Action, hand_path
+from ...sim.pregrasp.numbers import ACTION, DIRECT, PRIMITIVES, ActionNumbers
+from ...sim.pregrasp.views import Views
 from .hung_state import HungState
-from .numbers import ACTION, PRIMITIVES, ActionNumbers
 from .roll_out import roll_out
-from .views import Views
 
 # (row, column) from the pixel in which the corner lies [px]; the first is that pixel itself
 PIXELS = ((0, 0), (0, -3), (0, 3), (-2, 0), (2, 0))
 NEAREST = 4  # a corner in no pixel of the gown is looked for so far around [px]
-DIRECT = PRIMITIVES.index("direct")
+DRAWN = 8  # direct grasps that are drawn in a state, and as many sweeps
+NEAR = 0.08  # of the corner: where they are drawn [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,3 +78,43 @@ def attempt(
 def try_all(state: HungState, views: Views, pixels: int = len(PIXELS)) -> list[Attempt]:
     """What comes of every action of the oracle; only at the first `pixels` of them."""
     return [attempt(state, views, action, pixel) for pixel, action in choices(state, views, pixels)]
+
+
+def try_until(state: HungState, views: Views, pixels: int = len(PIXELS)) -> list[Attempt]:
+    """No more of the oracle's actions than tell its four ceilings; see `ceiling.Ceiling`.
+
+    A kind of action is tried until one succeeds, and not at all where a kind that it includes has succeeded.
+    """
+    tried: list[Attempt] = []
+
+    def wins(direct: bool, middle: bool) -> bool:
+        for pixel, action in choices(state, views, pixels):
+            if (action.primitive == DIRECT) == direct and (pixel == 0) == middle:
+                tried.append(attempt(state, views, action, pixel))
+                if tried[-1].success:
+                    return True
+        return False
+
+    if not wins(direct=True, middle=True):
+        aside = wins(direct=False, middle=True)
+        if not wins(direct=True, middle=False) and not aside:
+            wins(direct=False, middle=False)
+    return tried
+
+
+def try_drawn(state: HungState, views: Views, count: int = DRAWN) -> list[Attempt]:
+    """What comes of some direct grasps and as many sweeps at pixels near the corner that its seed draws."""
+    rng = np.random.default_rng([state.seed, 21])
+    spots = near_corner(state.vertices[state.wanted], views, NEAR)
+    tried: list[Attempt] = []
+    for primitives in ((DIRECT,), tuple(k for k in range(len(PRIMITIVES)) if k != DIRECT)):
+        for view, row, column in rng.permutation(spots)[:count].tolist():
+            action = Action(primitive=int(rng.choice(primitives)), view=view, row=row, column=column)
+            tried.append(attempt(state, views, action))
+    return tried
+
+
+def near_corner(corner: np.ndarray, views: Views, radius: float) -> np.ndarray:
+    """(n, 3) view, row and column of pixels that show gown within `radius` of a corner (3,) [m]."""
+    places, spots = views.places()
+    return spots[np.linalg.norm(places - corner, axis=1) < radius]

@@ -8,12 +8,13 @@ import numpy as np
 
 from ...sim.bullet.grip import cloth_between
 from ...sim.bullet.handle import FOLLOWS
+from ...sim.pregrasp.action import HandPath
+from ...sim.pregrasp.numbers import ACTION, ActionNumbers
 from ...sim.robot.hand_boxes import boxes_of
 from ...sim.spring.fingers import near_boxes, push_aside
-from .action import HandPath
 from .gowns import held_sheet
 from .hung_state import HungState
-from .numbers import ACTION, HANG, ActionNumbers
+from .numbers import HANG
 
 REACH = 0.03  # triangles this near to a box are looked at ... [m]
 LOOK = 4  # ... for so many steps

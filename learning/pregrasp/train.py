@@ -1,13 +1,15 @@
 """Train the policy: demonstrations of the oracle, then active trials in the spring engine.
 
     L = mean of bce(F(s, a), r) over the actions that were tried
-        + lambda * sum of bce(F(s, .), H(s)) over the pixels of the gown / (1 + sum of H(s) there), sums of a batch
+        + lambda * sum of bce(F(s, a), 0) over the actions too far from the corner to succeed / number of states
+        + mean over the pictures of the entropy of the corner's place, or of its being nowhere
 
-H is a Gaussian at every action by which a demonstration succeeded, 0 elsewhere.  The paper has Huber's loss and the
-mean square in place of the entropies; with them our values fell to 0 everywhere, where a sigmoid has no slope to learn
-by.  The entropy of logits has one; background is left out since it cannot be chosen; the sum of H keeps the few pixels
-of the blobs from drowning.  Each random choice has a generator of its own number, so that a training that goes on after
-an interruption makes the same choices.
+and then, of all attempts, what fingers take (`grasp_network.py`).  The paper has Huber's loss
+and the mean square in place of the entropies; with them our values fell to 0 everywhere, where a sigmoid has no slope
+to learn by.  Where the corner is, the simulator tells of demonstrated states alone; what lies near it and was not tried
+counts neither way.  Some pictures are mirrored: where the corner is then does not depend on the primitives, whose
+approach from the right has no mirror image.  Each random choice has a generator of its own number, so that a training
+that goes on after an interruption makes the same choices.
 """
 
 from __future__ import annotations
@@ -25,21 +27,31 @@ import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 from torch.nn.functional import (  # pyright: ignore[reportMissingImports] - in the extra `learn`
     binary_cross_entropy_with_logits as entropy,
 )
+from torch.nn.functional import log_softmax, softplus  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
+from ...sim.pregrasp.affordance import COLUMN, CORNER, GOWN, GREY, any_action, best_action, seen, values_of, votes
+from ...sim.pregrasp.numbers import DIRECT
+from ...sim.pregrasp.policy import GRASPS, Policy
+from ...sim.pregrasp.surroundings import surroundings, voted_corner
 from ..seeds import KEPT_SEEDS
-from .affordance import GOWN, any_action, best_action, seen
+from .calibration import fit_chance
 from .dataset import Dataset, load_dataset
-from .export import export
+from .evaluate import try_policy
+from .export import export, export_grasps
+from .grasp_network import Grasps, together, train_grasps
 from .hung_state import hang
 from .network import PolicyNetwork
-from .oracle import DIRECT, attempt
-from .views import photograph
+from .oracle import attempt
+from .photograph import photograph
 
 BATCH = 4  # states of a step
-RATE, LAMBDA, BLOB = 2e-3, 1.0, 1.5  # of learning; lambda; width of a Gaussian [px]
+RATE, LAMBDA = 2e-3, 0.03  # of learning, at first; lambda
+FAR, SHOWS, BLOB = 0.15, 0.04, 0.02  # [m] of the corner: no success beyond; it shows within; width of its place
+MIRRORED, LIGHTER = 0.33, 0.3  # share of states; by how much pictures are lighter or darker at most
 EPSILON, DECAY = 0.5, 300  # of exploring at the first trial; trials in which it falls to 37 %
 EVERY, SAVE, LAST = 4, 100, 200  # trials to a step; to a checkpoint; over which success is told
+GRASP_STEPS = 1500  # of the network of what fingers take
 TRIAL_SEEDS = 2000  # first seed of the states of active trials; they end before `KEPT_SEEDS`
 
 
@@ -67,8 +79,10 @@ class Training:
         torch.manual_seed(plan.seed)
         self.plan, self.deep, self.network = plan, data.deep, PolicyNetwork()
         self.optimiser = torch.optim.Adam(self.network.parameters(), RATE)
-        self.steps, self.trials = 0, 0
+        self.steps, self.trials, self.seconds = 0, 0, 0.0
+        self.clock = time.process_time()
         self.curve: list[int] = []
+        self.felt: list[Grasps] = []
         self.images = [seen(data.views(k)) for k in range(len(data.seeds))]
         self.tried: list[list[tuple[int, int, int, int, int]]] = [[] for _ in self.images]
         for row, won in zip(data.attempts.tolist(), data.success.tolist(), strict=True):
@@ -77,18 +91,16 @@ class Training:
         self.demonstrated = len(self.images) if plan.steps else 0
         if not plan.steps:
             self.images, self.tried = [], []
-        self.heat = [self._heat(k) for k in range(self.demonstrated)]
+        self.marks = [self._marks(data, k) for k in range(self.demonstrated)]
 
-    def _heat(self, state: int) -> np.ndarray:
-        """(6, 3, H, W) Gaussians at the demonstrations that succeeded."""
-        views, _, height, width = self.images[state].shape
-        heat = np.zeros((views, 3, height, width), np.float32)
-        rows, columns = np.mgrid[:height, :width]
-        for view, primitive, row, column, won in self.tried[state]:
-            if won:
-                blob = np.exp(-((rows - row) ** 2 + (columns - column) ** 2) / (2 * BLOB**2))
-                heat[view, primitive] = np.maximum(heat[view, primitive], blob)
-        return heat
+    def _marks(self, data: Dataset, state: int) -> tuple[np.ndarray, np.ndarray]:
+        """(6, H, W) bool, too far from the corner; (6, H, W) float32, the corner's place, of a sum of 1 or 0 a view."""
+        places, spots = data.views(state).places()
+        away = np.linalg.norm(places - data.corners[state], axis=1)
+        far, blob = (np.zeros(data.depth.shape[1:], kind) for kind in (bool, np.float32))
+        far[tuple(spots.T)] = away > FAR
+        blob[tuple(spots.T)] = np.where(away < SHOWS, np.exp(-(away**2) / (2 * BLOB**2)), 0.0)
+        return far, blob / np.maximum(blob.sum((1, 2), keepdims=True), 1e-9)
 
     def step(self) -> float:
         """One step of the optimiser on states drawn from demonstrations and trials; returns the loss."""
@@ -100,24 +112,43 @@ class Training:
             else self.demonstrated + int(rng.integers(fresh))
             for n in range(BATCH)
         ]
-        logits = self.network.logits(torch.from_numpy(np.concatenate([self.images[k] for k in chosen])))
+        mirrored = [k < self.demonstrated and rng.random() < MIRRORED for k in chosen]
+        images = [
+            _changed(self.images[k], by, flip)
+            for k, by, flip in zip(chosen, rng.uniform(-LIGHTER, LIGHTER, BATCH), mirrored, strict=True)
+        ]
+        logits = self.network(torch.from_numpy(np.concatenate(images)))
         logits = logits.reshape(len(chosen), -1, *logits.shape[1:])
-        loss, spread, marked = torch.zeros(()), torch.zeros(()), torch.ones(())
+        loss = torch.zeros(())
         for n, k in enumerate(chosen):
             tried = np.array(self.tried[k])
-            told = logits[n][tried[:, 0], tried[:, 1], tried[:, 2], tried[:, 3]]
-            loss = loss + entropy(told, torch.from_numpy(tried[:, 4]).float(), reduction="mean")
+            if len(tried) and not mirrored[n]:
+                told = logits[n][tried[:, 0], tried[:, 1], tried[:, 2], tried[:, 3]]
+                loss = loss + entropy(told, torch.from_numpy(tried[:, 4]).float(), reduction="mean")
             if k < self.demonstrated:
-                gown = torch.from_numpy(self.images[k][:, GOWN] > 0)[:, None].expand_as(logits[n])
-                heat = torch.from_numpy(self.heat[k])
-                spread = spread + entropy(logits[n][gown], heat[gown], reduction="sum")
-                marked = marked + heat[gown].sum()
-        loss = loss / len(chosen) + LAMBDA * spread / marked
+                loss = loss + self._marked(logits[n], images[n], k, mirrored[n])
+        loss = loss / len(chosen)
         self.optimiser.zero_grad()
         loss.backward()
+        for group in self.optimiser.param_groups:
+            group["lr"] = RATE * (1.0 if self.steps < 0.6 * self.plan.steps else 0.25)
         self.optimiser.step()
         self.steps += 1
         return float(loss.detach())
+
+    def _marked(self, logits: torch.Tensor, image: np.ndarray, state: int, flip: bool) -> torch.Tensor:
+        """The loss (6, 4, H, W) of a state of which it is known where the corner is."""
+        far, blob = (torch.from_numpy(mark[..., ::-1].copy() if flip else mark) for mark in self.marks[state])
+        kinds = 1 if self.plan.grasp_only else CORNER
+        fails = logits[:, DIRECT : DIRECT + 1] if self.plan.grasp_only else logits[:, :CORNER]
+        lost = softplus(fails[far[:, None].expand(-1, kinds, -1, -1)]).sum()
+        gown = torch.from_numpy(image[:, GOWN] > 0)
+        scores = torch.where(gown, logits[:, CORNER], -torch.inf).flatten(1)
+        scores = torch.cat([scores, torch.zeros(len(scores), 1)], 1)  # the last one is nowhere
+        wanted = torch.cat([blob.flatten(1), 1.0 - blob.sum((1, 2))[:, None]], 1)
+        chance = log_softmax(scores, 1)
+        place = -torch.where(wanted > 0, wanted * chance, 0.0).sum(1).mean()
+        return LAMBDA * lost + place
 
     def trial(self) -> bool:
         """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded."""
@@ -126,12 +157,15 @@ class Training:
         state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS), deep=self.deep)
         views = photograph(state)
         image = seen(views)
+        with torch.no_grad():
+            maps = self.network(torch.from_numpy(image)).numpy()
         if rng.random() < EPSILON * np.exp(-k / DECAY):
             action = any_action(rng, views, plan.grasp_only)
         else:
-            with torch.no_grad():
-                action = best_action(self.network(torch.from_numpy(image)).numpy(), views, plan.grasp_only)
+            action = best_action(values_of(maps, views), views, plan.grasp_only)
         won = attempt(state, views, action).success
+        corner, spot = voted_corner(votes(maps, views), views.places()[0]), (action.view, action.row, action.column)
+        self.felt.append(Grasps(*surroundings(views, corner, np.array([spot])), [action.primitive], [won]))
         self.images.append(image)
         self.tried.append([(action.view, action.primitive, action.row, action.column, int(won))])
         self.curve.append(int(won))
@@ -140,14 +174,18 @@ class Training:
 
     def save(self, path: Path, identity: str) -> None:
         """Write all that going on needs."""
+        self.seconds += time.process_time() - self.clock
+        self.clock = time.process_time()
         state = {
             "identity": identity,
+            "seconds": self.seconds,
             "network": self.network.state_dict(),
             "optimiser": self.optimiser.state_dict(),
             "steps": self.steps,
             "curve": self.curve,
             "images": [torch.from_numpy(image) for image in self.images[self.demonstrated :]],
             "tried": self.tried[self.demonstrated :],
+            "felt": [[torch.from_numpy(np.asarray(part)) for part in one] for one in self.felt],
         }
         part = path.with_name(path.name + ".part")
         torch.save(state, part)
@@ -164,19 +202,33 @@ class Training:
             raise CaretreeError(f"{path.parent} holds another training; choose another folder")
         self.network.load_state_dict(state["network"])
         self.optimiser.load_state_dict(state["optimiser"])
+        self.seconds = state["seconds"]
         self.steps, self.curve, self.trials = state["steps"], state["curve"], len(state["curve"])
         self.images += [image.numpy() for image in state["images"]]
         self.tried += state["tried"]
+        self.felt = [Grasps(*(part.numpy() for part in one)) for one in state["felt"]]
 
 
-def train(folder: Path, out: Path, plan: Plan, say: Callable[[str], None] = lambda text: None) -> Path:
-    """Train, or go on with a training; returns the ONNX file.
+def _changed(image: np.ndarray, lighter: float, flip: bool) -> np.ndarray:
+    """Pictures (6, 5, H, W) of another brightness, and mirrored or not."""
+    image = image.copy()
+    image[:, GREY] += lighter * image[:, GOWN]
+    if flip:
+        image[:, :COLUMN] = image[:, :COLUMN, :, ::-1]
+    return image
+
+
+def train(
+    folder: Path, out: Path, plan: Plan, say: Callable[[str], None] = lambda text: None, apart: Path | None = None
+) -> Path:
+    """Train, or go on with a training; returns the first ONNX file.
 
     Args:
         folder: of `data`.
-        out: gets checkpoint.pt, record.json and pregrasp.onnx.
+        out: gets checkpoint.pt, record.json, pregrasp.onnx and grasps.onnx.
         plan: what is trained.
         say: told of progress.
+        apart: folder of `data` whose states are not trained on: they tell how sure a value is; None leaves that open.
 
     Raises:
         CaretreeError: the data cannot be used, `out` holds another training, or there is nothing to train on.
@@ -186,7 +238,7 @@ def train(folder: Path, out: Path, plan: Plan, say: Callable[[str], None] = lamb
     data = load_dataset(folder)
     about = {"data": data.digest, **asdict(plan)}
     identity = hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
-    training, start = Training(data, plan), time.process_time()
+    training = Training(data, plan)
     out.mkdir(parents=True, exist_ok=True)
     checkpoint = out / "checkpoint.pt"
     if checkpoint.is_file():
@@ -209,9 +261,37 @@ def train(folder: Path, out: Path, plan: Plan, say: Callable[[str], None] = lamb
     record = about | {
         "steps_done": training.steps,
         "success_of_last": [sum(curve[max(0, n - LAST) : n]) / min(n, LAST) for n in ends],
-        "seconds": round(time.process_time() - start),
+        "seconds": round(training.seconds),
         "machine": f"{platform.machine()}, {platform.system()}",
         "made": time.strftime("%Y-%m-%d", time.gmtime()),
     }
+    path = export(training.network, out / "pregrasp.onnx", record)
+    start = time.process_time()
+    shown = [grasps_of(data, Policy(path), plan.grasp_only)] if plan.steps else []
+    grasps = train_grasps(together([*shown, *training.felt]), GRASP_STEPS, plan.seed)
+    record |= {"seconds": record["seconds"] + round(time.process_time() - start), "grasp_steps": GRASP_STEPS}
+    export_grasps(grasps, out / GRASPS, record, (1.0, 0.0))
+    if apart is not None:
+        others = load_dataset(apart)
+        tried = try_policy(others, Policy(path), say)
+        record |= {"apart": others.digest, "apart_succeed": int(tried.best.sum()), "apart_states": len(tried.best)}
+        export_grasps(grasps, out / GRASPS, record, fit_chance(tried.value, tried.best))
     (out / "record.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    return export(training.network, out / "pregrasp.onnx", record)
+    return path
+
+
+def grasps_of(data: Dataset, policy: Policy, grasp_only: bool) -> Grasps:
+    """The attempts of a dataset; the corner is where the pictures say that it is.
+
+    Args:
+        data: states and attempts.
+        policy: whose first network finds the corner.
+        grasp_only: whether only direct grasps count.
+    """
+    parts = []
+    for k in range(len(data.seeds)):
+        mine = (data.attempts[:, 0] == k) & ((data.attempts[:, 2] == DIRECT) | (not grasp_only))
+        views = data.views(k)
+        cells, corners = surroundings(views, policy.corner(views), data.attempts[mine, 3:6])
+        parts.append(Grasps(cells, corners, data.attempts[mine, 2], data.success[mine]))
+    return together(parts)

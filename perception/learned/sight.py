@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
+from ...sim.onnx_record import read_properties
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..image.surfaces import GOWN_SURFACES, Surface
-from .onnx_record import read_properties
 
 FORMAT = "caretree-seeing-2"
 PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"

@@ -22,8 +22,8 @@ class Recorded:
         seed: of the run.
         world: name.
         world_args: what a world that the package does not bring was given, name -> value.
-        robot, gown, person, model, stage, look, engine, perception: as on the command line; None where nothing was
-            given.
+        robot, gown, person, model, stage, look, engine, perception, pregrasp: as on the command line; None where
+            nothing was given.
         world_kind: name.
         rate_hz: ticks a second.
         settled_rate_hz: the same once all faults lie behind; None where it stays as it was.
@@ -46,6 +46,7 @@ class Recorded:
     look: str | None = None
     engine: str | None = None
     perception: str | None = None
+    pregrasp: str | None = None
     start: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
@@ -67,7 +68,7 @@ def recorded(directory: Path) -> Recorded:
     run = read_finished_run(directory)
     file = directory / RUN_FILE
     given = _value(file, run, "parameters", dict, _is_mapping, {})
-    names = ("robot", "gown", "person", "model", "stage", "look", "engine", "perception")
+    names = ("robot", "gown", "person", "model", "stage", "look", "engine", "perception", "pregrasp")
     optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(
         task=_value(file, run, "task", str, _is_text),

@@ -12,7 +12,7 @@ from ...sim.log.logged_world import logged
 from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
-from ..run.perceptions import CLASSICAL, see_with
+from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
 from ..run.task import load_task
@@ -73,6 +73,7 @@ def replay(directory: Path) -> Replay:
             settings=Settings(given.tuning),
         )
         see_with(run.context, given.perception or CLASSICAL)
+        grasp_with(run.context, given.pregrasp or CLASSICAL)
         if given.start is None:
             prepare_stage(inner, loaded, given.stage)
         else:

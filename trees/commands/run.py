@@ -29,7 +29,7 @@ from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
 from ..run.judging import judge_and_keep
-from ..run.perceptions import CLASSICAL, see_with
+from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.progress import Progress
 from ..run.recorded_start import read_start, take_room
 from ..run.runner import Run
@@ -81,6 +81,7 @@ def main(options: argparse.Namespace) -> int:
         "robot": options.robot,
         "senses": None if options.senses == "own" else options.senses,
         "perception": None if options.perception == CLASSICAL else options.perception,
+        "pregrasp": None if options.pregrasp == CLASSICAL else options.pregrasp,
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
@@ -183,6 +184,7 @@ def _run(
     )
     witness = Witness(events.arm)
     see_with(run.context, options.perception, scripted=senses is not None)
+    grasp_with(run.context, options.pregrasp, scripted=senses is not None)
     run.context.wrap_senses(witness.watch)
     directory = claim.directory
     recorder = Recorder(

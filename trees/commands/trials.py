@@ -16,7 +16,7 @@ from ..run.task import load_task
 
 TRIALS_MAX = 100_000  # a run takes a second at least
 PASSED_ON = (  # to every `caretree run`
-    *("world", "world-kind", "gown", "person", "look", "engine", "model", "perception", "tuning", "video"),
+    *("world", "world-kind", "gown", "person", "look", "engine", "model", "perception", "pregrasp", "tuning", "video"),
 )
 
 

@@ -164,7 +164,7 @@ def _facts(run: Mapping[str, Any]) -> str:
     if isinstance(run.get("peak_memory_mb"), (int, float)):
         facts.append((f"{run['peak_memory_mb']:.0f} MB", "peak memory"))
     parameters = run.get("parameters") if isinstance(run.get("parameters"), Mapping) else {}
-    for key in ("stage", "world_kind", "gown", "person", "look", "engine", "model", "perception", "inject"):
+    for key in ("stage", "world_kind", "gown", "person", "look", "engine", "model", "perception", "pregrasp", "inject"):
         given = parameters.get(key) if parameters else None
         facts += [
             (str(value), key.replace("_", " ")) for value in (given if isinstance(given, list) else [given]) if value

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from caretree.learning.pregrasp import dataset
-from caretree.learning.pregrasp.action import Action
+from caretree.learning.pregrasp import dataset, oracle
 from caretree.learning.pregrasp.agreement import paired
 from caretree.learning.pregrasp.ceiling import ceiling, table
 from caretree.learning.pregrasp.cli import main
+from caretree.learning.pregrasp.hung_state import hang
 from caretree.learning.pregrasp.oracle import Attempt
+from caretree.learning.pregrasp.photograph import photograph
 from caretree.sim.errors import CaretreeError
+from caretree.sim.pregrasp.action import Action
+from caretree.sim.pregrasp.numbers import DIRECT
 
 
 def few(state: object, views: dataset.Views, pixels: int) -> list[Attempt]:
@@ -78,3 +82,59 @@ def test_deep_grasps_are_told_apart_and_not_repeated_in_pybullet(
         paired(data, 2, 0)
     with pytest.raises(CaretreeError, match="deep True, pixels 1, not with deep False, pixels 5"):
         main(["data", str(tmp_path / "a"), "--seeds", "110"])
+
+
+def tells(wins: set[tuple[bool, bool]], tried: list[tuple[bool, bool]]) -> Callable[..., Attempt]:
+    """Carries out nothing: kinds of action (direct, at the corner's pixel) that win, and what was tried."""
+
+    def attempt(state: object, views: object, action: Action, pixel: int = -1) -> Attempt:
+        tried.append(kind := (action.primitive == DIRECT, pixel == 0))
+        return Attempt(action=action, pixel=pixel, layers=1, corner=kind in wins)
+
+    return attempt
+
+
+@pytest.mark.parametrize(
+    ("wins", "kinds"),
+    [
+        ({(True, True)}, [(True, True)]),
+        ({(False, True)}, [(True, True), (False, True), (True, False)]),
+        ({(True, False)}, [(True, True), (False, True), (True, False)]),
+        (set(), [(True, True), (False, True), (True, False), (False, False)]),
+    ],
+)
+def test_no_more_is_tried_than_tells_the_ceilings(
+    wins: set[tuple[bool, bool]], kinds: list[tuple[bool, bool]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried: list[tuple[bool, bool]] = []
+    monkeypatch.setattr(oracle, "attempt", tells(wins, tried))
+    state = hang(104)
+    views = photograph(state)
+    found = oracle.try_until(state, views)
+    assert list(dict.fromkeys(tried)) == kinds
+    assert [one.success for one in found].count(True) == len(wins)
+    assert len(found) == len(tried)
+    everything = [(action.primitive == DIRECT, pixel == 0) for pixel, action in oracle.choices(state, views)]
+    assert all(tried.count(kind) == everything.count(kind) for kind in kinds if kind not in wins)
+
+
+def test_what_is_drawn_lies_near_the_corner_and_is_the_same_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(oracle, "attempt", tells(set(), tried := []))
+    state = hang(104)
+    views = photograph(state)
+    found = oracle.try_drawn(state, views)
+    assert found == oracle.try_drawn(state, views)
+    assert tried.count((True, False)) == 2 * oracle.DRAWN == tried.count((False, False))
+    for one in found:
+        place = views.place(one.action.view, one.action.row, one.action.column)
+        assert np.linalg.norm(place - state.vertices[state.wanted]) < oracle.NEAR
+
+
+def test_what_is_drawn_tells_no_ceiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(oracle, "attempt", tells(set(), []))
+    assert main(["data", str(tmp_path / "a"), "--seeds", "110", "--oracle", "drawn"]) == 0
+    data = dataset.load_dataset(tmp_path / "a")
+    state = hang(110)
+    assert np.allclose(data.corners[0], state.vertices[state.wanted])
+    with pytest.raises(CaretreeError, match="drawn tells no ceiling"):
+        ceiling(data)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from caretree.learning.pregrasp.affordance import best_action
 from caretree.learning.pregrasp.dataset import Dataset, load_dataset, make_dataset
 from caretree.learning.pregrasp.hung_state import hang
 from caretree.learning.pregrasp.oracle import attempt
+from caretree.sim.pregrasp.affordance import best_action
 
 EACH = 6  # attempts are repeated of those that succeeded and of those that failed
 

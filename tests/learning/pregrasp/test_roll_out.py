@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from caretree.learning.pregrasp.action import path_to
 from caretree.learning.pregrasp.gowns import mesh_of
 from caretree.learning.pregrasp.hung_state import HungState, hang
-from caretree.learning.pregrasp.numbers import ACTION, HANG, PRIMITIVES
+from caretree.learning.pregrasp.numbers import HANG
 from caretree.learning.pregrasp.roll_out import roll_out, waypoints
 from caretree.learning.seeds import KEPT_SEEDS
+from caretree.sim.pregrasp.action import path_to
+from caretree.sim.pregrasp.numbers import ACTION, PRIMITIVES, VIEWS
 from caretree.sim.robot.hand_boxes import boxes_of
 
 SEED = 104
@@ -51,7 +52,7 @@ def test_hand_goes_in_and_aside() -> None:
 
 def test_a_sweep_moves_cloth_and_cloth_stays_out_of_the_fingers(state: HungState) -> None:
     spot = state.vertices[state.wanted].astype(float)
-    grasp = roll_out(state, path := path_to(spot, 2, PRIMITIVES.index("move_right")))
+    grasp = roll_out(state, path := path_to(spot, 2 * VIEWS.turn, PRIMITIVES.index("move_right")))
     moved = np.linalg.norm(grasp.vertices - state.vertices, axis=1)
     assert 0.01 < moved.max() < 0.15
     for box in boxes_of(path.turn, path.end, ACTION.opening):
@@ -61,9 +62,9 @@ def test_a_sweep_moves_cloth_and_cloth_stays_out_of_the_fingers(state: HungState
 
 def test_the_same_action_comes_to_the_same_whatever_was_done_before(state: HungState) -> None:
     spot = state.vertices[state.wanted].astype(float)
-    first = roll_out(state, path_to(spot, 1, 1))
-    roll_out(hang(SEED + 1, state.gown), path_to(spot, 3, 0))
-    again = roll_out(state, path_to(spot, 1, 1))
+    first = roll_out(state, path_to(spot, 1 * VIEWS.turn, 1))
+    roll_out(hang(SEED + 1, state.gown), path_to(spot, 3 * VIEWS.turn, 0))
+    again = roll_out(state, path_to(spot, 1 * VIEWS.turn, 1))
     assert np.array_equal(first.vertices, again.vertices)
     assert (first.layers, first.corner) == (again.layers, again.corner)
 
@@ -88,7 +89,7 @@ def test_a_deep_grasp_holds_the_middle_of_the_neckline_and_repeats() -> None:
     assert deep.deep
     assert deep.wanted in mesh.corners
     assert np.array_equal(hang(SEED, deep=True).vertices, deep.vertices)
-    path = path_to(deep.vertices[deep.wanted].astype(float), 1, 1)
+    path = path_to(deep.vertices[deep.wanted].astype(float), 1 * VIEWS.turn, 1)
     first = roll_out(deep, path)
-    roll_out(deep, path_to(deep.vertices[deep.wanted].astype(float), 4, 2))
+    roll_out(deep, path_to(deep.vertices[deep.wanted].astype(float), 4 * VIEWS.turn, 2))
     assert np.array_equal(roll_out(deep, path).vertices, first.vertices)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from caretree.learning.pregrasp.affordance import CHANNELS, any_action, best_action, seen
 from caretree.learning.pregrasp.hung_state import HungState, hang
-from caretree.learning.pregrasp.oracle import DIRECT, corner_pixel
+from caretree.learning.pregrasp.oracle import corner_pixel
+from caretree.learning.pregrasp.photograph import photograph
 from caretree.learning.pregrasp.rate import signs, wilson
-from caretree.learning.pregrasp.views import Views, direction_of, photograph
+from caretree.sim.pregrasp.affordance import CHANNELS, CORNER, any_action, best_action, seen, values_of, votes
+from caretree.sim.pregrasp.numbers import DIRECT, VIEWS
+from caretree.sim.pregrasp.views import Views, level
 
 
 @pytest.fixture(scope="module")
@@ -35,8 +37,8 @@ def test_a_pixel_s_place_lies_on_the_gown_and_in_that_pixel(state: HungState, vi
 
 
 def test_views_are_thirty_degrees_apart() -> None:
-    assert direction_of(0) @ direction_of(1) == pytest.approx(np.cos(np.pi / 6))
-    assert direction_of(0) @ direction_of(3) == pytest.approx(0.0, abs=1e-12)
+    assert level(0.0) @ level(VIEWS.turn) == pytest.approx(np.cos(np.pi / 6))
+    assert level(0.0) @ level(3 * VIEWS.turn) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_corner_s_pixel_shows_the_corner_where_nothing_hides_it(state: HungState, views: Views) -> None:
@@ -57,6 +59,33 @@ def test_the_best_action_is_on_the_gown(views: Views) -> None:
     explored = any_action(np.random.default_rng(3), views, grasp_only=True)
     assert explored.primitive == DIRECT
     assert views.depth[explored.view, explored.row, explored.column] > 0
+
+
+def test_all_places_are_those_of_their_pixels(views: Views) -> None:
+    places, spots = views.places()
+    assert len(places) == (views.depth > 0).sum()
+    for place, spot in list(zip(places, spots.tolist(), strict=True))[::500]:
+        assert np.allclose(place, views.place(*spot))
+
+
+def test_views_vote_on_the_place_of_the_corner(state: HungState, views: Views) -> None:
+    maps = np.full((6, CORNER + 1, *views.depth.shape[1:]), -9.0)
+    corner = state.vertices[state.wanted].astype(float)
+    places, spots = views.places()
+    away = np.linalg.norm(places - corner, axis=1)
+    shown = [view for view in range(6) if away[spots[:, 0] == view].min() < 0.02]
+    assert len(shown) >= 3
+    for view in shown:
+        maps[(view, CORNER, *spots[np.where(spots[:, 0] == view, away, np.inf).argmin(), 1:])] = 9.0
+    alone = tuple(int(k) for k in np.argwhere(views.depth[shown[0]] > 0)[0])  # at the holding hand, in one picture
+    maps[(shown[0], CORNER, *alone)] = 9.0
+    told = votes(maps, views)
+    assert np.linalg.norm(places[told.argmax()] - corner) < 0.03
+    assert told.max() <= 1.0
+    best = best_action(values_of(maps, views), views)
+    assert np.linalg.norm(views.place(best.view, best.row, best.column) - corner) < 0.03
+    one = told[(spots == (shown[0], *alone)).all(axis=1)]
+    assert 0.0 < float(one[0]) < told.max()
 
 
 def test_what_is_seen_is_zero_off_the_gown(views: Views) -> None:

@@ -19,8 +19,8 @@ from caretree.learning.vision.network import OUTPUTS, SeeingNetwork
 from caretree.learning.vision.objective import _MIRRORED, Seeing, _heat, _peak_loss, _sheet_loss
 from caretree.learning.vision.sheet_nodes import node_weights
 from caretree.learning.vision.train import _begin_with, train
-from caretree.perception.learned.onnx_record import read_properties
 from caretree.sim.errors import CaretreeError
+from caretree.sim.onnx_record import read_properties
 
 from .still_room import still_state
 

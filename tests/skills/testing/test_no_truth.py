@@ -106,7 +106,10 @@ PLANTED = {
     "memory of an array": "def f(seen): return seen.arm_positions.ctypes.data",
     "another process": "from subprocess import run",
 }
-PERCEPTION = ("perception", "sim.errors", "sim.quantity", "sim.mechanics.gripper", "sim.vector", "sim.world")
+PERCEPTION = (
+    *("perception", "sim.errors", "sim.quantity", "sim.mechanics.gripper", "sim.vector", "sim.world"),
+    *("sim.onnx_record", "sim.pregrasp"),  # a file's record; what an action is, and a network that chooses one
+)
 ACTING = ("perception", "skills", "trees/nodes", "trees/guard", "trees/tasks")
 # worlds and benches, for rehearsals and tests; scene and judge of a task, which its tree gets no hand on
 NOT_ACTING = (
@@ -128,7 +131,7 @@ NOT_ACTING = (
 )
 GRANTED = {
     "perception/senses.py": ["__abstractmethods__ looks into Python itself"],  # to name those that are lacking
-    "perception/learned/onnx_record.py": [
+    "perception/learned/pre_grasp_policy.py": [
         "pathlib is not among the libraries that are known to be harmless"
     ],  # weights
     "perception/learned/sight.py": [  # the weights, and the record that they bear

@@ -8,7 +8,7 @@ from caretree.sim.errors import CaretreeError
 from caretree.sim.world import Frame, RoomMap
 from caretree.trees.cli import main
 from caretree.trees.run import perceptions
-from caretree.trees.run.perceptions import PERCEPTIONS, see_with, seen_by_network
+from caretree.trees.run.perceptions import PERCEPTIONS, chosen_by_policy, grasp_with, see_with, seen_by_network
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 
@@ -73,3 +73,52 @@ def test_senses_are_asked_of_the_repainted_picture_which_is_seen_once():
     assert through.skin_cover(black, points_in_map=hand).share == 0.0
     assert through.skin_cover(black, points_in_map=hand).share == 0.0
     assert asked == [black]
+
+
+def test_the_policy_chooses_the_pre_grasp_and_nothing_else():
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    black, senses = frame(), ClassicalSenses(room, 0)
+    hand = np.eye(4)
+    hand[:3, 3] = (0.0, 0.0, 1.0)  # the picture shows a wall 1 m away, which the network takes for the gown
+    policy = FirstPixel()
+    through = chosen_by_policy(senses, policy, lambda seen: np.full((16, 16), Surface.OUTSIDE, np.uint8))
+    assert through.skin_cover(black, points_in_map=np.zeros((4, 3)) + (0.0, 0.0, 1.0)).share == 1.0
+    assert policy.asked == 0
+    chosen = through.pre_grasp((black,), poses_hand_in_map=(hand,), distance=(0.0, 2.0))
+    assert (policy.asked, chosen.primitive, chosen.confidence) == (1, "direct", 0.25)
+
+
+class FirstPixel:
+    """A policy that likes all direct grasps alike."""
+
+    def __init__(self):
+        self.asked = 0
+
+    def values(self, views):
+        self.asked += 1
+        values = np.full((len(views.depth), 3, *views.depth.shape[1:]), -np.inf)
+        values[:, 1][views.depth > 0] = 0.0
+        return values
+
+    def confidence(self, value):
+        return 0.25
+
+
+def test_the_policy_is_put_before_the_senses_when_it_is_asked_for(context, monkeypatch):
+    wrapped = []
+    monkeypatch.setattr(perceptions, "packaged_policy", lambda: "the policy")
+    monkeypatch.setattr(perceptions, "chosen_by_policy", lambda *given: wrapped.append(given) or given[0])
+    senses = context.senses
+    grasp_with(context, "classical")
+    assert wrapped == []
+    grasp_with(context, "learned")
+    assert wrapped == [(senses, "the policy")]
+    with pytest.raises(CaretreeError, match=r"no pre-grasp 'keen'.*classical, learned"):
+        grasp_with(context, "keen")
+
+
+def test_scripted_senses_have_no_pictures_for_a_policy(capsys, tmp_path):
+    command = ["run", "dressing", "--world", "scripted", "--pregrasp", "learned", "--out", str(tmp_path / "run")]
+    assert main(command) == 2
+    assert "--pregrasp learned looks at pictures" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from ...sim.errors import CaretreeError
+from .errors import CaretreeError
 
 
 def read_properties(path: str | Path) -> dict[str, str]:

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .numbers import ACTION, PRIMITIVES, ActionNumbers
-from .views import Views, approach_of
-
-UP = np.array((0.0, 0.0, 1.0))
+from .views import UP, Views, level
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,12 +63,12 @@ def hand_path(views: Views, action: Action, numbers: ActionNumbers = ACTION) -> 
         ValueError: the pixel has no depth.
     """
     place = views.place(action.view, action.row, action.column)
-    return path_to(place, action.view, action.primitive, numbers)
+    return path_to(place, views.turn(action.view), action.primitive, numbers)
 
 
-def path_to(place: np.ndarray, view: int, primitive: int, numbers: ActionNumbers = ACTION) -> HandPath:
-    """The way of a hand that goes for a place (3,) [m] by a primitive, from the side of a view."""
-    approach = approach_of(view, numbers.yaw)
+def path_to(place: np.ndarray, bearing: float, primitive: int, numbers: ActionNumbers = ACTION) -> HandPath:
+    """The way of a hand that goes for a place (3,) [m] by a primitive, from the side of a view's direction [rad]."""
+    approach = level(bearing + numbers.yaw)
     across = np.cross(approach, UP)  # to the right of who looks along the approach
     turn = np.column_stack([np.cross(across, approach), across, approach])
     inside = place + numbers.depth * approach

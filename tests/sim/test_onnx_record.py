@@ -1,8 +1,8 @@
 """Properties of ONNX files, from bytes made by hand."""
 
 import pytest
-from caretree.perception.learned.onnx_record import read_properties
 from caretree.sim.errors import CaretreeError
+from caretree.sim.onnx_record import read_properties
 
 
 def field(number, data):

@@ -1,0 +1,33 @@
+"""Six pictures of a gown that hangs from one hand, drawn from its vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...sim.pregrasp.numbers import VIEWS, ViewNumbers
+from ...sim.pregrasp.views import Views, camera_pose, lens
+from ...sim.render.camera import CLOTH_ID, Renderer
+from ...sim.render.looks import FABRICS
+from ...sim.render.raster import Light, add_sensor_noise
+from .hung_state import HungState
+
+
+def photograph(state: HungState, numbers: ViewNumbers = VIEWS) -> Views:
+    """Six pictures of a state, in a colour and under a light that its seed draws, with the noise of a camera."""
+    rng = np.random.default_rng([state.seed, 16])
+    colour = np.array(FABRICS[str(rng.choice(list(FABRICS)))], float)
+    inside = 255.0 - (255.0 - colour) * (1.0 if rng.random() < 0.5 else rng.uniform(0.5, 1.0))
+    lamp = np.array((*rng.normal(0.0, 0.5, 2), 1.0))
+    renderer = Renderer(Light(direction_in_map=lamp / np.linalg.norm(lamp)))
+    faces = state.faces
+    renderer.add_rigid("nothing", np.full((3, 3), (0.0, 0.0, 90.0)), np.array([[0, 1, 2]]), (0, 0, 0))
+    renderer.set_cloth(state.vertices, faces, np.tile(colour, (len(faces), 1)), np.tile(inside, (len(faces), 1)))
+    rgbs, depths = [], []
+    for view in range(numbers.views):
+        picture = renderer.render(
+            camera_pose(view * numbers.turn, numbers), (numbers.width, numbers.height), lens(numbers)
+        )
+        rgb, depth = add_sensor_noise(picture, rng)
+        depths.append(np.where(picture.ids == CLOTH_ID, depth, 0.0))
+        rgbs.append(rgb)
+    return Views(rgb=np.stack(rgbs), depth=np.stack(depths).astype(np.float32), numbers=numbers)
