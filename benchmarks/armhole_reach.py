@@ -1,10 +1,10 @@
-"""How well the armholes of worn sleeves are told from the head of the bed, on states of recorded runs, with the truth.
+"""How well the armholes of worn sleeves are told, on states of recorded runs, with the truth.
 
     python benchmarks/armhole_reach.py RECORD...
 
-Draws what the head's camera sees of each sleeve in every state in which the hands are open and away, with arms as well
-as they are tracked.  Prints how far the rule is off, then the same of a least-squares fit to the other seeds' records
-alone, then the numbers of a fit to all.
+Draws what the head's camera sees of each sleeve, from the head of the bed and from beside the arm, in every state in
+which the hands are open and away, with arms as well as they are tracked.  Prints for either how far the rule is off,
+then the same of a least-squares fit to the other seeds' records alone, then the numbers of a fit to all.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.render.camera import CAMERA_VIEWS, camera_intrinsics
 from caretree.sim.render.recorded_room import NEEDED, OPTIONAL, RecordedRoom
 from caretree.sim.robot.baxter import BAXTER
-from caretree.sim.world import SIDES, Frame
-from caretree.skills.geometry.stances import stance_at_head
+from caretree.sim.world import SIDES, Frame, Side
+from caretree.skills.geometry.stances import stance, stance_at_head
 
+AT_HEAD, BESIDE = "the head of the bed", "beside the arm"
 REST = 6.0  # between two states [s]
 AWAY = 0.45  # of the hands from the middle between the shoulders [m]
 PANS = np.linspace(-1.5, 1.5, 25)  # of the head, of which that towards the shoulder is taken [rad]
@@ -46,6 +47,7 @@ class View:
     """One sleeve as one picture shows it, and how far up it is in truth."""
 
     seed: int
+    where: str
     features: np.ndarray
     told: float
     true: float
@@ -72,17 +74,24 @@ def views_of(record: Path, rng: np.random.Generator) -> Iterator[View]:
         if up == before:
             continue  # nothing has moved since
         before = up
-        for arm, true in zip(truth.arms[i].astype(float), up, strict=True):
-            if true is not None:
-                yield from _seen(room, i, arm, int(run["seed"]), true, rng)
+        for side, arm, true in zip(SIDES, truth.arms[i].astype(float), up, strict=True):
+            for where, stand in stands(side) if true is not None else ():
+                for features, told in _seen(room, i, arm, stand, rng):
+                    yield View(int(run["seed"]), where, features, told, true)
+
+
+def stands(side: Side) -> list[tuple[str, np.ndarray]]:
+    """From where sleeves are looked at."""
+    beside = [(BESIDE, stance(side, stand)) for stand in ("shoulder", "lift")]
+    return [(AT_HEAD, stance_at_head()), *beside]
 
 
 def _seen(
-    room: RecordedRoom, i: int, arm: np.ndarray, seed: int, true: float, rng: np.random.Generator
-) -> Iterator[View]:
-    """One sleeve in state `i`, with several draws of the error of a tracked arm (4, 3)."""
+    room: RecordedRoom, i: int, arm: np.ndarray, stand: np.ndarray, rng: np.random.Generator
+) -> Iterator[tuple[np.ndarray, float]]:
+    """Features and what is told of a sleeve in state `i`, with several draws of the error of a tracked arm (4, 3)."""
     kinematics = kinematics_of(BAXTER)
-    poses = [kinematics.pose_camera_in_map("head", stance_at_head(), BAXTER.ready, float(pan)) for pan in PANS]
+    poses = [kinematics.pose_camera_in_map("head", np.asarray(stand), BAXTER.ready, float(pan)) for pan in PANS]
     pose = max(poses, key=lambda p: (arm[0] - p[:3, 3]) @ p[:3, 2] / np.linalg.norm(arm[0] - p[:3, 3]))
     size, _ = CAMERA_VIEWS["head"]
     drawn = room.at(i).render(pose, size, camera_intrinsics("head"))
@@ -102,7 +111,7 @@ def _seen(
         tracked = arm.copy()
         tracked[:2] += rng.normal(0.0, SCATTER, (2, 3)) - (0.0, 0.0, TOO_LOW)
         told = armhole_reach(armhole, cuff, tracked, pose[:3, 3])
-        yield View(seed, reach_features(armhole, cuff, tracked), told, true)
+        yield reach_features(armhole, cuff, tracked), told
 
 
 def fit(features: np.ndarray, true: np.ndarray) -> np.ndarray:
@@ -129,9 +138,15 @@ def main(records: list[str]) -> None:
     """Print the table, and the numbers."""
     rng = np.random.default_rng(0)
     views = [view for record in records for view in views_of(Path(record), rng)]
+    for where in (AT_HEAD, BESIDE):
+        judge(where, [view for view in views if view.where == where])
+
+
+def judge(where: str, views: list[View]) -> None:
+    """Print how well sleeves are told that were seen from there."""
     features, true = np.array([view.features for view in views]), np.array([view.true for view in views])
     seeds = np.array([view.seed for view in views])
-    print(f"{len(views) // DRAWS} views of {len(records)} records, {len(set(seeds))} seeds")
+    print(f"from {where}: {len(views) // DRAWS} views, {len(set(seeds))} seeds")
     report("the rule", np.array([view.told for view in views]), true)
     told = np.empty(len(views))
     for seed in set(seeds):
