@@ -32,13 +32,8 @@ def see_with(context: Context, perception: str, *, scripted: bool = False) -> No
     Raises:
         CaretreeError: there is no such perception, or nothing for a network to look at.
     """
-    if perception not in PERCEPTIONS:
-        raise CaretreeError(f"there is no perception {perception!r}, only {', '.join(PERCEPTIONS)}")
-    if perception == CLASSICAL:
-        return
-    if scripted:
-        raise CaretreeError("--perception learned looks at pictures, and scripted senses see none")
-    context.wrap_senses(seen_by_network)
+    if _learned("perception", perception, scripted):
+        context.wrap_senses(seen_by_network)
 
 
 def grasp_with(context: Context, pregrasp: str, *, scripted: bool = False) -> None:
@@ -52,14 +47,22 @@ def grasp_with(context: Context, pregrasp: str, *, scripted: bool = False) -> No
     Raises:
         CaretreeError: there is no such choice, or nothing for a policy to look at.
     """
-    if pregrasp not in PERCEPTIONS:
-        raise CaretreeError(f"there is no pre-grasp {pregrasp!r}, only {', '.join(PERCEPTIONS)}")
-    if pregrasp == CLASSICAL:
-        return
-    if scripted:
-        raise CaretreeError("--pregrasp learned looks at pictures, and scripted senses see none")
-    policy = packaged_policy()
-    context.wrap_senses(lambda senses: chosen_by_policy(senses, policy))
+    if _learned("pregrasp", pregrasp, scripted):
+        policy = packaged_policy()
+        context.wrap_senses(lambda senses: chosen_by_policy(senses, policy))
+
+
+def _learned(option: str, chosen: str, scripted: bool) -> bool:
+    """Whether `--option` asks for a network.
+
+    Raises:
+        CaretreeError: there is no such choice, or nothing for a network to look at.
+    """
+    if chosen not in PERCEPTIONS:
+        raise CaretreeError(f"there is no {option} {chosen!r}, only {', '.join(PERCEPTIONS)}")
+    if chosen == LEARNED and scripted:
+        raise CaretreeError(f"--{option} learned looks at pictures, and scripted senses see none")
+    return chosen == LEARNED
 
 
 def chosen_by_policy(

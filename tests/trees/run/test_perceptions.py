@@ -114,7 +114,7 @@ def test_the_policy_is_put_before_the_senses_when_it_is_asked_for(context, monke
     assert wrapped == []
     grasp_with(context, "learned")
     assert wrapped == [(senses, "the policy")]
-    with pytest.raises(CaretreeError, match=r"no pre-grasp 'keen'.*classical, learned"):
+    with pytest.raises(CaretreeError, match=r"no pregrasp 'keen'.*classical, learned"):
         grasp_with(context, "keen")
 
 
