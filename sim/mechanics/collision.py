@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
 else:
     coal = later("coal")
     pin = later("pinocchio")
+
+
+EPSILON = 1e-6  # [m] a posture is as near as itself
+Contacts = Mapping[int, float]  # pair of shapes -> what lies between them, below 0 where they are in each other [m]
 
 
 class CollisionChecker:
@@ -70,11 +75,35 @@ class CollisionChecker:
             for request in data.collisionRequests:
                 request.security_margin = closest
 
-    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None) -> bool:
-        """Whether arms (2, n) at these angles touch nothing, with some room."""
+    def free(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float | None = None,
+        *,
+        leaving: Contacts | None = None,
+    ) -> bool:
+        """Whether arms (2, n) at these angles touch nothing, with some room.
+
+        Args:
+            pose_base_in_map: (3,) where the base stands.
+            arm_positions: (2, n) [rad].
+            head_pan: of the robot's head [rad]; `head_pan` of this checker if not given.
+            leaving: contacts that a motion begins with; those may stay as near as they are, and come no nearer.
+        """
         pan = self.head_pan if head_pan is None else head_pan
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
-        return not self._compute(q, self._roomy, stop_at_first=True)
+        if not self._compute(q, self._roomy, stop_at_first=not leaving):
+            return True
+        return bool(leaving) and all(leaving.get(n, np.inf) - EPSILON <= gap for n, gap in self._near().items())
+
+    def contacts(
+        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
+    ) -> Contacts:
+        """What is too near for `free` where the arms (2, n) are, for a motion that leaves it."""
+        pan = self.head_pan if head_pan is None else head_pan
+        q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
+        return self._near() if self._compute(q, self._roomy, stop_at_first=False) else {}
 
     def collisions(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
@@ -88,6 +117,11 @@ class CollisionChecker:
             pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True) if result.isCollision()
         ]
         return list(dict.fromkeys((self._names[m], self._names[n]) for m, n in hit))
+
+    def _near(self) -> Contacts:
+        """Of the posture that was computed last."""
+        near = [n for n, result in enumerate(self._roomy.collisionResults) if result.isCollision()]
+        return {n: pin.computeDistance(self._geometry, self._roomy, n).min_distance for n in near}
 
     def _compute(self, q: np.ndarray, data: pin.GeometryData, *, stop_at_first: bool) -> bool:
         model = self._kinematics

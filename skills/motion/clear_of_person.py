@@ -7,13 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...sim.mechanics.capsules import RobotCapsules
-from ...sim.mechanics.collision import CollisionChecker
+from ...sim.mechanics.collision import EPSILON, CollisionChecker, Contacts
 from ...sim.segments import any_nearer
 from ...sim.world import Observation, Side
 from ..geometry.clearance import CLEARANCE, LinkClearance
 from ..geometry.person_zone import PersonZone
-
-EPSILON = 1e-6  # [m] a posture is as near as itself
 
 
 class ClearOfPerson(CollisionChecker):
@@ -46,13 +44,27 @@ class ClearOfPerson(CollisionChecker):
         planned = self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)
         self._least_gaps = self._gaps + planned
 
-    def free(self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None) -> bool:
+    def free(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float | None = None,
+        *,
+        leaving: Contacts | None = None,
+    ) -> bool:
         """Whether arms (2, n) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         pan = self.head_pan if head_pan is None else head_pan
         zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, pan, self._opening)
         assert len(zone.names) == self._least.shape[1], "one checker serves one plan: the person must not change"
         near = any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)
-        return not near and self._checker.free(pose_base_in_map, arm_positions, pan)
+        return not near and self._checker.free(pose_base_in_map, arm_positions, pan, leaving=leaving)
+
+    def contacts(
+        self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
+    ) -> Contacts:
+        """What the robot itself and the room are too near to; how near the person may be is known from the start."""
+        pan = self.head_pan if head_pan is None else head_pan
+        return self._checker.contacts(pose_base_in_map, arm_positions, pan)
 
     def collisions(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None

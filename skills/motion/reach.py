@@ -195,6 +195,7 @@ def plan_arms(
     if checker is None:
         return timed(np.stack((start, goal)))
     free = free_postures(checker, moving, pose_base_in_map, arm_positions)
+    leaving = free_postures(checker, moving, pose_base_in_map, arm_positions, leaving=True)
     if segment_free(start, goal, free):
         return timed(np.stack((start, goal)))
     limits = [kinematics.limits[side] for side in moving]
@@ -203,7 +204,7 @@ def plan_arms(
     )
 
     def round_it(seed: int) -> JointTrajectory:
-        corners = connect(start, goal, lower, upper, free, seed=seed)
+        corners = connect(start, goal, lower, upper, free, leaving=leaving, seed=seed)
         *wide, narrow = tuning.spacings
         for spacing in wide:
             try:

@@ -26,14 +26,6 @@ class RrtTuning(Quantities):
     )
     tries: int = quantity(1500, "1", "random samples before giving up", "choice: a few seconds of computing")
     shortcuts: int = quantity(60, "1", "shortcuts that are tried on a path", "choice: later ones hardly shorten it")
-    escape: tuple[float, float] = quantity(
-        (0.03, 0.25),
-        "rad",
-        "least and greatest step out of a contact, in each joint",
-        "choice: a small motion unplanned",
-    )
-    escape_radii: int = quantity(12, "1", "sizes of that step, from the least on", "choice: 0.02 rad apart")
-    escape_samples: int = quantity(40, "1", "random steps of each size", "choice: cheap beside the search itself")
 
 
 RRT = RrtTuning()
@@ -46,12 +38,11 @@ def connect(
     upper: np.ndarray,
     free: Test,
     *,
+    leaving: Test | None = None,
     seed: int = 0,
     tuning: RrtTuning = RRT,
 ) -> np.ndarray:
     """Waypoints (k, n) of a free path between two joint vectors (n,).
-
-    Arms that have come too near to something under velocity control first take the smallest step that frees them.
 
     Args:
         start: where the arms are [rad].
@@ -59,18 +50,21 @@ def connect(
         lower: lower joint limits (n,) [rad].
         upper: upper joint limits (n,) [rad].
         free: whether a joint vector is allowed.
+        leaving: the same on the way from a `start` that is not free, as velocity control may bring arms too near to
+            something; none, where there is no such way.
         seed: of the samples; the same seed gives the same path.
         tuning: numbers of the search.
 
     Raises:
-        MotionBlocked: the goal or everything near the start is not free, or no path was found.
+        MotionBlocked: the start or the goal is not free, or no path was found.
     """
     generator = np.random.default_rng(seed)
-    if not free(start):
-        freed = _step_out(start, lower, upper, free, generator, tuning)
-        return np.vstack((start, connect(freed, goal, lower, upper, free, seed=seed, tuning=tuning)))
     if not free(goal):
         raise MotionBlocked("no way to plan: the goal posture touches something")
+    if not free(start):
+        if leaving is None or not leaving(start):
+            raise MotionBlocked("no way to plan: the arms already touch something")
+        free = leaving
     trees = (_Tree(start, tuning), _Tree(goal, tuning))
     forward = True
     for n in range(tuning.tries):
@@ -85,23 +79,6 @@ def connect(
                 return _shorten(path, free, generator, tuning)
         forward = not forward
     raise MotionBlocked(f"no free way found for the arms in {tuning.tries} tries")
-
-
-def _step_out(
-    start: np.ndarray,
-    lower: np.ndarray,
-    upper: np.ndarray,
-    free: Test,
-    generator: np.random.Generator,
-    tuning: RrtTuning,
-) -> np.ndarray:
-    """The free joint vector found nearest to one that is not."""
-    for radius in np.linspace(*tuning.escape, tuning.escape_radii):
-        for _ in range(tuning.escape_samples):
-            q = np.clip(start + generator.uniform(-radius, radius, len(start)), lower, upper)
-            if free(q):
-                return q
-    raise MotionBlocked("no way to plan: the arms already touch something")
 
 
 def segment_free(a: np.ndarray, b: np.ndarray, free: Test, *, resolution: float = RRT.resolution) -> bool:

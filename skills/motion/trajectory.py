@@ -162,7 +162,12 @@ def standing_contacts(
 
 
 def free_postures(
-    checker: CollisionChecker, moving: Side | list[Side], pose_base_in_map: np.ndarray, arms: np.ndarray
+    checker: CollisionChecker,
+    moving: Side | list[Side],
+    pose_base_in_map: np.ndarray,
+    arms: np.ndarray,
+    *,
+    leaving: bool = False,
 ) -> Callable[[np.ndarray], bool]:
     """A test of postures, (n,) of one arm or (2 n,) of both [rad]: whether they make no new contact.
 
@@ -171,13 +176,17 @@ def free_postures(
         moving: side or sides of the arms that move.
         pose_base_in_map: (3,) where the base stands.
         arms: (2, n) joint angles of both arms, of which those that do not move stay [rad].
+        leaving: for a motion that begins at `arms`: what touches there may stay as near, and come no nearer.
     """
     sides: list[Side] = moving if isinstance(moving, list) else [moving]
     rows, given = [SIDES.index(side) for side in sides], standing_contacts(checker, sides, pose_base_in_map, arms)
+    begins = checker.contacts(pose_base_in_map, arms) if leaving else None
 
     def accept(q: np.ndarray) -> bool:
         trial = np.array(arms, float)
         trial[rows] = q.reshape(-1, trial.shape[1])
+        if begins:
+            return checker.free(pose_base_in_map, trial, leaving=begins)
         if given:
             return given.issuperset(checker.collisions(pose_base_in_map, trial))
         return checker.free(pose_base_in_map, trial)

@@ -53,3 +53,19 @@ def test_an_arm_folded_into_the_chest_collides(kinematics):
     checker = CollisionChecker(kinematics)
     assert not checker.free(np.zeros(3), arms)
     assert any("torso" in pair for pair in checker.collisions(np.zeros(3), arms))
+
+
+def test_what_a_motion_leaves_may_stay_as_near_and_come_no_nearer(kinematics):
+    hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
+
+    def before(gap):
+        """A board below the left hand, that much farther off than when the motion began."""
+        face = hand + (0.0, 0.0, 0.04 - gap)
+        return CollisionChecker(kinematics, np.array(((face - (0.2, 0.2, 0.1), face + (0.2, 0.2, 0.0)),)))
+
+    begins = before(0.0).contacts(BASE, model.READY)
+    assert begins
+    assert not before(0.0).free(BASE, model.READY)
+    assert before(0.0).free(BASE, model.READY, leaving=begins)
+    assert before(0.002).free(BASE, model.READY, leaving=begins)
+    assert not before(-0.002).free(BASE, model.READY, leaving=begins)

@@ -105,8 +105,27 @@ def test_an_arm_moves_while_the_other_one_touches_something(kinematics):
     np.testing.assert_allclose(motion.positions[-1], 0.9 * model.READY[1], atol=1e-6)
 
 
-def test_no_way_out_of_a_box_is_told(kinematics):
+def test_both_arms_that_velocity_control_brought_to_the_head_come_away_from_it(kinematics):
+    """Drawn up with every sleeve that was let go of, both elbows came to the head, and nothing moved any more."""
+    base = np.array((-0.974, -0.607, 0.0))
+    up = np.array(
+        ((1.702, -2.147, -2.769, 1.934, -0.72, 0.348, -1.957), (0.563, -1.723, 0.617, 1.149, 0.119, 2.094, 1.371))
+    )
+    checker = CollisionChecker(kinematics, BED)
+    touching = {("left_lower_elbow", "head"), ("right_lower_elbow", "head")}
+    assert touching.issubset(checker.collisions(base, up))
+    begins = checker.contacts(base, up)
+    motion = plan_arms(kinematics, model.READY, up, base, checker=checker)
+    postures = motion.positions.reshape(len(motion.positions), 2, 7)
+    np.testing.assert_allclose(postures[-1], model.READY, atol=1e-6)
+    assert checker.free(base, postures[-1])
+    for arms in postures:
+        gaps = checker.contacts(base, arms)
+        assert all(gap > begins.get(pair, 0.01) - 0.003 for pair, gap in gaps.items()), "nearer than where it began"
+
+
+def test_a_goal_in_a_box_is_told(kinematics):
     hand = kinematics.pose_hand_in_map("left", model.READY[0], BASE)[:3, 3]
     inside = CollisionChecker(kinematics, np.array(((hand - 0.3, hand + 0.3),)))
-    with pytest.raises(MotionBlocked, match="already touch"):
+    with pytest.raises(MotionBlocked, match="goal"):
         plan_arms(kinematics, 0.9 * model.READY, model.READY, BASE, checker=inside)

@@ -99,10 +99,12 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         dict.fromkeys(STUCK, grasp_again) | {Reason.ARM_LOST: lambda: LookAtPerson("look again", arm)},
         attempts=2,
     )
+    # an arm that is inside a sleeve that goes no farther is not begun again: the last stage draws it up (279)
+    far = fallback(f"{side} sleeve as far as it goes", up, let_go(Scope(arm, "so far")))
     away = back_off("back off", arm, DRESSING.back_off_distance)
     inside = patient(arm, CheckSleeve("is inside", arm))
     lies = patient(arm, put_down("in the end", arm))
-    once = sequence(f"{side} arm once", over_hand(arm, sleeve), up, away, lies, inside)
+    once = sequence(f"{side} arm once", over_hand(arm, sleeve), far, away, lies, inside)
     again: dict[Reason, Callable[[], Behaviour]] = {
         **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
