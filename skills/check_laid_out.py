@@ -29,8 +29,8 @@ class CheckLaidOutTuning(Quantities):
 class CheckLaidOut(Skill):
     """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
 
-    It fails where the arm is covered, where the sleeve lies elsewhere or does not show, and where it was out of reach
-    from more than one stand.
+    It fails where the arm is covered, where the sleeve lies elsewhere or does not show, and where it was missed or
+    out of reach from more than one stand.
     """
 
     commands = False
@@ -50,5 +50,5 @@ class CheckLaidOut(Skill):
         if away > self.tuning.max_distance:
             raise SkillFailure(Reason.SLEEVE_MISSED, f"it lies {away * 100:.0f} cm from the hand")
         if (refused := len(refused_stands(self, self.side))) >= REFUSED:
-            raise SkillFailure(Reason.SLEEVE_MISSED, f"it was out of reach from {refused} stands")
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"it was not taken from {refused} stands")
         yield

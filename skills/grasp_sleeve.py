@@ -22,7 +22,7 @@ from .control.fingers import open_gripper
 from .control.hands import hand_now, move_hands
 from .control.pinch import pinch_or_back_off
 from .core.ports import Input, Output
-from .core.reasons import Reason
+from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
 from .core.tries import Tries
 from .geometry.arm_path import ArmPath
@@ -95,17 +95,26 @@ class GraspSleeve(Skill):
             path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
             way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
         except MotionError:  # neither to look at it nor to take it: from here it was so five times in turn (190)
-            if not self.worn:
-                refused_stands(self, self.side).append(self.world.observe().pose_base_in_map)
+            self._refuse_stand()
             raise
         yield from move_hands(self, {self.hand: way.before}, speed=careful(self, tuning.approach_speed), way="either")
         yield from open_gripper(self, self.hand, tuning.opening)
         seen_well(self).pop(self.side, None)
         yield from move_hands(self, {self.hand: way.inside}, speed=tuning.reach_in_speed, way="either")
         pose = hand_now(self, self.hand)
-        yield from pinch_or_back_off(self, self.hand)
+        try:
+            yield from pinch_or_back_off(self, self.hand)
+        except SkillFailure as miss:
+            if miss.reason == Reason.GRASP_MISSED:  # four times in turn, alike (117)
+                self._refuse_stand()
+            raise
         strap_turns(self)[self.hand] = 0.0
         self.grip = strap_grip(self.side, self.hand, strap, pose)
+
+    def _refuse_stand(self) -> None:
+        """The next try is from elsewhere, or the sleeve is laid elsewhere first; one on the arm is tried as it lies."""
+        if not self.worn:
+            refused_stands(self, self.side).append(self.world.observe().pose_base_in_map)
 
     def _look(self) -> Generator[None, None, SleeveOpening]:
         """From afar, then closely; once more where it turns out not to lie where it was seen well before."""

@@ -41,10 +41,10 @@ class LayGownTuning(Quantities):
     )
     end_y: float = quantity(0.16, "m", "of the neckline in the end", "choice: just beyond resting fingertips")
     end_heights: tuple[float, ...] = quantity(
-        (0.66, 0.74),
+        (0.66, 0.70, 0.74, 0.78, 0.82),
         "m",
         "of the neckline in the end, tried in turn",
-        "choice: as near to the bed, whose top is at 0.58 m, as the hands get",
+        "choice: as near to the bed, whose top is at 0.58 m, as the hands get straight down",
     )
     middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
     neckline: NecklineTuning = field(default_factory=NecklineTuning)
@@ -95,12 +95,14 @@ class LayGown(Skill):
         return np.array((STANCES.lane, y + STANCES.ahead, STANCES.heading))
 
     def _lay_down(self, neckline: HeldNeckline) -> Iterator[None]:
-        """Bring both ends of the neckline down before the sleeves, which trail towards the feet.
+        """Bring both ends of the neckline straight down before the sleeves, which trail towards the feet.
+
+        Any other way there may lead over the person: a hand that swung round came down on the belly with 57 N (115).
 
         Let go of in the air, sleeves that the hands' way across had tucked in turned over as they fell, and pointed
         back at the person's hand as they were held out (148, 150, 156, 190, 194).
         """
         for height in self.tuning.end_heights:
             with suppress(MotionError):
-                yield from neckline.to(self.tuning.end_y, height)
+                yield from neckline.to(self.tuning.end_y, height, way="line")
                 return

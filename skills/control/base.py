@@ -17,7 +17,7 @@ import numpy as np
 
 from ...sim.mechanics.planar import planar_pose
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import Side
+from ...sim.world import SIDES, BaseVelocity, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from ..motion.drive import PathFollower
@@ -52,6 +52,12 @@ class BaseTuning(Quantities):
         4.0, "1", "of the time that the path would take at full speed, added to that", "choice: the guard slows it"
     )
     settle_time: float = quantity(0.2, "s", "after arrival", "choice: the last command runs out")
+    wide: float = quantity(
+        0.35,
+        "m",
+        "that a base with empty hands goes back where the guard stopped it beside the person, before it goes round",
+        "choice: the hands ahead are then beyond an arm that is raised beside the bed (131)",
+    )
 
 
 BASE = BaseTuning()
@@ -84,6 +90,9 @@ def drive_to(
 ) -> Iterator[None]:
     """Drive the base to a waypoint or pose, turning on the way; both hands are carried along.
 
+    Where the guard stops it, as a link comes too near to the person, a base whose hands hold nothing goes back once,
+    away from what it faces, and goes on from there.
+
     Args:
         skill: that drives.
         goal: name of a waypoint, or pose (3,) in the map: x, y [m], yaw [rad].
@@ -99,21 +108,52 @@ def drive_to(
         SkillFailure: COMMAND_LOST when the base does not move, TIMEOUT when it never arrives.
     """
     goal = waypoint(skill, goal)
-    start = skill.world.observe().pose_base_in_map
-    path = np.stack((start[:2], *via, goal[:2])) if straight else plan_path(skill.world.room, start, goal)
-    follower = PathFollower(path, float(goal[2]), skill.world.robot.limits, speed=speed, turn_from=turn_from)
+
+    def drive() -> Iterator[None]:
+        start = skill.world.observe().pose_base_in_map
+        path = np.stack((start[:2], *via, goal[:2])) if straight else plan_path(skill.world.room, start, goal)
+        follower = PathFollower(path, float(goal[2]), skill.world.robot.limits, speed=speed, turn_from=turn_from)
+        return _along(skill, follower, path, goal, speed, retreat=retreat, tuning=tuning)
+
+    try:
+        yield from drive()
+    except _Held:
+        if straight or any(skill.context.guard.grip(side) != "nothing" for side in SIDES):
+            raise
+        x, y, yaw = skill.world.observe().pose_base_in_map
+        back = np.array((x - tuning.wide * np.cos(yaw), y - tuning.wide * np.sin(yaw), yaw))
+        yield from drive_to(skill, back, straight=True, speed=speed, retreat=True, tuning=tuning)
+        yield from drive()
+    yield from skill.wait(tuning.settle_time)
+
+
+class _Held(SkillFailure):
+    """The guard lets the base go no farther."""
+
+
+def _along(
+    skill: Skill,
+    follower: PathFollower,
+    path: np.ndarray,
+    goal: np.ndarray,
+    speed: float,
+    *,
+    retreat: bool,
+    tuning: BaseTuning,
+) -> Iterator[None]:
     end = skill.now() + tuning.timeout + tuning.timeout_factor * path_length(path) / speed
-    anchor, since = start, skill.now()
+    anchor, since, held = skill.world.observe().pose_base_in_map, skill.now(), False
     while not follower.done(pose := skill.world.observe().pose_base_in_map):
         if np.abs(pose - anchor).max() > tuning.min_motion:
             anchor, since = pose, skill.now()
         if skill.now() - since > tuning.stuck_time:
-            raise SkillFailure(Reason.COMMAND_LOST, f"the base stands at {np.round(pose[:2], 2).tolist()} m")
+            failure = _Held if held else SkillFailure
+            raise failure(Reason.COMMAND_LOST, f"the base stands at {np.round(pose[:2], 2).tolist()} m")
         if skill.now() > end:
             raise SkillFailure(Reason.TIMEOUT, f"the base is still {np.linalg.norm(goal[:2] - pose[:2]):.2f} m away")
-        skill.world.send(follower.command(pose), retreat=retreat)
+        sent = skill.world.send(follower.command(pose), retreat=retreat)
+        held = isinstance(sent, BaseVelocity) and not np.any(np.abs(sent.velocity) > tuning.min_motion)
         yield
-    yield from skill.wait(tuning.settle_time)
 
 
 def stand_for(skill: Skill, side: Side, position_in_map: np.ndarray, *, tuning: BaseTuning = BASE) -> Iterator[None]:

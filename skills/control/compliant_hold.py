@@ -25,7 +25,7 @@ class CompliantHoldTuning(Quantities):
     dead_band: float = quantity(6.0, "N", "pull that is borne", "choice: keeps the arm where it is held")
     arm_weight: float = quantity(20.0, "N", "more that is borne downwards", "choice: an arm's weight hangs on the hand")
     compliance: float = quantity(
-        0.003, "m/s/N", "speed of giving way to each newton above that", "choice: slow, as a held arm is stiff"
+        0.0012, "m/s/N", "speed of giving way to each newton above that", "choice: as on an arc (`ArcTuning`)"
     )
     max_speed: float = quantity(0.03, "m/s", "greatest speed of giving way", "choice: harmless near the person")
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, Side
 from ..core.skill import Skill
-from .hands import hand_now, move_hands
+from .hands import Way, hand_now, move_hands
 
 # The robot stands at the person's right, facing the head of the bed.
 NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
@@ -46,8 +46,8 @@ class HeldNeckline:
     middle: float
     tuning: NecklineTuning
 
-    def to(self, y: float, z: float, share: float = 1.0) -> Iterator[None]:
-        """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the way there, turned anyhow.
+    def to(self, y: float, z: float, share: float = 1.0, *, way: Way = "either") -> Iterator[None]:
+        """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the `way` there, turned anyhow.
 
         Raises:
             MotionError: out of reach, or something is in the way.
@@ -59,4 +59,4 @@ class HeldNeckline:
             there = np.array((max(self.middle, self.tuning.min_near_x - half) + sign * half, y, z))
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
-        yield from move_hands(self.skill, goals, speed=self.tuning.speed, free="any", way="either")
+        yield from move_hands(self.skill, goals, speed=self.tuning.speed, free="any", way=way)

@@ -102,6 +102,7 @@ def test_a_miss_ends_with_the_hand_open_and_drawn_back():
     assert run.openings("right")[-1] > 0.08
     assert np.linalg.norm(run.way("right")[-1] - run.way("right")[closed(run)]) == pytest.approx(0.12, abs=0.02)  # [m]
     assert run.context.guard.grip("right") == "nothing"
+    assert len(refused_stands(run.skill, "right")) == 1, "the next try is from elsewhere"
 
 
 def test_a_sleeve_that_shows_nowhere_is_told_and_no_hand_closes():

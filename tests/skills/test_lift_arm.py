@@ -101,7 +101,7 @@ def test_it_takes_its_time():
 
 
 def test_it_gives_way_to_an_arm_that_turns_about_another_point():
-    run = bench(aside=7.0)
+    run = bench(aside=14.0)  # [N]
     assert run.ended() is None
     straight = bench()
     assert straight.ended() is None

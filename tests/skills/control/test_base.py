@@ -78,3 +78,25 @@ def test_it_stands_where_a_hand_works_with_ease(side, aside):
     before = len(world.sent)
     carry_out(world, context, lambda skill: stand_for(skill, side, point))
     assert len(world.sent) == before, "it is there already"
+
+
+@pytest.mark.parametrize("grip", ["nothing", "cloth"])
+def test_stopped_beside_the_person_a_base_with_empty_hands_goes_back_and_round(grip):
+    world, context = robot(base=(1.2, -0.9, np.pi))
+    hand = world.observe().pose_hand_in_map[0, :3, 3]
+    arm = np.array((hand + (-0.5, 0.45, 0.0), hand + (0.05, 0.45, 0.0)))
+    context.guard.update_person(arm, part="right arm", radius=0.04)
+    context.guard.declare_grip("left", grip)
+    seen = []
+    skill = carry_out(
+        world,
+        context,
+        lambda skill: drive_to(skill, np.array((1.2, 0.3, np.pi))),
+        each_tick=lambda skill: seen.append(world.observe().pose_base_in_map[:2]),
+    )
+    if grip == "nothing":
+        assert skill.failure is None
+        assert np.max(seen, axis=0)[0] > 1.5, "wide enough for the hands"
+    else:
+        assert skill.failure.reason == Reason.COMMAND_LOST
+        assert np.max(seen, axis=0)[0] < 1.22, "whatever it holds stays where it is"
