@@ -101,7 +101,7 @@ class FindStand(Skill):
         """Whether from `base` (3,) one hand lifts the arm, and the other one then looks at the strap and takes it."""
         arms = self.world.robot.ready.copy()
         bed = self.world.room.bed
-        tuning, lift = self.tuning, goal_for(self, self.side, self.tuning.lift)
+        tuning, lift = self.tuning, goal_for(self, self.side, posture, self.tuning.lift)
         shoulder, held = posture.points_in_map[0], ArmPath.of(posture).point(lift.grip_coordinate)
         up = lifted(posture, self.side, lift)
         end = over_arm(posture, lift.grip_coordinate, lift=0.0)

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ..geometry.arm_path import UP
+from .give_way import GiveWay, GiveWayTuning
 
 
 @dataclass(frozen=True, kw_only=True)
 class ArcTuning(Quantities):
     """How a hand on an arc gives way to a pull across it."""
 
-    compliance: float = quantity(
-        0.0012,
-        "m/s/N",
-        "speed of giving way to a pull across the arc",
-        "measured: at 0.004 a held arm and the hand swung against each other three times a second, with 25 to 50 N "
-        "(101, 104); under an arm that answers with 7 N/mm, one tick of 1/15 s late, more than 0.0021 is unstable",
-    )
     dead_band: float = quantity(3.0, "N", "pull across the arc that is borne", "choice: above the noise of the force")
     max_offset: float = quantity(
         0.08,
@@ -29,6 +23,7 @@ class ArcTuning(Quantities):
         "greatest way that the hand gives",
         "choice: the shoulder is a few cm from where it was seen",
     )
+    give_way: GiveWayTuning = field(default_factory=GiveWayTuning)
 
 
 ARC = ArcTuning()
@@ -63,7 +58,7 @@ class Arc:
         reach: float | None = None,
         tuning: ArcTuning = ARC,
     ) -> None:
-        self._tuning = tuning
+        self._tuning, self._gives = tuning, GiveWay(tuning.give_way)
         self._shoulder = np.asarray(shoulder, float)
         arm = np.asarray(start, float) - self._shoulder
         self.radius = float(np.linalg.norm(arm))
@@ -93,11 +88,11 @@ class Arc:
     def _radius_at(self, swung: float) -> float:
         return self.radius + self._growth * swung
 
-    def give_way(self, load: np.ndarray, tangent: np.ndarray, step: float) -> np.ndarray:
+    def give_way(self, load: np.ndarray, tangent: np.ndarray, now: float, step: float) -> np.ndarray:
         """Velocity (3,) [m/s] across the arc under a load (3,) [N]; moves `offset` on by `step` [s] of it."""
         pull = load - (load @ tangent) * tangent
         pull = pull * max(0.0, 1.0 - self._tuning.dead_band / max(float(np.linalg.norm(pull)), 1e-9))
-        velocity = self._tuning.compliance * pull
+        velocity = self._gives.velocity(pull, now)
         self.offset = self.offset + velocity * step
         self.offset *= min(1.0, self._tuning.max_offset / max(float(np.linalg.norm(self.offset)), 1e-9))
         return velocity

@@ -192,7 +192,7 @@ def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: Low
         against = max(float(load[2]), -float(load @ along))
         ease = float(np.clip((tuning.stop_at - against) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))
         down = tuning.speed * ease * along
-        linear = down + compliant_velocity(load - (load @ along) * along)
+        linear = down + compliant_velocity(skill, hand, load - (load @ along) * along)
         turn = tuning.turn_gain * np.cross(pose[:3, 2], -UP)
         turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
         skill.world.send(HandTwist(side=hand, twist_in_map=np.append(linear, turn)), retreat=True)

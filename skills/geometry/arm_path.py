@@ -141,6 +141,11 @@ class ArmPath:
         return total
 
     @property
+    def bend(self) -> float:
+        """Angle of the elbow, 0 for a straight arm [rad]."""
+        return float(np.arccos(np.clip(self._directions[0] @ self._directions[1], -1.0, 1.0)))
+
+    @property
     def pitch(self) -> float:
         """Angle of the whole arm above the horizontal, shoulder to fingertip [rad]."""
         whole = self.points[3] - self.points[0]

@@ -91,6 +91,17 @@ def test_a_forearm_is_taken_where_it_lies_by_then_and_a_bent_arm_straightened():
     assert reach[-1] == pytest.approx(0.99 * length, abs=0.01)
 
 
+def test_an_arm_whose_elbow_is_bent_is_taken_above_it():
+    bent = LIES.points_in_map.copy()
+    forearm = np.linalg.norm(bent[2] - bent[1])
+    bent[2:] += ELBOW + forearm * np.array((-0.8, 0.6, 0.0)) - bent[2]
+    run = bench(arm=lambda frame, side, **_: replace(LIES, points_in_map=bent))
+    assert run.ended() is None
+    assert run.skill.hold == Hold("left", LiftGoal().bent_grip)
+    away = np.linalg.norm(swing(run)[0] - (ELBOW - SHOULDER))
+    assert away == pytest.approx(0.18 * np.linalg.norm(ELBOW - SHOULDER), abs=0.02)
+
+
 def test_it_takes_its_time():
     run = bench()
     assert run.ended() is None
@@ -101,7 +112,7 @@ def test_it_takes_its_time():
 
 
 def test_it_gives_way_to_an_arm_that_turns_about_another_point():
-    run = bench(aside=14.0)  # [N]
+    run = bench(aside=7.0)
     assert run.ended() is None
     straight = bench()
     assert straight.ended() is None

@@ -25,14 +25,14 @@ def test_the_hand_stays_at_the_arm_s_length_and_rises():
 def test_weight_along_the_arc_is_borne_and_a_pull_across_it_is_given_way_to():
     arc = Arc(SHOULDER, ELBOW, GOAL)
     tangent = arc.at(0.3)[1]
-    np.testing.assert_allclose(arc.give_way(-15.0 * tangent, tangent, 0.1), 0.0, atol=1e-12)
+    np.testing.assert_allclose(arc.give_way(-15.0 * tangent, tangent, 0.0, 0.1), 0.0, atol=1e-12)
     inwards = (SHOULDER - ELBOW) / arc.radius
     inwards -= (inwards @ tangent) * tangent
-    velocity = arc.give_way(10.0 * inwards / np.linalg.norm(inwards), tangent, 0.1)
+    velocity = arc.give_way(10.0 * inwards / np.linalg.norm(inwards), tangent, 0.1, 0.1)
     assert velocity @ inwards > 0
     np.testing.assert_allclose(arc.offset, 0.1 * velocity)
-    for _ in range(1000):
-        arc.give_way(100.0 * inwards, tangent, 0.1)
+    for n in range(1000):
+        arc.give_way(100.0 * inwards, tangent, 0.1 * n, 0.1)
     assert np.linalg.norm(arc.offset) <= 0.08 + 1e-9
 
 
