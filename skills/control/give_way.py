@@ -26,11 +26,11 @@ class GiveWayTuning(Quantities):
     )
     least: float = quantity(0.0002, "m/s/N", "at least", "choice: stable under 45 N/mm, the most that was measured")
     most: float = quantity(
-        0.004,
+        0.0015,
         "m/s/N",
         "at most",
-        "measured: given way at that all along, a held arm and the hand swung against each other three to five times a "
-        "second, with 25 to 50 N (101, 104)",
+        "measured: at 0.004 a held arm and the hand swung against each other three to five times a second, with 25 to "
+        "50 N (101, 104); stable where an arm answers with 7 N/mm, held at its elbow",
     )
     growth: float = quantity(2.0, "1/s", "of its logarithm, under a pull that stays", "choice: sevenfold in a second")
     back: float = quantity(

@@ -127,7 +127,7 @@ def _go_around(
 
     An arm is hardly thinner than the fingers open: seen 1 cm beside where it is, it was met six times of six (101).
     """
-    goal = around.copy()
+    goal, short = around.copy(), 0.0
     for n in range(tuning.tries):
         down = move_hands(skill, {hand: goal}, speed=tuning.descent_speed)
         yield from until_load(skill, hand, tuning.touch_load, down)

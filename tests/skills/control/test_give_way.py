@@ -18,7 +18,7 @@ def held(stiffness, tuning, *, ticks=150, late=1, drift=0.002):
 @pytest.mark.parametrize("stiffness", [7e3, 45e3])
 def test_a_stiff_arm_and_the_hand_do_not_swing_against_each_other(stiffness):
     assert np.abs(held(stiffness, GiveWayTuning())).max() < 25.0
-    fixed = GiveWayTuning(first=0.004, least=0.004)
+    fixed = GiveWayTuning(first=0.004, least=0.004, most=0.004)
     assert np.abs(held(stiffness, fixed)).max() > 100.0, "as they do where it always gives way as fast"
 
 
