@@ -113,7 +113,7 @@ def drive_to(
         start = skill.world.observe().pose_base_in_map
         path = np.stack((start[:2], *via, goal[:2])) if straight else plan_path(skill.world.room, start, goal)
         follower = PathFollower(path, float(goal[2]), skill.world.robot.limits, speed=speed, turn_from=turn_from)
-        return _along(skill, follower, path, goal, speed, retreat=retreat, tuning=tuning)
+        return _along(skill, follower, path, start, goal, speed, retreat=retreat, tuning=tuning)
 
     try:
         yield from drive()
@@ -135,6 +135,7 @@ def _along(
     skill: Skill,
     follower: PathFollower,
     path: np.ndarray,
+    start: np.ndarray,
     goal: np.ndarray,
     speed: float,
     *,
@@ -142,7 +143,7 @@ def _along(
     tuning: BaseTuning,
 ) -> Iterator[None]:
     end = skill.now() + tuning.timeout + tuning.timeout_factor * path_length(path) / speed
-    anchor, since, held = skill.world.observe().pose_base_in_map, skill.now(), False
+    anchor, since, held = start, skill.now(), False
     while not follower.done(pose := skill.world.observe().pose_base_in_map):
         if np.abs(pose - anchor).max() > tuning.min_motion:
             anchor, since = pose, skill.now()
