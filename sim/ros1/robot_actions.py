@@ -34,18 +34,19 @@ class RobotActions:
     Args:
         site: names the actions.
         world: what moves first.
-        lock: held while the world is used.
+        lock: held while the world is used, and by whoever tells of goals.
         why_not: says why nothing may move; empty where it may.
 
     Attributes:
         world: what moves.
+        topics: of goals and cancellations, each with the class of its messages.
     """
 
     def __init__(self, site: Site, world: World, lock: Any, why_not: Callable[[], str]) -> None:
-        ros()
-        server = importlib.import_module("actionlib").ActionServer
+        server, cancels = importlib.import_module("actionlib").ActionServer, ros().actionlib_msgs.GoalID
         self._site, self.world, self._lock, self._why_not = site, world, lock, why_not
         self._goals: dict[str, _Goal] = {}
+        self.topics: dict[str, Any] = {}
 
         def serve(name: str, kind: str, start: Callable[[Any], float], key: str, cancelled: Callable[[], None]) -> None:
             def take(handle: Any) -> None:
@@ -55,7 +56,10 @@ class RobotActions:
                 self._cancel(handle, key, cancelled)
 
             served = server(name, message(f"control_msgs/{kind}Action"), take, cancel, auto_start=False)
+            # one lock for all: it takes goals while it holds its own, and goals end while this one is held
+            served.lock = lock
             served.start()
+            self.topics |= {f"{name}/goal": message(f"control_msgs/{kind}ActionGoal"), f"{name}/cancel": cancels}
 
         for side in SIDES:
             serve(
