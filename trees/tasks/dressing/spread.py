@@ -110,7 +110,7 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
 
     set_right_by: dict[Reason, Callable[[], Behaviour]] = {
         Reason.FACE_COVERED: lambda: straight(Scope(bed, "off the face")),
-        Reason.WRONG_SIDE: lambda: unfolded(context),
+        Reason.WRONG_SIDE: lambda: unfolded(context, bed),
         **dict.fromkeys(LOW, set_right),
         Reason.COLLAR_ASIDE: lambda: straight(Scope(bed, "collar")),
         **dict.fromkeys(UNSEEN, lambda: looked_again(context, bed)),
@@ -118,11 +118,17 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     return RecoverBy("until it is neat", seen, set_right_by, attempts=DRESSING.neaten_attempts)
 
 
-def unfolded(context: Context) -> Behaviour:
-    """Go beside the bed and draw a front flat that shows its inside in a fold; then the sleeves may be low."""
+def unfolded(context: Context, bed: Scope) -> Behaviour:
+    """Go beside the bed and draw a front flat that shows its inside in a fold; then the sleeves may be low.
+
+    A collar that is folded back over itself is not there to be taken, nine times in turn (0): then both sleeves are
+    drawn up from the head, which takes it along.
+    """
     front = arm_scope(context, "fold", "left")
     beside = Navigate("go beside it", front, goal="bed_left")
-    return sequence("unfold it", beside, flat(front), *go_to_head(front))
+    none = Condition("no fold is left", outside_out, Reason.WRONG_SIDE)
+    rest = fallback("the rest of it", none, seated(Scope(bed, "folded")))
+    return sequence("unfold it", beside, flat(front), *go_to_head(front), rest)
 
 
 def looked_again(context: Context, bed: Scope) -> Behaviour:
