@@ -39,7 +39,10 @@ class Robot:
     def serve(self, *options):
         self.robot = self._begin(sys.executable, "-u", "-c", CARETREE, "serve-robot", *options)
         assert self.robot.stdout is not None
-        assert self.robot.stdout.readline().startswith("serving"), self.robot.communicate()
+        said = [self.robot.stdout.readline()]
+        while said[-1] and not said[-1].startswith("serving"):  # on a busy machine the master may be late before
+            said.append(self.robot.stdout.readline())
+        assert said[-1], said
 
     def _begin(self, *command):
         return subprocess.Popen(command, env=self.env, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
