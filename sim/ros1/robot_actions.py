@@ -39,14 +39,13 @@ class RobotActions:
 
     Attributes:
         world: what moves.
-        topics: of goals and cancellations, each with the class of its messages.
     """
 
     def __init__(self, site: Site, world: World, lock: Any, why_not: Callable[[], str]) -> None:
-        server, cancels = importlib.import_module("actionlib").ActionServer, ros().actionlib_msgs.GoalID
+        ros()
+        server = importlib.import_module("actionlib").ActionServer
         self._site, self.world, self._lock, self._why_not = site, world, lock, why_not
         self._goals: dict[str, _Goal] = {}
-        self.topics: dict[str, Any] = {}
 
         def serve(name: str, kind: str, start: Callable[[Any], float], key: str, cancelled: Callable[[], None]) -> None:
             def take(handle: Any) -> None:
@@ -56,10 +55,9 @@ class RobotActions:
                 self._cancel(handle, key, cancelled)
 
             served = server(name, message(f"control_msgs/{kind}Action"), take, cancel, auto_start=False)
-            # one lock for all: it takes goals while it holds its own, and goals end while this one is held
+            # the server's own lock would be taken before the robot's where a goal comes, and after it where one ends
             served.lock = lock
             served.start()
-            self.topics |= {f"{name}/goal": message(f"control_msgs/{kind}ActionGoal"), f"{name}/cancel": cancels}
 
         for side in SIDES:
             serve(
