@@ -10,7 +10,7 @@ import numpy as np
 from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist
-from .control.hands import cloth_load, hand_now, move_hands
+from .control.hands import cloth_load, hand_now, move_hands, until_load
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -28,6 +28,12 @@ class StretchNecklineTuning(Quantities):
         0.22, "m", "half the distance between the hands at first", "choice: the cloth is slack"
     )
     approach_speed: float = quantity(0.35, "m/s", "of the hands until there", "choice: the gown hardly swings")
+    approach_load: float = quantity(
+        6.0,
+        "N",
+        "on a hand that has more than cloth's weight between the two: they go no farther apart",
+        "choice: three times the gown's weight; held 0.44 m apart, a shorter piece pulled with 22 N (281)",
+    )
     speed: float = quantity(
         0.08, "m/s", "of each hand while it draws", "choice: slow, so that the load is read in time"
     )
@@ -73,7 +79,10 @@ class StretchNeckline(Skill):
             pose = hand_now(self, side)
             pose[:3, 3] = (base @ np.array((tuning.distance, sign * tuning.half_width, tuning.height, 1.0)))[:3]
             goals[side] = pose
-        yield from move_hands(self, goals, speed=tuning.approach_speed, free="any", way="any")
+        motion = move_hands(self, goals, speed=tuning.approach_speed, free="any", way="any")
+        for side in SIDES:
+            motion = until_load(self, side, tuning.approach_load, motion)
+        yield from motion
         end = self.now() + tuning.timeout
         outwards = {"left": base[:3, 1], "right": -base[:3, 1]}
         while True:

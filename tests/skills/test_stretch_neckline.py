@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.sim.world import SIDES
 from caretree.skills.core.reasons import Reason
-from caretree.skills.stretch_neckline import StretchNeckline
+from caretree.skills.stretch_neckline import StretchNeckline, StretchNecklineTuning
 
 from .hung_gown import DOWN, LEFT, at, bench_with, ended, hand_from_base, holding
 
@@ -12,12 +12,13 @@ ARMS = holding(left=at(0.70, 0.25, 1.15), right=at(0.70, -0.25, 1.15))
 MIDDLE = at(0.0, 0.0, 0.0) @ LEFT  # of the robot [m]
 
 
-def bench(taut_at, weights=(2.0, 2.0), **ports):
-    """A neckline that pulls back by 50 N/m on each hand once the hands are `taut_at` apart [m]; weights in [N]."""
+def bench(taut_at, weights=(2.0, 2.0), *, stiffness=50.0, **ports):
+    """A neckline that pulls back by `stiffness` [N/m] on each hand at more than `taut_at` apart [m]; weights in [N]."""
 
     def pull(side, hand):
         aside = hand @ LEFT - MIDDLE
-        return weights[SIDES.index(side)] * DOWN - 50.0 * np.sign(aside) * max(abs(aside) - taut_at / 2, 0.0) * LEFT
+        stretch = np.sign(aside) * max(abs(aside) - taut_at / 2, 0.0)
+        return weights[SIDES.index(side)] * DOWN - stiffness * stretch * LEFT
 
     return bench_with(lambda context: StretchNeckline("stretch", context, **ports), arms=ARMS, pull=pull)
 
@@ -65,3 +66,11 @@ def test_hands_that_stay_near_each_other_do_not_hold_both_ends():
 def test_hands_as_far_apart_as_its_ends_do():
     run = bench(taut_at=0.84, max_load=1.0, min_width=0.81)
     assert ended(run) is None
+
+
+def test_less_cloth_than_hands_are_first_held_apart_is_not_overstretched():
+    first = StretchNecklineTuning(half_width=0.35)  # [m]: 18 N on each hand
+    run = bench(taut_at=0.52, stiffness=200.0, min_width=0.7, tuning=first)
+    assert ended(run) == Reason.GRASP_MISSED
+    left, right = apart(run.world)
+    assert left[1] - right[1] < 0.63  # [m]: 11 N
