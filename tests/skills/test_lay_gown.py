@@ -31,7 +31,7 @@ def armhole(x):
     return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
-def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, heights=None):
+def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart.
 
     The gown pulls both towards the near side by `uneven` [N], and against the way that they went last.
@@ -48,8 +48,8 @@ def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, heights=None):
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)
         x = {side: float(hand_now(skill, side)[0, 3]) for side in SIDES}
-        if heights is not None:
-            heights.append(float(hand_now(skill, "left")[2, 3]))
+        if way_down is not None:
+            way_down.append(hand_now(skill, "left")[1:3, 3])
         pull = 1.0 if x["left"] - x["right"] > taut_until + 0.005 else 0.1
         places.append((x["left"], x["right"]))
         way = sum(places[-1]) - sum(places[-2]) if len(places) > 1 else 0.0
@@ -69,10 +69,14 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     assert near - far == pytest.approx(WIDTH, abs=0.01)
 
 
-def test_the_ends_of_the_neckline_are_down_before_they_are_let_go_of():
-    heights = []
-    let_go_at(armhole(STRAIGHT_AT), heights=heights)
-    assert heights[-1] < 0.75 < 0.86 < heights[-60], "not before the gown is weighed"
+def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_they_are_let_go_of():
+    way_down = []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down)
+    y, z = np.array(way_down).T
+    assert z[-1] < 0.75
+    low = int(np.argmax(z < 0.84))  # not before the gown is weighed
+    assert y[low] - y[-1] == pytest.approx(0.24, abs=0.02)
+    assert np.all(z[low:] < 0.84)
 
 
 def test_one_whose_armhole_is_hidden_is_laid_as_it_is():
