@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,10 +13,10 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_motion import while_person_rests
-from .belief.person_tracking import watch_arm
+from .belief.person_tracking import careful, watch_arm
 from .belief.strap_turn import turned_strap
 from .control.compliant_hold import ease_hold, while_holding
-from .control.hands import hand_now
+from .control.hands import hand_now, move_hands, until_load
 from .control.head import keep_off_the_arms, look_towards
 from .control.load_easing import LoadEasing
 from .control.pull_law import PullLaw
@@ -26,6 +27,7 @@ from .geometry.arm_path import ELBOW, ArmPath
 from .geometry.hold import Hold
 from .geometry.strap_grip import StrapGrip, presenting
 from .motion.drive import PathFollower
+from .motion.errors import MotionError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +87,19 @@ class PullAlongArmTuning(Quantities):
         "1",
         "share of the speed along the arm that is taken away beyond `entry` while the armhole is centred",
         "choice: the hand must not enter an armhole beside it",
+    )
+    clear_of_hand: float = quantity(
+        0.16,
+        "m",
+        "beyond the fingertips to which the grip draws back while the armhole is far aside",
+        "choice: the hoop, which hangs 0.07 m nearer than the strap, is off the fingers; drawn sideways against them, "
+        "it turned round and went past the hand (171)",
+    )
+    back_speed: float = quantity(
+        0.15, "m/s", "of a sleeve that is drawn back off a hand that it missed", "choice: slow beside the person"
+    )
+    far_aside: float = quantity(
+        0.04, "m", "of the armhole's edge off its place, from which it does so", "choice: half of the room it has"
     )
     centring_timeout: float = quantity(
         6.0, "s", "for which the armhole may be centred before the hand", "choice: looks and steps enough to get there"
@@ -163,7 +178,30 @@ class PullAlongArm(Skill):
 
     def steps(self) -> Iterator[None]:
         """Pull as long as the person does not move."""
-        yield from while_person_rests(self, self._pull())
+        yield from while_person_rests(self, self._pull_or_draw_back())
+
+    def _pull_or_draw_back(self) -> Iterator[None]:
+        """Pull; a sleeve that goes past the hand is drawn back off it before the failure is told."""
+        try:
+            yield from self._pull()
+        except SkillFailure as failure:
+            if failure.reason == Reason.SLEEVE_MISSED:
+                yield from self._draw_back()
+            raise
+
+    def _draw_back(self) -> Iterator[None]:
+        """Beyond the fingertips, the way it came, as far as the cloth lets it.
+
+        Laid down from beside the arm, the sleeve left the gown hanging over the arm, and all slid off the bed (171).
+        """
+        tuning, hand = self.tuning, self.grip.hand
+        path = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
+        place = path.moved(3.0, tuning.clear_of_hand)
+        over = path.point(place) + tuning.law.clearance * path.frame(place)[:, 2]
+        goal = presenting(turned_strap(self, self.grip), path.direction(place), over)
+        motion = move_hands(self, {hand: goal}, speed=careful(self, tuning.back_speed), way="line")
+        with suppress(MotionError):
+            yield from while_holding(self, self.hold, until_load(self, hand, tuning.caught_load, motion))
 
     def _pull(self) -> Iterator[None]:
         """Steer anew on every tick."""
@@ -286,6 +324,8 @@ class PullAlongArm(Skill):
         if place > 3.0 and beside and now.seen.time < pull.begun + tuning.centring_timeout:  # before the fingertip
             along = now.path.direction(place)
             linear = linear - (1.0 if place < tuning.entry else tuning.approach_slowing) * (linear @ along) * along
+            if abs(pull.armhole.error) > tuning.far_aside and place < now.path.moved(3.0, tuning.clear_of_hand):
+                linear = linear + tuning.speed * along
             pull.window.clear()  # it waits on purpose
         if place < tuning.seated:
             linear = linear * tuning.easing.share(now.load, self.max_load)

@@ -111,9 +111,9 @@ class ArmholeWatch:
             return
         step, most = self._tuning.max_step, self._tuning.max_offset
         self.error = self._tuning.edge_offset - float(np.max(edges))
-        self.offset = float(
-            np.clip(self.offset + side * np.clip(self._tuning.gain * self.error, -step, step), -most, most)
-        )
+        # from where the grip is by now: counted on from what was asked for before, it went twice as far as it had to
+        here = float((grip_in_map - path.point(coordinate)) @ across)
+        self.offset = float(np.clip(here + side * np.clip(self._tuning.gain * self.error, -step, step), -most, most))
 
     def locate(self, path: ArmPath, grip_in_map: np.ndarray) -> None:
         """Look where along the arm the armhole is, unless the last look is recent; updates `coordinate`.

@@ -1,23 +1,30 @@
 """A sleeve is pulled up the arm as long as it slides, and what is told when it does not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover
 from caretree.sim.world import HandTwist
+from caretree.skills.belief.armhole_watch import ARMHOLE_WATCH
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
+from caretree.skills.geometry.stances import outwards
 from caretree.skills.pull_along_arm import PullAlongArm
-from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
 
 from .bench import ARM, CLOTH, GRIP, PATH, LeafBench, above_arm, beside_bed, on_arm, pulls
 
 SLIDES = 2.0  # [N] with which a sleeve that slides pulls towards the fingertips
 SPEED = 0.08  # [m/s] of the grip when nothing holds it back
 GOAL = 1.45  # arm coordinate: the middle of the forearm
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
 
 
-def bench(load=SLIDES, *, begin=2.9, goal=GOAL, hold=None, deaf_to=(), cover=1.0, cuff=1.0, each_tick=None):
+def bench(
+    load=SLIDES, *, begin=2.9, goal=GOAL, hold=None, deaf_to=(), cover=1.0, cuff=1.0, armhole=HIDDEN, each_tick=None
+):
     """A hand that holds the sleeve above the arm, at `begin`, where it pulls back with `load` [N]."""
     lies = lying_posture("right")
     hands, held = {"right": above_arm(begin)}, {"right": CLOTH}
@@ -32,7 +39,7 @@ def bench(load=SLIDES, *, begin=2.9, goal=GOAL, hold=None, deaf_to=(), cover=1.0
             deaf_to=deaf_to,
             arm=lies,
             relocalised_arm=lies,
-            held_armhole=PerceptionFailure(Problem.NOTHING_SEEN, "armhole"),
+            held_armhole=armhole,
             skin_cover=Cover(stamp=0.0, confidence=0.9, share=cover),
             cuff_round=cuff if callable(cuff) else Cover(stamp=0.0, confidence=0.9, share=cuff),
         ),
@@ -93,10 +100,28 @@ def test_a_sleeve_that_pulls_no_more_has_slipped_out_of_the_fingers():
 @pytest.mark.parametrize(
     ("seen", "near"), [({"cover": 0.2}, 2.5), ({"cuff": 0.25}, GOAL)], ids=("bare hand", "arm beside the cuff")
 )
-def test_a_sleeve_that_goes_beside_the_hand_or_the_arm_is_missed(seen, near):
+def test_a_sleeve_that_goes_beside_the_hand_or_the_arm_is_missed_and_drawn_back_off_it(seen, near):
     run = bench(**seen)
     assert run.ended() == Reason.SLEEVE_MISSED
-    assert coordinates(run)[-1] == pytest.approx(near, abs=0.1)
+    assert np.min(coordinates(run)) == pytest.approx(near, abs=0.1)
+    assert PATH.distance(3.0, coordinates(run)[-1]) == pytest.approx(0.16, abs=0.02)  # [m] beyond the fingertips
+
+
+@pytest.mark.parametrize(("aside", "back"), [(0.10, 0.13), (0.035, 0.06)])
+def test_an_armhole_far_aside_is_centred_clear_of_the_fingertips(aside, back):
+    begin = PATH.moved(3.0, 0.06)
+
+    def seen(frame, side, near_in_map):
+        """The outer edge of a hoop that hangs `aside` [m] inwards of where it belongs, and goes as the strap does."""
+        edge = near_in_map + (ARMHOLE_WATCH.edge_offset - aside) * outwards(side)
+        return replace(laid_strap(side), armhole_points_in_map=edge[None])
+
+    run = bench(begin=begin, armhole=seen)
+    assert run.ended() is None
+    way = coordinates(run)
+    assert PATH.distance(3.0, np.max(way)) == pytest.approx(back, abs=0.02)  # [m] beyond the fingertips
+    centred = (run.way("right")[-1] - PATH.point(way[-1])) @ PATH.frame(way[-1])[:, 0]
+    assert abs(centred) == pytest.approx(aside, abs=0.02)  # [m]
 
 
 def test_a_cuff_that_swings_round_the_arm_once_the_hand_stands_is_not_missed():
