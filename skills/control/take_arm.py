@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import SIDES, Side
+from ...sim.world import SIDES, HandTwist, Side
 from ..belief.person_tracking import careful
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
 from .arm_grip import ARM_GRIP
 from .fingers import close_gripper, open_gripper
+from .give_way import GiveWay, GiveWayTuning
 from .hands import hand_now, move_hands, until_load
 
 
@@ -60,10 +61,17 @@ class TakeArmTuning(Quantities):
         0.015, "m", "of a push off the hand's middle, from which one finger has it", "choice: half way to a finger"
     )
     closing_speed: float = quantity(
-        float("inf"),
+        0.02,
         "m/s",
         "of the gap between the fingers, where they could close faster",
-        "measured: an arm that nothing carries, 2 cm off their middle, was hit by one of them with 46 to 63 N (102)",
+        "measured: closed as fast as they go, one hit an arm with 46 to 63 N that nothing carries (102), and pressed "
+        "a stiff one with 36 N; so, with 25 N at first and none in the end (101, hard)",
+    )
+    aside_load: float = quantity(
+        3.0, "N", "of one finger on the arm, from which the hand goes to its side", "choice: above the noise"
+    )
+    aside: GiveWayTuning = field(
+        default_factory=lambda: GiveWayTuning(first=0.0002, most=0.0004)  # as fast as one finger closes under 30 N
     )
     reached: float = quantity(
         0.02, "m", "from the end of that way, within which it is around the arm", "choice: half of the pads' length"
@@ -112,12 +120,35 @@ def close_around(
             MOTION_BLOCKED.
     """
     yield from _go_around(skill, hand, above, around, tuning)
-    gap = yield from close_gripper(skill, hand, force=ARM_GRIP.force, speed=tuning.closing_speed)
+    closing = close_gripper(skill, hand, force=ARM_GRIP.force, speed=tuning.closing_speed)
+    gap = yield from _centred(skill, hand, closing, tuning)
     if gap < ARM_GRIP.min_gap:
         yield from open_gripper(skill, hand)
         yield from move_hands(skill, {hand: above}, retreat=True)
         raise SkillFailure(Reason.GRASP_MISSED, f"the fingers closed to {gap * 1000:.0f} mm: no arm between them")
     skill.context.guard.declare_grip(hand, "arm")
+
+
+def _centred(
+    skill: Skill, hand: Side, closing: Generator[None, None, float], tuning: TakeArmTuning
+) -> Generator[None, None, float]:
+    """Let fingers close, the hand going to the side of the one that meets the arm first: both then have it.
+
+    A stiff arm was pressed by one finger with 30 to 36 N, until the guard stopped the hand (101, hard).
+    """
+    give_way = GiveWay(tuning.aside)
+    while True:
+        try:
+            next(closing)
+        except StopIteration as end:
+            return end.value
+        across = hand_now(skill, hand)[:3, 1]
+        push = float(skill.world.observe().wrench_hand_in_map[SIDES.index(hand), :3] @ across)
+        beyond = np.sign(push) * max(abs(push) - tuning.aside_load, 0.0) * across
+        velocity = give_way.velocity(beyond, skill.now())
+        if np.any(velocity):
+            skill.world.send(HandTwist(side=hand, twist_in_map=np.append(velocity, np.zeros(3))), retreat=True)
+        yield
 
 
 def _go_around(

@@ -80,3 +80,23 @@ def test_a_hand_that_finds_no_arm_to_either_side_gives_up():
     low = way[way[:, 2] < far[2, 3] + 0.05]
     assert np.ptp((low - far[:3, 3]) @ ON_ARM[:3, 1]) < 0.025
     assert guard.grip("left") == "nothing"
+
+
+@pytest.mark.parametrize("aside", [0.005, -0.005])
+def test_a_hand_goes_to_the_side_of_the_finger_that_meets_a_stiff_arm_first(aside):
+    """An arm of 5 N/mm whose middle is `aside` [m] of the hand's, once the fingers begin to close."""
+    world, context = robot(base=tuple(stance("right", "lift")))
+    world.between_fingers["left"] = 0.07
+    pushes = []
+
+    def felt(skill):
+        pose = skill.world.observe().pose_hand_in_map[0]
+        off = aside - (pose[:3, 3] - ON_ARM[:3, 3]) @ pose[:3, 1]
+        closes = skill.world.observe().gripper_opening[0] < 0.083
+        world.load["left"] = np.append(closes * 5e3 * off * pose[:3, 1], np.zeros(3))
+        pushes.append(closes * 5e3 * abs(off))
+
+    skill = carry_out(world, context, lambda skill: take_arm(skill, "left", ON_ARM), each_tick=felt)
+    assert skill.failure is None
+    assert max(pushes) > 23.0  # [N] at first
+    assert pushes[-1] < 15.0
