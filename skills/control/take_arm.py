@@ -38,6 +38,16 @@ class TakeArmTuning(Quantities):
         "measured: at 0.12 m/s it came down on an arm that lay elsewhere under the gown with 121 to 123 N before the "
         "guard stopped it, four times (243)",
     )
+    touch_speed: float = quantity(
+        0.015,
+        "m/s",
+        "of the hand from where a finger may meet the arm",
+        "measured: at 0.05 m/s one that came down on it pressed it with 28 N when first felt, 50 N a tick later, "
+        "before the hand stood (101, 7 N/mm)",
+    )
+    touch_height: float = quantity(
+        0.045, "m", "of the fingertips above the arm's axis, from where one may", "choice: an arm is 75 mm thick"
+    )
     touch_load: float = quantity(
         8.0, "N", "on the hand on that way, which ends it: it has met something", "choice: as on the way to cloth"
     )
@@ -159,8 +169,13 @@ def _go_around(
     An arm is hardly thinner than the fingers open: seen 1 cm beside where it is, it was met six times of six (101).
     """
     goal, short = around.copy(), 0.0
+
+    def speed(place: np.ndarray) -> float:
+        left = float((goal[:3, 3] - place) @ goal[:3, 2])
+        return tuning.touch_speed if left < tuning.touch_height + tuning.grip_depth else tuning.descent_speed
+
     for n in range(tuning.tries):
-        down = move_hands(skill, {hand: goal}, speed=tuning.descent_speed)
+        down = move_hands(skill, {hand: goal}, speed=speed)
         yield from until_load(skill, hand, tuning.touch_load, down)
         here = hand_now(skill, hand)
         short = float(np.linalg.norm(goal[:3, 3] - here[:3, 3]))
