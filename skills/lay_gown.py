@@ -39,12 +39,18 @@ class LayGownTuning(Quantities):
         "y and height of the neckline on its way down",
         "choice: the hem trails towards the feet, so that the outside ends up on top",
     )
+    drawn_y: float = quantity(
+        0.26,
+        "m",
+        "of the neckline as it goes down for its last way",
+        "measured: lowered sooner after it had been swayed to and fro, one back panel was tucked in (126, 135)",
+    )
     drawn_heights: tuple[float, ...] = quantity(
         (0.70, 0.74, 0.78, 0.82),
         "m",
         "of the neckline on its last way towards the head, tried in turn",
-        "measured: drawn along the bed there, both sleeves trail, outside up, in 6 of 6 gowns; lowered at their place, "
-        "the near one was tucked in below the gown in 4 of 12, and did not open (283, 0)",
+        "choice: the sleeves, on the bed by then, trail towards the feet, outside up; lowered at their place some "
+        "turned over (283, 101 with arms that fall)",
     )
     end_y: float = quantity(0.16, "m", "of the neckline in the end", "choice: just beyond resting fingertips")
     end_heights: tuple[float, ...] = quantity(
@@ -93,7 +99,8 @@ class LayGown(Skill):
         yield from neckline.to(*tuning.descent[-1])
         yield from draw_across(neckline, *tuning.descent[-1], tuning.across)
         yield from even_out(neckline, *tuning.descent[-1], tuning.even)
-        yield from self._lower(neckline, before, tuning.drawn_heights)
+        yield from drive_to(self, self._base_for(tuning.drawn_y), speed=tuning.base_speed, straight=True)
+        yield from self._lower(neckline, tuning.drawn_y, tuning.drawn_heights)
         yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)
         yield from self._lower(neckline, tuning.end_y, tuning.end_heights)
         yield from leave_gown(self, tuning.leave)

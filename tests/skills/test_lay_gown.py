@@ -75,7 +75,7 @@ def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_th
     y, z = np.array(way_down).T
     assert z[-1] < 0.75
     low = int(np.argmax(z < 0.84))  # not before the gown is weighed
-    assert y[low] - y[-1] == pytest.approx(0.24, abs=0.02)
+    assert y[low] - y[-1] == pytest.approx(0.10, abs=0.02)
     assert np.all(z[low:] < 0.84)
 
 
