@@ -3,6 +3,7 @@
 import pytest
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
+from caretree.skills.raise_corner import RaiseCorner
 from caretree.skills.take_corner import TakeCorner
 from caretree.skills.unhook import Unhook
 from caretree.trees.run.runner import Run
@@ -53,3 +54,26 @@ def test_a_gown_of_which_the_second_corner_does_not_show_is_begun_anew_from_the_
     run = Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}, on_progress=told)
     assert run.run().outcome == ends
     assert [name for name in taken if not name.endswith("near the hook")] == took
+
+
+def test_a_corner_is_weighed_once_before_it_is_drawn_farther_round(monkeypatch):
+    weighed = {}
+
+    def draws(self):
+        weighed[self.name] = self.max_load
+        self.held_length = 0.4  # [m]
+        yield
+
+    def takes(self):
+        if self.name.endswith(("other corner", "from beside")):
+            raise SkillFailure(Reason.NOTHING_SEEN, "")
+        self.length = 0.4  # [m]
+        yield
+
+    monkeypatch.setattr(RaiseCorner, "steps", draws)
+    monkeypatch.setattr(TakeCorner, "steps", takes)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
+    assert weighed["rail/draw it aside"] < 3.0  # [N]: a gown weighs 4 to 4.8 N
+    assert weighed["rail/draw it farther round"] == float("inf")
