@@ -68,8 +68,15 @@ class SeatSleevesTuning(Quantities):
     low_and_almost: tuple[float, float] = quantity(
         (0.49, 0.64),
         "1",
-        "of the upper arm, between which the way goes from all of it to less",
+        "of the upper arm, between which the way of the left one goes from all of it to less",
         "choice: as measured, by a look that told 0.04 less than now",
+    )
+    low_and_almost_right: tuple[float, float] = quantity(
+        (0.62, 0.77),
+        "1",
+        "likewise of the right one, which was pulled on first, and slid down as the left one was",
+        "measured: drawn like left ones, right ones at 0.55 to 0.62 came to rest at 0.67 to 0.75 (five first draws), "
+        "those below 0.52, drawn all the way, at 0.73 to 0.81 (nine); left ones at 0.72 to 0.94",
     )
     up_already: float = quantity(
         0.80,
@@ -180,7 +187,7 @@ class SeatSleeves(Skill):
         yield from carry_each(self, above, tuning.carry, tuning.apart)
         over, laid = {}, {}
         for side in held:
-            inward, headward = self._drawn_to(reach[side], drawn.times[side])
+            inward, headward = self._drawn_to(side, reach[side], drawn.times[side])
             drawn.times[side] += 1
             drawn.reach[side] = reach[side]
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
@@ -206,10 +213,11 @@ class SeatSleeves(Skill):
         often, likely = drawn.times[side] >= tuning.enough_draws, reach >= tuning.likely_up
         return often and likely and reach < drawn.reach.get(side, 0.0) + tuning.brought_higher
 
-    def _drawn_to(self, reach: float, times: int) -> tuple[float, float]:
+    def _drawn_to(self, side: Side, reach: float, times: int) -> tuple[float, float]:
         """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
         tuning = self.tuning
-        farther = float(np.interp(reach, tuning.low_and_almost, (1.0, 0.0))) + tuning.farther_again * times
+        between = tuning.low_and_almost if side == "left" else tuning.low_and_almost_right
+        farther = float(np.interp(reach, between, (1.0, 0.0))) + tuning.farther_again * times
         less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)
         inward, headward = less + min(farther, 1.0) * (all_of_it - less)
         return float(inward), float(headward)

@@ -152,6 +152,14 @@ def test_the_lower_one_is_drawn_farther():
     assert right == pytest.approx(0.14, abs=0.02)  # [m]
 
 
+def test_the_right_one_which_slid_down_is_drawn_farther_than_a_left_one_as_high():
+    run = bench(reach=dict.fromkeys(SIDES, 0.60))
+    assert run.ended() is None
+    left, right = ((last_held(run, side) - SHOULDERS[side]) @ HEADWARD for side in SIDES)
+    assert left == pytest.approx(0.103, abs=0.01)  # [m]
+    assert right == pytest.approx(0.14, abs=0.01)  # [m]
+
+
 def test_one_that_is_still_low_is_drawn_farther_the_next_time():
     ends = []
     for before in (0, 1, 2, 7):
