@@ -10,7 +10,7 @@ import numpy as np
 from ..sim.mechanics.planar import planar_pose
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, HandTwist
-from .control.hands import cloth_load, hand_now, move_hands, until_load
+from .control.hands import HANDS, cloth_load, hand_now, move_hands
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -79,15 +79,11 @@ class StretchNeckline(Skill):
             pose = hand_now(self, side)
             pose[:3, 3] = (base @ np.array((tuning.distance, sign * tuning.half_width, tuning.height, 1.0)))[:3]
             goals[side] = pose
-        motion = move_hands(self, goals, speed=tuning.approach_speed, free="any", way="any")
-        for side in SIDES:
-            motion = until_load(self, side, tuning.approach_load, motion)
-        yield from motion
+        yield from self._approach(move_hands(self, goals, speed=tuning.approach_speed, free="any", way="any"))
         end = self.now() + tuning.timeout
         outwards = {"left": base[:3, 1], "right": -base[:3, 1]}
         while True:
-            apart = hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]
-            width = float(np.linalg.norm(apart))
+            width = self._apart()
             loads = {side: cloth_load(self, side) for side in SIDES}
             light = [side for side in SIDES if np.linalg.norm(loads[side]) < tuning.min_load]
             if light and width > 2 * tuning.half_width + tuning.min_drawn:
@@ -107,3 +103,20 @@ class StretchNeckline(Skill):
                 f"stretched, the hands are {width:.2f} m apart, at least {self.min_width} m are asked for",
             )
         self.width = width
+
+    def _approach(self, motion: Iterator[None]) -> Iterator[None]:
+        """Let the hands come before the chest; where that draws apart what is shorter, they stay where they are."""
+        tuning = self.tuning
+        for _ in motion:
+            loads = [np.linalg.norm(cloth_load(self, side)) for side in SIDES]
+            if max(loads) > tuning.approach_load and self._apart() < 2 * tuning.half_width:
+                self.world.stop()
+                yield from self.until(
+                    self.context.guard.still, timeout=HANDS.stop_timeout, reason=Reason.MOTION_BLOCKED
+                )
+                return
+            yield
+
+    def _apart(self) -> float:
+        """Distance between the hands [m]."""
+        return float(np.linalg.norm(hand_now(self, "left")[:3, 3] - hand_now(self, "right")[:3, 3]))
