@@ -124,8 +124,11 @@ class Grip:
         self._armed = True
 
     def on_command(self, opening: float, now_open: float) -> None:
-        """A new opening is commanded; remember how far the fingers were apart before they close."""
-        if opening < now_open - 0.003:
+        """A new opening is commanded; remember how far the fingers were apart before they close.
+
+        Fingers that have what is rigid and are told to close on do not take it again as they open.
+        """
+        if opening < now_open - 0.003 and self.kind not in ("arm", "object"):
             self._open_before, self._armed = now_open, True
 
     def catch_arm(self, pose_hand_in_map: np.ndarray, opening: float, force: float, only: int | None = None) -> bool:
