@@ -101,7 +101,13 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
     )
     # an arm that is inside a sleeve that goes no farther is not begun again: the last stage draws it up (279)
     far = fallback(f"{side} sleeve as far as it goes", up, let_go(Scope(arm, "so far")))
-    away = back_off("back off", arm, DRESSING.back_off_distance)
+    # a hand that met the arm as it drew back is no reason to take the sleeve off again (291)
+    on = Scope(arm, "on")
+    away = fallback(
+        f"{side} arm left alone",
+        back_off("back off", arm, DRESSING.back_off_distance),
+        back_off("back off", on, DRESSING.back_off_distance),
+    )
     inside = patient(arm, CheckSleeve("is inside", arm))
     lies = patient(arm, put_down("in the end", arm))
     once = sequence(f"{side} arm once", over_hand(arm, sleeve), far, away, lies, inside)

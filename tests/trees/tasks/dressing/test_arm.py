@@ -66,6 +66,15 @@ def test_an_arm_that_meets_the_hand_that_lowers_it_is_lowered_on_and_its_sleeve_
     assert rest[:3] == [f"{side} arm/lower it on", leaf, f"{side} arm/pull up"]
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_a_hand_that_meets_the_dressed_arm_as_it_draws_back_does_not_take_the_sleeve_off_again(side):
+    leaf = f"{side} arm/back off"
+    ended = rehearsed(f"force_spike@{leaf}:step")
+    failed = ended.index((leaf, "failure"))
+    assert (f"{side} arm/on/back off", "success") in ended[failed:]
+    assert ended.count((f"{side} arm/lift", "success")) == 1
+
+
 @pytest.mark.parametrize(
     ("lows", "pulls"),
     [(0, 0), (1, 1), (5, 1)],  # one that stays low is left so, as the next pull met the arm with 27 N (146)
