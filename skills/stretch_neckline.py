@@ -32,7 +32,7 @@ class StretchNecklineTuning(Quantities):
         6.0,
         "N",
         "on a hand that has more than cloth's weight between the two: they go no farther apart",
-        "choice: three times the gown's weight; held 0.44 m apart, a shorter piece pulled with 22 N (281)",
+        "choice: above the whole gown, 4.0 to 4.8 N; held 0.44 m apart, a shorter piece pulled with 22 N (281)",
     )
     speed: float = quantity(
         0.08, "m/s", "of each hand while it draws", "choice: slow, so that the load is read in time"
