@@ -22,7 +22,7 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
-from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
+from .arm import FROM_HEAD, MAYBE, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .check_face import CheckFace
 from .draw_over import DrawOver
@@ -203,16 +203,16 @@ def shown(context: Context, name: str, side: Side) -> Behaviour:
     sleeve = arm_scope(context, name, side)
     closely = Scope(sleeve, "by")
 
-    def look(name: str, scope: Scope, reach: float, *, must_show: bool = True) -> CheckSleeve:
-        return CheckSleeve(name, scope, min_reach=reach, must_show=must_show, tuning=FROM_HEAD)
-
-    sits = look("sits", sleeve, DRESSING.armhole_up)
+    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_up, must_show=True, tuning=FROM_HEAD)
+    may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=MAYBE)
+    beside = DRESSING.armhole_beside
+    sits_after_all = CheckSleeve("sits after all", closely, min_reach=beside, must_show=True, tuning=FROM_HEAD)
     from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), sits)
     from_beside = sequence(
         f"{sleeve.prefix}from beside it",
-        look("may sit", sleeve, DRESSING.armhole_may_sit, must_show=False),
+        may_sit,
         *go_beside(closely, side),
-        look("sits after all", closely, DRESSING.armhole_beside),
+        sits_after_all,
     )
     return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
