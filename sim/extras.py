@@ -32,6 +32,7 @@ EXTRA_OF = {
     "numba": "sim",
     "onnx": "learn",
     "openpyxl": "gap",
+    "orjson": "log",
     "pinocchio": "sim",
     "pooch": "gap",
     "pybullet": "sim",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import threading
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,7 +14,6 @@ from ..extras import need
 from .messages import Message
 from .schemas import SCHEMAS
 
-_encoded = json.JSONEncoder(allow_nan=False, separators=(",", ":")).encode
 TOGETHER = 64  # writes that wait for each other: one after another they take half the time that each takes by itself
 
 
@@ -34,8 +32,10 @@ class LogFile:
 
     def __init__(self, path: Path) -> None:
         need("mcap", "the log")
+        import orjson
         from mcap.writer import Writer
 
+        self._json = orjson.dumps  # writes null for a number that is none, and takes a tenth of the time of json
         self.path = path
         if path.exists():
             raise RecordError(f"{path} is there already: give another file with --log")
@@ -84,7 +84,7 @@ class LogFile:
                         log_time=nanoseconds,
                         publish_time=nanoseconds,
                         sequence=count,
-                        data=content.encode() if isinstance(content, str) else _json(content),
+                        data=content.encode() if isinstance(content, str) else self._json(content),
                     )
 
     def close(self) -> None:
@@ -138,19 +138,3 @@ class _Kept(contextlib.AbstractContextManager[None]):
             self._log.keep(error)
             return True
         return False
-
-
-def _json(content: dict[str, Any]) -> bytes:
-    """Content as JSON, which knows no number that is none: that is null."""
-    try:
-        return _encoded(content).encode()
-    except ValueError:
-        return json.dumps(_finite(content), separators=(",", ":")).encode()
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -119,7 +119,7 @@ def looked(frame: Frame) -> Iterator[Message]:
 def sent(time: float, command: Command) -> Message:
     """A command as it was really sent, at a time [s]; its fields have the names of the contract."""
     values = {each.name: getattr(command, each.name) for each in fields(command)}
-    plain = {k: np.round(v, DIGITS).tolist() if isinstance(v, np.ndarray) else v for k, v in values.items()}
+    plain = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
     return "/sent", "caretree.Sent", {"timestamp": stamp(time), "command": type(command).__name__, **plain}
 
 
