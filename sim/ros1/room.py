@@ -23,7 +23,10 @@ def read_room(rospy: Any, site: Site, patience: float) -> RoomMap:
     try:
         grid = rospy.wait_for_message(site.room.grid, ros().nav_msgs.OccupancyGrid, patience)
     except rospy.ROSException as error:
-        raise WorldError(f"no map comes on {site.room.grid}") from error
+        raise WorldError(
+            f"no map comes on {site.room.grid}: does the robot run, or `caretree serve-robot`?  "
+            "`caretree robot doctor` tells what is missing"
+        ) from error
     notes = parameter(site.room.annotations)
     if notes is None:
         raise WorldError(f"the master has no parameter {site.room.annotations}, but one with {ASKED} is asked for")

@@ -5,6 +5,7 @@ from caretree.sim.known_robots import robot_named
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.body import RobotBody
 from caretree.sim.world import SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory
+from pybullet_utils.bullet_client import BulletClient
 
 DT = 0.0025
 
@@ -14,10 +15,12 @@ class Rig:
 
     def __init__(self, name):
         self.model = robot_named(name)
-        self.client = p.connect(p.DIRECT)
-        p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
-        p.setTimeStep(DT)
-        self.robot = RobotBody(p, np.array((1.0, 0.2, 2.5)), head_pan=0.2, kinematics=kinematics_of(self.model))
+        self.client = BulletClient(p.DIRECT)  # whatever other worlds this process has open
+        self.client.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+        self.client.setTimeStep(DT)
+        self.robot = RobotBody(
+            self.client, np.array((1.0, 0.2, 2.5)), head_pan=0.2, kinematics=kinematics_of(self.model)
+        )
         self.steps = 0
 
     def run(self, seconds, before=None):
@@ -27,7 +30,7 @@ class Rig:
             self.robot.update(self.steps * DT)
             if before:
                 before()
-            p.stepSimulation()
+            self.client.stepSimulation()
             self.steps += 1
             if self.steps % 4 == 0:
                 error = self.robot.read().arm_positions.ravel() - self.robot.servo.positions[:-1]
@@ -39,7 +42,7 @@ class Rig:
 def rig(request):
     rig = Rig(request.param)
     yield rig
-    p.disconnect(rig.client)
+    rig.client.disconnect()
 
 
 def test_bullet_and_pinocchio_agree_on_every_link(rig):
@@ -50,12 +53,12 @@ def test_bullet_and_pinocchio_agree_on_every_link(rig):
         base, pan, opening = generator.uniform(-2, 2, 3), generator.uniform(-1, 1), generator.uniform(0, 0.08, 2)
         values = (*base, *arms.ravel(), pan, *np.repeat(opening / 2, 2))
         for joint, value in zip(rig.robot._joints, values, strict=True):
-            p.resetJointState(rig.robot.body, joint, value)
+            rig.client.resetJointState(rig.robot.body, joint, value)
         poses = rig.robot.kinematics.link_poses(rig.robot.kinematics.configuration(base, arms, pan, opening))
         for name, link in rig.robot.links.items():
             if link < 0:
                 continue
-            state = p.getLinkState(rig.robot.body, link, computeForwardKinematics=1)
+            state = rig.client.getLinkState(rig.robot.body, link, computeForwardKinematics=1)
             rotation = np.array(p.getMatrixFromQuaternion(state[5])).reshape(3, 3)
             np.testing.assert_allclose(state[4], poses[name][:3, 3], atol=1e-6, err_msg=name)
             np.testing.assert_allclose(rotation, poses[name][:3, :3], atol=1e-6, err_msg=name)
@@ -145,13 +148,13 @@ def test_stop_ends_every_motion(rig):
 def test_a_hand_that_something_holds_back_presses_with_what_the_motors_may_do_and_moves_on_without_a_jump(rig):
     rig.run(0.2)
     n, start = SIDES.index("right"), rig.robot.pose_hand_in_map("right")[:3, 3]
-    fixed = p.createConstraint(
+    fixed = rig.client.createConstraint(
         rig.robot.body, rig.robot.links["right_hand"], -1, -1, p.JOINT_POINT2POINT, (0, 0, 0), (0, 0, 0), start.tolist()
     )
     rig.robot.command(HandTwist(side="right", twist_in_map=np.array((0.0, 0.0, -0.3, 0, 0, 0)), duration=1.0))
     rig.run(1.0)
     force = np.linalg.norm(p.getConstraintState(fixed))
-    p.removeConstraint(fixed)
+    rig.client.removeConstraint(fixed)
     lead = np.abs(rig.robot.servo.positions[:-1].reshape(2, -1)[n] - rig.robot.read().arm_positions[n]).max()
     rig.run(0.5)
     # a UR5's hand presses with 174 N: motors are bounded joint by joint, which does not bound every hand alike

@@ -9,6 +9,7 @@ from caretree.trees.cli import main
 @pytest.fixture(autouse=True)
 def in_an_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delitem(sys.modules, "greet", raising=False)  # of another test in this process
 
 
 def test_a_new_task_holds_runs_and_passes_its_tests(capsys):
