@@ -9,7 +9,9 @@ from caretree.trees.cli import main
 @pytest.fixture(autouse=True)
 def in_an_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delitem(sys.modules, "greet", raising=False)  # of another test in this process
+    # another test in this process may have run a task of that name
+    monkeypatch.delitem(sys.modules, "greet", raising=False)
+    monkeypatch.setattr(sys, "path", [folder for folder in sys.path if not Path(folder, "greet.py").exists()])
 
 
 def test_a_new_task_holds_runs_and_passes_its_tests(capsys):
