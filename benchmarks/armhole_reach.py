@@ -26,7 +26,9 @@ from caretree.sim.render.camera import CAMERA_VIEWS, camera_intrinsics
 from caretree.sim.render.recorded_room import NEEDED, OPTIONAL, RecordedRoom
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES, Frame, Side
+from caretree.skills.check_sleeve import CheckSleeveTuning
 from caretree.skills.geometry.stances import stance, stance_at_head
+from caretree.trees.tasks.dressing.tuning import DRESSING
 
 AT_HEAD, BESIDE = "the head of the bed", "beside the arm"
 REST = 6.0  # between two states [s]
@@ -47,6 +49,7 @@ class View:
     """One sleeve as one picture shows it, and how far up it is in truth."""
 
     seed: int
+    sleeve: tuple[str, int, Side, int]  # record, frame, side, draw of the tracking error
     where: str
     features: np.ndarray
     told: float
@@ -76,8 +79,8 @@ def views_of(record: Path, rng: np.random.Generator) -> Iterator[View]:
         before = up
         for side, arm, true in zip(SIDES, truth.arms[i].astype(float), up, strict=True):
             for where, stand in stands(side) if true is not None else ():
-                for features, told in _seen(room, i, arm, stand, rng):
-                    yield View(int(run["seed"]), where, features, told, true)
+                for draw, (features, told) in enumerate(_seen(room, i, arm, stand, rng)):
+                    yield View(int(run["seed"]), (str(record), int(i), side, draw), where, features, told, true)
 
 
 def stands(side: Side) -> list[tuple[str, np.ndarray]]:
@@ -140,6 +143,25 @@ def main(records: list[str]) -> None:
     views = [view for record in records for view in views_of(Path(record), rng)]
     for where in (AT_HEAD, BESIDE):
         judge(where, [view for view in views if view.where == where])
+    judge_together(views)
+
+
+def judge_together(views: list[View]) -> None:
+    """Print what the second look tells of sleeves that may be up after the first, alone and in the mean with it."""
+    first = {view.sleeve: view.told for view in views if view.where == AT_HEAD}
+    second = [view for view in views if view.where == BESIDE and view.sleeve in first]
+    head = np.array([first[view.sleeve] for view in second])
+    beside, up = np.array([view.told for view in second]), np.array([view.true >= UP for view in second])
+    maybe = (head >= DRESSING.armhole_may_sit) & (head < DRESSING.armhole_up)
+    counts = CheckSleeveTuning().before_counts
+    print(f"told from {DRESSING.armhole_may_sit} to {DRESSING.armhole_up} from {AT_HEAD}: {maybe.sum()} of {len(head)}")
+    for name, told, least in (
+        (BESIDE, beside, DRESSING.armhole_beside),
+        ("in the mean of both", counts * head + (1.0 - counts) * beside, DRESSING.armhole_together),
+    ):
+        claimed = maybe & (told >= least)
+        wrong, found = np.mean(~up[claimed]), np.mean(claimed[maybe & up])
+        print(f"  {name}, from {least} on: {claimed.sum()} told up, {wrong:.0%} wrongly, {found:.0%} of those up")
 
 
 def judge(where: str, views: list[View]) -> None:

@@ -54,6 +54,26 @@ def test_a_heap_at_the_shoulder_or_beside_the_arm_is_a_miss_and_an_armhole_far_d
     assert (skill.failure and skill.failure.reason) == reason
 
 
+@pytest.mark.parametrize(
+    ("before", "now", "status"),
+    [
+        (0.73, 0.69, Status.SUCCESS),  # either alone would not do
+        (0.70, 0.69, Status.FAILURE),
+        (0.65, 0.78, Status.FAILURE),
+        (0.0, 0.78, Status.SUCCESS),  # it did not show before
+        (0.0, 0.74, Status.FAILURE),
+    ],
+)
+def test_two_looks_from_different_places_are_told_by_their_mean(before, now, status):
+    skill = ran(worn(reach=now), min_reach=0.75, seen_before=before, min_together=0.71)
+    assert skill.status == status
+    assert (skill.reach == now) if status == Status.SUCCESS else (skill.failure.reason == Reason.SLEEVE_LOW)
+
+
+def test_a_sleeve_that_does_not_show_counts_as_not_seen():
+    assert ran(HIDDEN).reach == 0.0
+
+
 def test_one_that_must_show_is_not_let_pass_unseen():
     skill = ran(HIDDEN, min_reach=0.70, must_show=True)
     assert (skill.status, skill.failure.reason) == (Status.FAILURE, Reason.NOTHING_SEEN)

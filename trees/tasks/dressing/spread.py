@@ -201,12 +201,19 @@ def shown(context: Context, name: str, side: Side) -> Behaviour:
     that were up were drawn up again, which took the collar aside (126, 198).
     """
     sleeve = arm_scope(context, name, side)
-    closely = Scope(sleeve, "by")
+    closely, seen = Scope(sleeve, "by"), sleeve.key("seen")
 
     sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_up, must_show=True, tuning=FROM_HEAD)
-    may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=MAYBE)
-    beside = DRESSING.armhole_beside
-    sits_after_all = CheckSleeve("sits after all", closely, min_reach=beside, must_show=True, tuning=FROM_HEAD)
+    may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=MAYBE, reach=seen)
+    sits_after_all = CheckSleeve(
+        "sits after all",
+        closely,
+        min_reach=DRESSING.armhole_beside,
+        seen_before=seen,
+        min_together=DRESSING.armhole_together,
+        must_show=True,
+        tuning=FROM_HEAD,
+    )
     from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), sits)
     from_beside = sequence(
         f"{sleeve.prefix}from beside it",

@@ -159,8 +159,12 @@ def test_the_collar_is_laid_straight_once_the_sleeves_that_hide_it_are_up():
     assert rehearsed(0.65, (0.14, 0.0)) == ("success", ["seat", "spread"])
 
 
-def test_a_sleeve_that_looks_low_from_the_head_of_the_bed_and_up_from_beside_is_left_alone():
-    assert rehearsed(0.78, lower=0.12) == ("success", [])
+def test_a_sleeve_that_looks_a_little_low_from_the_head_of_the_bed_and_up_from_beside_is_left_alone():
+    assert rehearsed(0.76, lower=0.06) == ("success", [])  # 0.715 in the mean
+
+
+def test_a_sleeve_that_looks_low_from_the_head_of_the_bed_is_drawn_up_although_it_looks_up_from_beside():
+    assert rehearsed(0.78, lower=0.12) == ("success", ["seat"])  # 0.70 in the mean
 
 
 def test_a_sleeve_a_little_too_low_to_be_claimed_is_drawn_up():
