@@ -57,8 +57,6 @@ MISSES = (
 # Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
 # is inside is looked at from beside it.  Skin of the shoulder shows there beside the neckline of 3 dressed people of 8.
 FROM_HEAD = CheckSleeveTuning(min_share_round=0.1, min_covered=0.0)
-# One that shows less may be worn all the same, 8 % of the way round in ten looks in turn (290): asked from beside.
-MAYBE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0)
 
 
 def arm_scope(context: Context, name: str, side: Side) -> Scope:
