@@ -35,6 +35,7 @@ EXTRA_OF = {
     "orjson": "log",
     "pinocchio": "sim",
     "pooch": "gap",
+    "pyarrow": "lerobot",
     "pybullet": "sim",
     "pybullet_utils": "sim",
     "pysindy": "gap",

@@ -45,6 +45,7 @@ OUTSIDE_THE_TREE = {
     "trees/campaign/on_cluster.py",
     "trees/campaign/rows_on_cluster.py",
     "trees/commands/evaluate.py",
+    "trees/commands/export_lerobot.py",
     "trees/commands/robot.py",
     "trees/commands/run.py",
     "trees/commands/serve_robot.py",

@@ -20,6 +20,7 @@ SELF_PARSED = {
     "serve-world": (".commands.serve_world", "offer a world to a tree in another process"),
     "serve-robot": (".commands.serve_robot", "have a simulated world be the robot behind a ROS 1 master"),
     "robot": (".commands.robot", "say what a robot behind a ROS 1 master lacks, before anything moves"),
+    "export": (".commands.export", "write a task's tree, or what robots did, for other programs"),
     "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed and unharmed"),
 }
 # said by --help, which must not import what knows them; a test compares
@@ -35,7 +36,7 @@ WORLD_KINDS = (
 FAULTS = (
     "grip_slip, occlusion, stale_frame, force_spike, lost_command, person_moves, camera_out, dead_camera, dead_sensor"
 )
-EXPORTS = ("xml",)
+IN_THE_RECORD = ""  # where --log is written if no file is given
 SHELLS = ("bash", "zsh")
 EXTRAS = {"gap": "gap", "learn": "learn", "robot": "ros", "serve-robot": "ros"}  # of commands that need one
 DELEGATED = {"gap": "..learning.gap.cli", "learn": ".commands.learn"}
@@ -175,7 +176,9 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     run.add_argument(
         "--log",
         metavar="FILE",
-        help="MCAP file of what the robot measured, saw and was sent, for Foxglove",
+        nargs="?",
+        const=IN_THE_RECORD,
+        help="MCAP file of what the robot measured, saw and was sent, for Foxglove (default: one in the record)",
     )
     run.add_argument(
         "--log-rate",
@@ -219,12 +222,6 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     new = commands.add_parser("new", help="begin a task: a task file that runs, with its scripted world and its test")
     new.add_argument("name", metavar="TASK", help="name of the task, a Python name such as fetch_gown")
     new.add_argument("--out", default=".", metavar="DIR", help="folder for its files (default: here)")
-
-    export = commands.add_parser("export", help="write a task's tree for other programs, such as Groot2")
-    export.add_argument("form", metavar="FORM", choices=EXPORTS, help="xml: BehaviorTree.CPP 4")
-    export.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
-    export.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
-    export.add_argument("--out", metavar="FILE", help="file to write (default: print it)")
 
     view = commands.add_parser("view", help="look at a record in the browser, with a time slider")
     view.add_argument("directory", metavar="DIR")

@@ -61,6 +61,7 @@ class LoggedWorld(World):
         self._looked: dict[str, float] = {}
         self._observed = messages.Observed(self.robot)
         if file is not None:
+            file.attach(messages.ROBOT, "application/json", messages.roles(self.robot))
             with contextlib.suppress(CaretreeError, OSError):  # a robot without its files, or known by name alone
                 file.attach(URDF, "application/xml", self.robot.urdf())
 

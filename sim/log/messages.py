@@ -18,7 +18,21 @@ Message = tuple[str, str, dict[str, Any] | str]  # topic, schema, content; text 
 TIME_SLOT = '{"sec":%d,"nsec":%d}'
 DIGITS = 9  # of a number behind the point: far below any sensor's noise
 JPEG_QUALITY = 88
+ROBOT = "robot.json"  # name of the attachment that says which joint is what
 MILLIMETRES = 1000.0  # of depth in a picture of whole numbers, as ROS has it
+
+
+def roles(robot: RobotModel) -> str:
+    """Which of a robot's joints is what, as JSON."""
+    return json.dumps(
+        {
+            "name": robot.name,
+            "arms": {side: robot.joints_of(side) for side in SIDES},
+            "fingers": {side: robot.fingers[side] for side in SIDES},
+            "head": robot.head_joint,
+            "base": robot.base_joints,
+        }
+    )
 
 
 def stamp(time: float) -> dict[str, int]:

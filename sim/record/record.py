@@ -27,6 +27,7 @@ RUN_FILE, TRACE_FILE, TRUTH_FILE, VIDEO_FILE, REPORT_FILE = (
 TREE_FILE = "tree.json"  # the tree that ran, its nodes as rows
 LOOKS_FOLDER = "looks"  # what the cameras saw before each failure
 SPOOL_FOLDER = "truth.spool"
+LOG_FILE = "log.mcap"  # what the robot measured, saw and was sent, where the run was asked for it
 MEASURED_FILE = "measured.npz"  # what the robot measured: hands, their loads, arms as tracked
 ERRORS_FILE = "errors.log"  # tracebacks of errors in the program or in a task file
 RESERVE_FILE = "reserve"  # there only while the run goes on

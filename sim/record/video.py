@@ -29,12 +29,13 @@ class VideoWriter:
         path: of the mp4.
         width, height: size of every picture, even numbers [px].
         quality: constant rate factor of x264, 18 (fine) to 30 (coarse).
+        keyframe_every: pictures; a kill loses as many, and as many are decoded to show any one of them.
 
     Raises:
         RecordError: the size is odd, or the file cannot be written.
     """
 
-    def __init__(self, path: Path, *, width: int, height: int, quality: int = 24) -> None:
+    def __init__(self, path: Path, *, width: int, height: int, quality: int = 24, keyframe_every: int = 25) -> None:
         if width < 2 or height < 2 or width % 2 or height % 2:
             raise RecordError(f"pictures are {width} x {height}, but H.264 asks for even width and height")
         import av
@@ -52,8 +53,9 @@ class VideoWriter:
             )  # each fragment at once, not every 32 kB
             stream: Any = self._container.add_stream("libx264", rate=25)
             stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
-            # one thread: physics owns the cores; a keyframe every 25 pictures bounds what a kill loses
-            stream.options = {"crf": str(quality), "preset": "veryfast", "threads": "1", "g": "25", "bf": "0"}
+            # one thread: physics owns the cores
+            options = {"crf": str(quality), "preset": "veryfast", "threads": "1", "bf": "0"}
+            stream.options = options | {"g": str(keyframe_every)}
             stream.time_base = stream.codec_context.time_base = _time_base()
             self._container.start_encoding()  # opens the file now, not at the first picture
         self._stream = stream

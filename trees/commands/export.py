@@ -1,4 +1,8 @@
-"""`caretree export xml TASK`: the task's tree as BehaviorTree.CPP 4 and Groot2 read it; `caretree run` reads it too."""
+"""`caretree export`: a task's tree, or what robots did, for other programs.
+
+caretree export xml TASK           # BehaviorTree.CPP 4 and Groot2 read it; `caretree run` reads it too
+caretree export lerobot RECORD...  # a LeRobot dataset of the logs of runs
+"""
 
 from __future__ import annotations
 
@@ -13,10 +17,23 @@ from ..btcpp.writer import written
 from ..guard.guard import GuardedWorld
 from ..run.task import Task, TaskError, load_task
 from ..tasks import task_names
+from . import export_lerobot
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the command line."""
+    parser = subparsers.add_parser("export", help="write a task's tree, or what robots did, for other programs")
+    forms = parser.add_subparsers(dest="form", metavar="FORM", required=True)
+    xml = forms.add_parser("xml", help="a task's tree: BehaviorTree.CPP 4, Groot2")
+    xml.add_argument("task", metavar="TASK", help="name of a task, or path of a task file")
+    xml.add_argument("--stage", metavar="NAME", help="this stage alone, or a span such as dress-spread")
+    xml.add_argument("--out", metavar="FILE", help="file to write (default: print it)")
+    xml.set_defaults(main=main)
+    export_lerobot.add_parser(forms)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Print the file, or write it.
+    """Print the tree's file, or write it.
 
     Raises:
         CaretreeError: the task is unknown or broken, or holds what XML cannot.

@@ -21,10 +21,11 @@ from ...sim.faults import FaultSpec, FaultyWorld, parse_fault
 from ...sim.fence import said
 from ...sim.log.logged_world import logged_into
 from ...sim.record.folder_claim import FolderClaim, claim_free
-from ...sim.record.record import ERRORS_FILE, RUN_FILE, VIDEO_FILE, RunResult
+from ...sim.record.record import ERRORS_FILE, LOG_FILE, RUN_FILE, VIDEO_FILE, RunResult
 from ...sim.record.recorder import Recorder
 from ...sim.world import Observation, World
 from ...sim.world_kind import WorldKind
+from ..cli import IN_THE_RECORD
 from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
@@ -95,10 +96,10 @@ def main(options: argparse.Namespace) -> int:
         "build": given.parameters,
     }
     parameters = {key: value for key, value in parameters.items() if value not in (None, [], {})}
-    if options.log:
+    if options.log is not None:
         need("mcap", "the log")
     elif options.log_rate is not None:
-        raise CaretreeError("--log-rate is the rate of the log: give --log FILE too")
+        raise CaretreeError("--log-rate is the rate of the log: give --log too")
     with closing(Watchers(options)) as watchers:
         # claimed before the world is built, which takes a while: two runs begun together get a folder each
         claim = (
@@ -106,6 +107,8 @@ def main(options: argparse.Namespace) -> int:
             if options.out
             else claim_free(Path("runs"), f"{Path(options.task).stem}-seed{options.seed}")
         )
+        if options.log == IN_THE_RECORD:
+            options.log = str(claim.directory / LOG_FILE)
         try:
             with StopSignals() as signals:
                 inner, senses = make_world(

@@ -7,6 +7,7 @@ from caretree.sim.abilities import HasKinematics, SupportsFaults
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.sim.log.log_file import LogFile
 from caretree.sim.log.logged_world import URDF, logged, logged_into
+from caretree.sim.log.messages import ROBOT
 from caretree.sim.scripted.clock import SteppedClock
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.testing import check_world
@@ -46,9 +47,10 @@ def test_the_robot_comes_with_the_log(path):
     with logged_into(ScriptedWorld(seed=1), str(path)):
         pass
     with path.open("rb") as file:
-        (urdf,) = make_reader(file).iter_attachments()
-    assert urdf.name == URDF
-    assert b'name="left_w1"' in urdf.data
+        told_of = {each.name: each.data for each in make_reader(file).iter_attachments()}
+    assert set(told_of) == {URDF, ROBOT}
+    assert b'name="left_w1"' in told_of[URDF]
+    assert json.loads(told_of[ROBOT])["arms"]["left"][0] == "left_s0"
 
 
 def test_a_robot_without_its_description_is_logged_too(path):
@@ -202,6 +204,12 @@ def test_a_run_is_the_same_with_its_log_and_is_repeated(folder, capsys):
     assert [each["command"] for each in told(folder / "run.mcap", "/sent")].count("JointTrajectory") == 2
 
 
+def test_without_a_name_the_log_lies_in_the_record(folder, capsys):
+    assert main([*RUN, "--out", "r", "--log"]) == 0
+    assert capsys.readouterr().out.endswith("r/log.mcap\n")
+    assert len(told(folder / "r" / "log.mcap", "/joint_states")) > 10
+
+
 def test_a_run_that_was_measured_more_often_repeats_too(folder):
     assert main([*RUN, "--out", "r", "--log", "run.mcap", "--log-rate", "50"]) == 0
     assert len(told(folder / "run.mcap", "/joint_states")) > 250
@@ -212,7 +220,7 @@ def test_a_run_that_was_measured_more_often_repeats_too(folder):
     ("options", "said"),
     [
         (("--log", "there.mcap"), "there.mcap is there already: give another file with --log"),
-        (("--log-rate", "50"), "--log-rate is the rate of the log: give --log FILE too"),
+        (("--log-rate", "50"), "--log-rate is the rate of the log: give --log too"),
         (("--log", "new.mcap", "--log-rate", "5000"), "'5000' is no rate: 0.1 to 1000 Hz is asked for"),
         (("--log", "new.mcap", "--log-rate", "nan"), "'nan' is no rate: 0.1 to 1000 Hz is asked for"),
     ],
