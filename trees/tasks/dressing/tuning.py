@@ -236,6 +236,12 @@ class DressingTuning(Quantities):
         "choice: each takes 30 to 90 s, and the stage's time ends them.  Runs that ended unclaimed after five were in "
         "their sleeves to 0.7 and more, one bound or two missed by little or not at all (151, 155, 156)",
     )
+    surely_neat_attempts: int = quantity(
+        3,
+        "1",
+        "at a collar that looks neat from the head of the bed, and aside from both of its sides",
+        "choice: each takes a minute and a half; the stage's time ends them",
+    )
     collar_aside: float = quantity(
         0.055,
         "m",

@@ -13,7 +13,7 @@ from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
 
 SEATED, FLAT = "gown/sleeves/seat", "fold/draw flat"
-LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again", "off the face"))
+LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again", "off the face", "anew"))
 PULLED = {f"{side} sleeve/pull up": side for side in SIDES}
 ON_FACE = -0.15  # along y, a collar so far headward lies over mouth and nose [m]
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
@@ -72,7 +72,7 @@ class WornGown(ScriptedSenses):
         if progress.name == SEATED:
             self.low = {side: low + DRAWN_UP for side, low in self.low.items()}
         if progress.name in LAID and not self.stays:
-            self.off = (0.0, 0.0)
+            self.off, self.beside = (0.0, 0.0), {}
         if progress.name == FLAT and not self.stays:
             self.outside = 1.0
             self.low = {side: low - DRAWN_UP for side, low in self.low.items()}
@@ -204,4 +204,12 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
 def test_a_collar_that_does_not_show_whole_is_claimed_where_two_of_three_looks_agree(
     shown, from_left, from_right, ends
 ):
-    assert rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}) == (ends, [])
+    outcome, done = rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}, stays=True)
+    assert outcome == ends
+    aside = ends == "safe_stop" and shown >= 0.8
+    assert done == (["spread"] * 2 if aside else []), "one that lies aside is laid after each of three looks but the last"
+
+
+def test_a_collar_that_looks_aside_from_both_sides_is_laid_and_all_of_it_seen_anew():
+    aside = (0.07, 0.0)
+    assert rehearsed(0.85, shown=0.92, beside={-1.0: aside, 1.0: aside}) == ("success", ["spread"])
