@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 
@@ -215,7 +216,9 @@ class PresentSleeve(Skill):
     def _folded(self, path: ArmPath) -> Generator[None, None, _Folded | None]:
         """A sleeve whose back panel lies folded over the strap hangs across the hand, or points back at it.
 
-        One that hides behind its panel cannot be centred on the hand either.
+        One that hides behind its panel cannot be centred on the hand either.  Where the armhole shows and the cuff does
+        not, the cuff may be behind it: of three such sleeves two were open before the hand, and laid down again their
+        gowns slid off the bed (0, 196); a pull that misses the hand costs no more than that.
         """
         if not np.isfinite(self.min_cuff_distance):
             return None
@@ -227,6 +230,8 @@ class PresentSleeve(Skill):
             try:
                 seen = self._heading()
             except PerceptionFailure as hidden:
+                if self._armhole_shows():
+                    return None
                 return _Folded(SkillFailure(Reason.SLEEVE_FOLDED, f"{hidden}"), 0.0)
         heading = unit(path.direction(self.tuning.hand_coordinate) * (1.0, 1.0, 0.0))
         beyond = float(seen.cuff_from_armhole_in_map @ heading)
@@ -240,6 +245,17 @@ class PresentSleeve(Skill):
         aside = float(seen.cuff_from_armhole_in_map @ np.cross(UP, heading))
         points = np.hypot(aside, beyond) > self.tuning.min_pointing
         return _Folded(failure, -float(np.arctan2(aside, beyond)) if points else 0.0)
+
+    def _armhole_shows(self) -> bool:
+        """Whether either camera that steers a pull sees the armhole."""
+        hand = self.grip.hand
+        for camera in ("head", f"{hand}_hand"):
+            with contextlib.suppress(PerceptionFailure):
+                self.context.senses.held_armhole(
+                    self.world.look(camera), side=self.grip.arm, near_in_map=hand_now(self, hand)[:3, 3]
+                )
+                return True
+        return False
 
     def _heading(self) -> SleeveHeading:
         """Which way the sleeve points, as the head's camera sees it."""

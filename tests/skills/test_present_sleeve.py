@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import SleeveHeading
 from caretree.skills.belief.short_gown import short_gown
 from caretree.skills.core.reasons import Reason
 from caretree.skills.present_sleeve import PresentSleeve
-from caretree.skills.scripted.scripted_person import lying_arm, lying_posture
+from caretree.skills.scripted.scripted_person import laid_strap, lying_arm, lying_posture
 
 from .bench import GRIP, LeafBench, beside_bed
 
@@ -28,13 +29,23 @@ def turned(run):
     return np.arctan2(-across @ ASIDE, -across @ ALONG)
 
 
-def ran(seen, load=1.0):
-    """The bench after a run, why it failed, None after a success, and how often it looked at the sleeve."""
+def ran(seen, load=1.0, armhole_shows=()):
+    """The bench after a run, why it failed, None after a success, and how often it looked at the sleeve.
+
+    A heading that is None does not show; `armhole_shows` to these cameras.
+    """
     looks, arm = [], lying_posture("right")
 
     def answer(frame, **details):
         looks.append(frame.stamp)
-        return seen[min(len(looks), len(seen)) - 1]
+        if (told := seen[min(len(looks), len(seen)) - 1]) is None:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "both bindings")
+        return told
+
+    def armhole(frame, **details):
+        if frame.camera not in armhole_shows:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "held armhole")
+        return laid_strap("right", frame.stamp)
 
     run = LeafBench(
         lambda context: PresentSleeve("present", context, grip=GRIP, max_load=4.0, min_cuff_distance=0.05),
@@ -43,6 +54,7 @@ def ran(seen, load=1.0):
             arm=arm,
             relocalised_arm=arm,
             sleeve_heading=answer,
+            held_armhole=armhole,
         ),
     )
     return run, run.ended(seconds=200.0), len(looks)
@@ -94,6 +106,15 @@ def test_one_that_still_points_elsewhere_is_turned_on():
 
 def test_one_that_keeps_pointing_elsewhere_is_given_up():
     assert ran([heading(0.0, 0.12)])[1:] == (Reason.SLEEVE_FOLDED, 3)
+
+
+@pytest.mark.parametrize("camera", ["head", "right_hand"])
+def test_one_whose_cuff_may_be_hidden_by_its_open_armhole_is_not_folded(camera):
+    assert ran([None], armhole_shows=(camera,))[1:] == (None, 2)  # looks, the second one at the hand
+
+
+def test_one_of_which_nothing_shows_is_folded():
+    assert ran([None], armhole_shows=("left_hand",))[1] == Reason.SLEEVE_FOLDED
 
 
 @pytest.mark.parametrize("load", [5.0, 7.0])

@@ -2,6 +2,7 @@
 
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
+from caretree.skills.carry_sleeve import CarrySleeve
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance
@@ -93,6 +94,24 @@ def test_a_first_sleeve_that_is_low_is_pulled_up_again_before_the_other_arm_is_l
     done = [name for name, status in rehearsed() if status == "success"]
     assert done[: done.index("left arm/lift")].count("first sleeve/pull up") == pulls
     assert 0.0 < looked[0] < 0.7
+
+
+def test_a_second_sleeve_out_of_reach_from_its_side_is_fetched_from_the_other_before_the_arm_is_lifted(monkeypatch):
+    def out_of_reach_on_its_side(steps):
+        def tried(self):
+            if self.name.startswith("second sleeve/") and self.world.observe().pose_base_in_map[0] < 0.0:
+                raise SkillFailure(Reason.UNREACHABLE, "")
+            yield from steps(self)
+
+        return tried
+
+    for skill in (CarrySleeve, GraspSleeve):
+        monkeypatch.setattr(skill, "steps", out_of_reach_on_its_side(skill.steps))
+    done = [name for name, status in rehearsed() if status == "success"]
+    fetched = ["go to the other side", "carry it across", "clear of it", "go back to its side"]
+    first = done.index(f"second sleeve/{fetched[0]}")
+    assert done[first : first + 4] == [f"second sleeve/{name}" for name in fetched]
+    assert first < done.index("left arm/lift")
 
 
 def test_an_arm_that_is_not_where_it_was_taken_to_be_up_is_looked_at_from_farther_off(monkeypatch):

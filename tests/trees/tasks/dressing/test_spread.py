@@ -207,7 +207,7 @@ def test_a_collar_that_does_not_show_whole_is_claimed_where_two_of_three_looks_a
     outcome, done = rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}, stays=True)
     assert outcome == ends
     aside = ends == "safe_stop" and shown >= 0.8
-    assert done == (["spread"] * 2 if aside else []), "one that lies aside is laid after each of three looks but the last"
+    assert done == (["spread"] * 2 if aside else []), "laid after each of three looks but the last"
 
 
 def test_a_collar_that_looks_aside_from_both_sides_is_laid_and_all_of_it_seen_anew():
