@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import pkgutil
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -153,10 +154,19 @@ def _parsers(command: str) -> dict[str, argparse.ArgumentParser]:
     return {}
 
 
+def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
+    """What the parser takes, and what its forms take, as of `export`."""
+    for action in parser._actions:
+        yield action
+        if isinstance(action, argparse._SubParsersAction):
+            for form in action.choices.values():
+                yield from _actions(form)
+
+
 def _options(parser: argparse.ArgumentParser) -> dict[str, Offer | None]:
     return {
         option: None if action.nargs == 0 else _offer(action)
-        for action in parser._actions
+        for action in _actions(parser)
         for option in action.option_strings
         if option.startswith("--")
     }
@@ -174,7 +184,7 @@ def _places(name: str, parser: argparse.ArgumentParser) -> Offer:
         return Offer()  # a name that there is not yet
     if name in DELEGATED:
         return Offer(paths="files")  # they parse their own words
-    taken = [action for action in parser._actions if not action.option_strings]
+    taken = [action for action in _actions(parser) if not action.option_strings]
     said = [str(word) for action in taken for word in action.choices or ()]
     kinds: list[Paths] = [kind for action in taken if (kind := PATHS.get(str(action.metavar)))]
     paths: Paths = kinds[0] if kinds else ""

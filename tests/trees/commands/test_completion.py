@@ -69,3 +69,9 @@ def test_no_command_is_unknown_to_the_parser():
     parser = build_parser()
     for name in words():
         assert name in parser.format_help()
+
+
+def test_what_the_forms_of_a_command_take_is_offered_too():
+    export = words()["export"]
+    assert {"xml", "lerobot", "wave"} <= set(export.places.words)
+    assert {"--out", "--stage", "--camera"} <= set(export.options)
