@@ -96,6 +96,26 @@ def test_a_first_sleeve_that_is_low_is_pulled_up_again_before_the_other_arm_is_l
     assert 0.0 < looked[0] < 0.7
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(("misses", "lifts"), [(1, 1), (2, 2)])
+def test_a_sleeve_is_taken_off_again_only_where_a_look_from_the_shoulder_says_so_too(monkeypatch, side, misses, lifts):
+    look, missed = CheckSleeve.steps, []
+
+    def beside_at_first(self):
+        if self.name == f"{side} arm/is inside" and len(missed) < misses:
+            missed.append(self.name)
+            raise SkillFailure(Reason.SLEEVE_MISSED, "")
+        yield from look(self)
+
+    monkeypatch.setattr(CheckSleeve, "steps", beside_at_first)
+    ended = rehearsed()
+    first = ended.index((f"{side} arm/is inside", "failure"))
+    told = [name for name, status in ended[first + 1 :] if status == "success"]
+    closely = ["go round to its side", "go up to it", "go up and look"]
+    assert told[:3] == [f"{side} arm/surely/{name}" for name in closely]
+    assert ended.count((f"{side} arm/lift", "success")) == lifts
+
+
 def test_a_second_sleeve_out_of_reach_from_its_side_is_fetched_from_the_other_before_the_arm_is_lifted(monkeypatch):
     def out_of_reach_on_its_side(steps):
         def tried(self):
