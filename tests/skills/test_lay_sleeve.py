@@ -62,6 +62,17 @@ def test_a_sleeve_that_pulls_is_let_go_of_where_it_is():
     assert let_go(run)[2] == pytest.approx(0.83, abs=0.03)  # [m], 17 cm above where it would lie
 
 
+def test_one_that_pulls_hard_before_it_is_moved_is_not_let_go_of_in_the_air():
+    def slackens(bench):
+        pulls(
+            bench.world, "right", (0.0, -5.0 if bench.world.observe().pose_hand_in_map[1, 1, 3] < 0.10 else 0.0, -1.4)
+        )
+
+    run = bench(each_tick=slackens)
+    assert run.ended() is None
+    assert let_go(run) == pytest.approx((0.26, 0.20, MATTRESS + 0.06), abs=0.02)
+
+
 def test_it_keeps_hold_of_the_arm_and_ends_when_that_slips():
     run = bench(hold=Hold("left", 1.0))
     assert run.ended() is None
