@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from py_trees.behaviour import Behaviour
 
+from ....sim.world import SIDES, Side
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
@@ -40,30 +41,37 @@ def lay(context: Context) -> Stage:
 
 
 def by_both_ends(context: Context, gown: Scope) -> Behaviour:
-    """Stretch the neckline; where it is too short, take an end anew with one hand, then with both in turn."""
+    """Stretch the neckline; where it is too short, take an end anew with one hand, then with both in turn.
+
+    What the left hand holds may be no end either: then all of it is done once more from what the right hand holds.
+    """
 
     def stretch(name: str) -> Behaviour:
         return patient(gown, StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline))
 
-    def holds(name: str) -> Condition:
-        return Condition(name, holds_gown_with, Reason.CLOTH_SLIPPED, hand="left")
+    def holds(name: str, hand: Side) -> Condition:
+        return Condition(name, holds_gown_with, Reason.CLOTH_SLIPPED, hand=hand)
 
     end = Scope(context, "right end", keys=("views", "holder", "former"))
     right = sequence(
         "the right hand anew",
-        holds("the left hand holds it too"),
+        holds("the left hand holds it too", "left"),
         Retreat("let go", end, hands="right", ready="never", tuning=LEVEL),
         look_and_take(end, "left", DRESSING.second_corner),
         stretch("stretch by the new right end"),
     )
-    both = sequence(
-        "both hands anew",
-        holds("the left hand still holds it"),
-        Retreat("let go once more", end, hands="right", ready="never", tuning=LEVEL),
-        corner_by_corner(context, ("end", "end again", "end anew"), "left"),
-        stretch("stretch by both new ends"),
-    )
-    return fallback("by both ends", stretch("stretch the neckline"), right, both)
+
+    def both(hand: Side, name: str) -> Behaviour:
+        other: Side = SIDES[1 - SIDES.index(hand)]
+        return sequence(
+            f"both hands anew, from the {hand} one",
+            holds(f"the {hand} hand still holds it", hand),
+            Retreat(f"let go with the {other} hand", end, hands=other, ready="never", tuning=LEVEL),
+            corner_by_corner(context, (name, f"{name} again", f"{name} anew"), hand),
+            stretch(f"stretch from the {hand} hand"),
+        )
+
+    return fallback("by both ends", stretch("stretch the neckline"), right, both("left", "end"), both("right", "far"))
 
 
 def holds_gown(context: Context) -> bool:

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
-from caretree.skills import CarrySleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat
-from caretree.skills.core.reasons import Reason
+from caretree.skills import CarrySleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat, StretchNeckline
+from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
 from caretree.trees.run.runner import Run
@@ -186,4 +186,35 @@ def test_a_neckline_that_is_too_short_is_taken_anew_by_the_right_hand(taut_at, a
     assert run.run().outcome == "success"
     assert ended["gown/stretch the neckline"] == ("failure" if anew else "success")
     assert ("right end/let go" in ended) == anew
+    assert ended["gown/lay it on the person"] == "success"
+
+
+def test_where_what_the_left_hand_holds_is_no_end_both_are_taken_anew_from_the_right_one(monkeypatch):
+    stretch, stretched = StretchNeckline.steps, []
+
+    def short_until_the_left_hand_has_let_go(self):
+        stretched.append(self.name)
+        if self.name != "gown/stretch from the right hand":
+            raise SkillFailure(Reason.GRASP_MISSED, "")
+        yield from stretch(self)
+
+    monkeypatch.setattr(StretchNeckline, "steps", short_until_the_left_hand_has_let_go)
+    task, ended = load_task("dressing"), {}
+    world, senses = task.scripted(1)
+    run = Run(
+        task,
+        world,
+        seed=1,
+        senses=senses,
+        params={"stages": ("take_down", "lay")},
+        on_progress=lambda progress: ended.update({progress.name: progress.status}),
+    )
+    assert run.run().outcome == "success"
+    assert [name.removeprefix("gown/stretch ") for name in stretched] == [
+        "the neckline",
+        "by the new right end",
+        "from the left hand",
+        "from the right hand",
+    ]
+    assert ended["right end/let go with the left hand"] == "success"
     assert ended["gown/lay it on the person"] == "success"
