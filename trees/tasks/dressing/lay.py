@@ -66,7 +66,7 @@ def by_both_ends(context: Context, gown: Scope) -> Behaviour:
         return sequence(
             f"both hands anew, from the {hand} one",
             holds(f"the {hand} hand still holds it", hand),
-            Retreat(f"let go with the {other} hand", end, hands=other, ready="never", tuning=LEVEL),
+            Retreat("let go", Scope(context, f"from the {hand} hand"), hands=other, ready="never", tuning=LEVEL),
             corner_by_corner(context, (name, f"{name} again", f"{name} anew"), hand),
             stretch(f"stretch from the {hand} hand"),
         )
