@@ -11,7 +11,7 @@ from ...sim.errors import CaretreeError
 from ...sim.scene.gown import GOWNS, HELD_OUT_GOWNS
 from ..seeds import span_of_seeds
 from ..shards import add_cluster_options
-from .numbers import ORACLES
+from .numbers import ORACLES, PHYSICS
 
 
 def parser() -> argparse.ArgumentParser:
@@ -39,6 +39,12 @@ def parser() -> argparse.ArgumentParser:
         choices=ORACLES,
         default="all",
         help="which actions it tries: all, no more than tell the ceiling, some near the corner to train on, or none",
+    )
+    data.add_argument(
+        "--physics",
+        choices=PHYSICS,
+        default="identified",
+        help="whose cloth: identified from a clip of it, true, tuned (baseline 4) or random (baseline 5)",
     )
     add_cluster_options(data)
     train = sub.add_parser("train", help="train the policy and write it as ONNX")
@@ -83,6 +89,7 @@ def main(argv: list[str]) -> int:
                 deep=options.deep,
                 pixels=options.pixels,
                 oracle=options.oracle,
+                physics=options.physics,
                 jobs=options.jobs,
                 address=options.address,
             )

@@ -35,7 +35,7 @@ class Dataset:
 
     Attributes:
         seeds: (S,) of the states.
-        gowns: (S,) their names.
+        gowns: (S,) their keys, see `gowns.py`.
         rgb: (S, 6, H, W, 3) uint8.
         depth: (S, 6, H, W) uint16 [mm], 0 where the gown does not show.
         corners: (S, 3) float32, where the wanted end of the neckline is, in the frame of the holding hand [m].
@@ -43,6 +43,7 @@ class Dataset:
         digest: of everything.
         deep: whether the states are deep grasps, see `hung_state`.
         oracle: of `ORACLES`, which actions were tried.
+        physics: of `PHYSICS`, whose cloth the gowns have.
     """
 
     seeds: np.ndarray
@@ -54,6 +55,7 @@ class Dataset:
     digest: str
     deep: bool = False
     oracle: str = "all"
+    physics: str = "identified"
 
     @property
     def success(self) -> np.ndarray:
@@ -85,6 +87,7 @@ def make_dataset(
     deep: bool = False,
     pixels: int = len(PIXELS),
     oracle: str = "all",
+    physics: str = "identified",
     jobs: int | None = None,
     address: str | None = None,
 ) -> Path:
@@ -98,6 +101,7 @@ def make_dataset(
         deep: whether the states are deep grasps, see `hung_state`.
         pixels: that the oracle tries in a view, the first of `PIXELS`.
         oracle: of `ORACLES`, which of its actions are tried.
+        physics: of `PHYSICS`, whose cloth the gowns have.
         jobs: shards made at once; more than one needs Ray.
         address: of a Ray cluster.
 
@@ -107,7 +111,8 @@ def make_dataset(
     folder, seeds = Path(folder), list(seeds)
     folder.mkdir(parents=True, exist_ok=True)
     about: dict[str, Any] = {"format": FORMAT, "first": seeds[0], "gown": gown, "deep": deep, "pixels": pixels} | {
-        "oracle": oracle
+        "oracle": oracle,
+        "physics": physics,
     }
     old = read_index(folder) if (folder / INDEX).is_file() else {**about, "shards": []}
     if any(old[key] != about[key] for key in about):
@@ -116,7 +121,8 @@ def make_dataset(
         raise CaretreeError(f"{folder} holds states with {theirs}, not with {mine}; choose another folder")
     whole = {s["file"]: s for s in old["shards"] if s["states"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-len(seeds) // SHARD)) if shard_name(n) not in whole]
-    for number, shard in each_shard(make_shard, missing, seeds, gown, deep, pixels, oracle, jobs=jobs, address=address):
+    what = (gown, deep, pixels, oracle, physics)
+    for number, shard in each_shard(make_shard, missing, seeds, *what, jobs=jobs, address=address):
         replace_file(folder / shard_name(number), shard.pop("bytes"))
         spent = shard.pop("seconds")
         whole[shard_name(number)] = shard
@@ -129,13 +135,13 @@ def make_dataset(
 
 
 def make_shard(
-    number: int, seeds: Sequence[int], gown: str | None, deep: bool, pixels: int, oracle: str
+    number: int, seeds: Sequence[int], gown: str | None, deep: bool, pixels: int, oracle: str, physics: str
 ) -> dict[str, Any]:
     """States of one shard, tried by the oracle: `file`, `states`, `attempts`, `sha256`, `seconds`, `bytes`."""
     start, mine = time.process_time(), seeds[number * SHARD : (number + 1) * SHARD]
     rgb, depth, gowns, corners, rows = [], [], [], [], []
     for k, seed in enumerate(mine):
-        state = hang(seed, gown, deep)
+        state = hang(seed, gown, deep, physics=physics)
         views = photograph(state)
         rgb.append(views.rgb)
         depth.append(np.round(views.depth * 1e3).astype(np.uint16))
@@ -183,6 +189,7 @@ def read_index(folder: str | Path) -> dict[str, Any]:
     try:
         index = json.loads((Path(folder) / INDEX).read_text(encoding="utf-8"))
         assert index["format"] == FORMAT
+        index.setdefault("physics", "identified")  # of folders made before it could be another
     except (OSError, ValueError, KeyError, AssertionError) as error:
         raise CaretreeError(f"{folder}: this is no dataset of pre-grasps in format {FORMAT}") from error
     return index
@@ -212,4 +219,4 @@ def load_dataset(folder: str | Path) -> Dataset:
         raise CaretreeError(f"{folder}: the dataset is empty")
     digest = hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]
     joined = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    return Dataset(**joined, digest=digest, deep=index["deep"], oracle=index["oracle"])
+    return Dataset(**joined, digest=digest, deep=index["deep"], oracle=index["oracle"], physics=index["physics"])

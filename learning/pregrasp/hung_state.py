@@ -17,7 +17,7 @@ import numpy as np
 from ...sim.spring.banded_cholesky import Band
 from ...sim.spring.mass_spring import Springs, advance, damped, weave
 from ..physics.engine.equilibrium import held_start, static_equilibrium
-from .gowns import draw_gown, gown_of, held_sheet, mesh_of
+from .gowns import draw_gown, gown_of, held_sheet, key_of, mesh_of
 from .numbers import HANG, HangNumbers
 
 CALMED = 0.05  # the swing is damped once in this time [s]
@@ -30,7 +30,7 @@ class HungState:
 
     Attributes:
         seed: that it was drawn from.
-        gown: its name.
+        gown: its key, see `gowns.py`.
         vertices: (V, 3), the holding hand at the origin [m].
         held: vertices in that hand.
         wanted: vertex of the other end of the neckline.
@@ -52,18 +52,26 @@ class HungState:
         return mesh_of(self.gown).faces
 
 
-def hang(seed: int, gown: str | None = None, deep: bool = False, numbers: HangNumbers = HANG) -> HungState:
+def hang(
+    seed: int,
+    gown: str | None = None,
+    deep: bool = False,
+    numbers: HangNumbers = HANG,
+    *,
+    physics: str = "identified",
+) -> HungState:
     """The state of a seed: which gown, which end is held, how it was let go of.
 
     Args:
         seed: draws everything.
-        gown: its name; None leaves it to the seed.
+        gown: its key; None leaves its cut to the seed.
         deep: whether the hand holds the neckline far from its ends, and the cloth meets itself.
         numbers: of the swing.
+        physics: of `numbers.PHYSICS`; a key says it itself.
     """
     rng = np.random.default_rng([seed, 15])
     drawn = draw_gown(rng)
-    gown = gown or drawn
+    gown = key_of(gown or drawn, physics, seed)
     mesh = mesh_of(gown)
     end = int(rng.integers(2))
     corner, wanted = mesh.corners[end], mesh.corners[1 - end]

@@ -26,3 +26,6 @@ class HangNumbers(Quantities):
 HANG = HangNumbers()
 # which actions are tried: every one; no more than tells the ceiling; some near the corner, drawn by seed; none
 ORACLES = ("all", "ceiling", "drawn", "none")
+# whose cloth a gown has: what was identified from a clip of it, what the clip was made with, what the paper's
+# baseline 4 takes for it, and one that the seed draws from the whole range (baseline 5)
+PHYSICS = ("identified", "true", "tuned", "random")

@@ -77,7 +77,7 @@ class Training:
 
     def __init__(self, data: Dataset, plan: Plan) -> None:
         torch.manual_seed(plan.seed)
-        self.plan, self.deep, self.network = plan, data.deep, PolicyNetwork()
+        self.plan, self.deep, self.physics, self.network = plan, data.deep, data.physics, PolicyNetwork()
         self.optimiser = torch.optim.Adam(self.network.parameters(), RATE)
         self.steps, self.trials, self.seconds = 0, 0, 0.0
         self.clock = time.process_time()
@@ -154,7 +154,8 @@ class Training:
         """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded."""
         plan, k = self.plan, self.trials
         rng = np.random.default_rng([plan.seed, 19, k])
-        state = hang(TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS), deep=self.deep)
+        seed = TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS)
+        state = hang(seed, deep=self.deep, physics=self.physics)
         views = photograph(state)
         image = seen(views)
         with torch.no_grad():

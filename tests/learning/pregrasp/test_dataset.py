@@ -11,12 +11,15 @@ from caretree.learning.pregrasp import dataset, oracle
 from caretree.learning.pregrasp.agreement import paired
 from caretree.learning.pregrasp.ceiling import ceiling, table
 from caretree.learning.pregrasp.cli import main
+from caretree.learning.pregrasp.gowns import STIFFEST, gown_of
 from caretree.learning.pregrasp.hung_state import hang
+from caretree.learning.pregrasp.numbers import PHYSICS
 from caretree.learning.pregrasp.oracle import Attempt
 from caretree.learning.pregrasp.photograph import photograph
 from caretree.sim.errors import CaretreeError
 from caretree.sim.pregrasp.action import Action
 from caretree.sim.pregrasp.numbers import DIRECT
+from caretree.sim.scene.gown import GOWNS
 
 
 def few(state: object, views: dataset.Views, pixels: int) -> list[Attempt]:
@@ -138,3 +141,32 @@ def test_what_is_drawn_tells_no_ceiling(tmp_path: Path, monkeypatch: pytest.Monk
     assert np.allclose(data.corners[0], state.vertices[state.wanted])
     with pytest.raises(CaretreeError, match="drawn tells no ceiling"):
         ceiling(data)
+
+
+def test_the_cloth_is_whose_physics_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dataset, "SHARD", 2)
+    for physics in PHYSICS:
+        folder = tmp_path / physics
+        assert main(["data", str(folder), "--seeds", "110-111", "--physics", physics, "--oracle", "none"]) == 0
+    folders = {physics: dataset.load_dataset(tmp_path / physics) for physics in PHYSICS}
+    assert {name: data.physics for name, data in folders.items()} == {name: name for name in PHYSICS}
+    cuts = {name: [key.split("/")[0] for key in data.gowns.tolist()] for name, data in folders.items()}
+    assert all(of == cuts["identified"] for of in cuts.values())
+    first = {name: gown_of(str(data.gowns[0])) for name, data in folders.items()}
+    assert len({(spec.mass, spec.elastic, spec.bending) for spec in first.values()}) >= 3  # what was tuned may be true
+    assert (first["true"].mass, first["true"].elastic) == (GOWNS[cuts["true"][0]].mass, GOWNS[cuts["true"][0]].elastic)
+    random = [gown_of(str(key)) for key in folders["random"].gowns]
+    assert random[0].mass != random[1].mass
+    kept = hang(110, str(folders["random"].gowns[0]))  # as `evaluate` hangs it again
+    assert np.array_equal(kept.vertices, hang(110, physics="random").vertices)
+
+
+def test_random_cloth_is_none_that_the_springs_cannot_simulate() -> None:
+    drawn = [gown_of(f"medium/random {k}") for k in range(200)]
+    assert max(spec.elastic / spec.mass for spec in drawn) < STIFFEST
+    assert min(spec.mass for spec in drawn) < 0.2 < 0.8 < max(spec.mass for spec in drawn)
+
+
+def test_a_folder_of_other_cloth_is_refused(made: Path) -> None:
+    with pytest.raises(CaretreeError, match="physics identified, not with physics true"):
+        main(["data", str(made), "--seeds", "110-112", "--physics", "true"])
