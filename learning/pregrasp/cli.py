@@ -1,4 +1,4 @@
-"""`caretree learn pregrasp data|train|evaluate`; each goes on where it was interrupted."""
+"""`caretree learn pregrasp data|train|reward|evaluate`; each goes on where it was interrupted."""
 
 from __future__ import annotations
 
@@ -57,7 +57,16 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument(
         "--apart", type=Path, metavar="DATA", help="other states, in which it is tried to say how sure it can be"
     )
+    train.add_argument(
+        "--reward", type=Path, metavar="FILE", help="network that tells the trials' success by pictures, not the truth"
+    )
     train.add_argument("--no-demonstrations", action="store_true", help="ablation: active trials alone")
+    reward = sub.add_parser("reward", help="train what tells success by the pictures after an action, and test it")
+    reward.add_argument("data", type=Path, metavar="DATA", help="folder of `data --oracle drawn`")
+    reward.add_argument("--test", required=True, type=Path, metavar="DATA", help="a folder of other states")
+    reward.add_argument("--out", required=True, type=Path, metavar="FILE", help="the ONNX file, for `train --reward`")
+    reward.add_argument("--steps", type=whole_number, default=4000, metavar="N", help="default 4000")
+    reward.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
     test = sub.add_parser("evaluate", help="ceiling of the oracle, success of a policy, agreement with PyBullet")
     test.add_argument("data", type=Path, metavar="DATA", help="folder of `data` that no training saw")
     test.add_argument("--policy", type=Path, metavar="FILE", help="a pregrasp.onnx")
@@ -96,26 +105,43 @@ def main(argv: list[str]) -> int:
         )
     elif options.command == "train":
         _train(options)
+    elif options.command == "reward":
+        _reward(options)
     else:
         _evaluate(options)
     return 0
 
 
-def _train(options: argparse.Namespace) -> None:
+def _use_torch(command: str) -> None:
     try:
         import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
     except ImportError as error:
-        raise CaretreeError("`caretree learn pregrasp train` needs PyTorch: pip install 'caretree[learn]'") from error
+        raise CaretreeError(
+            f"`caretree learn pregrasp {command}` needs PyTorch: pip install 'caretree[learn]'"
+        ) from error
+    torch.set_num_threads(1)  # as the other trainings: bit by bit the same on any number of cores
+
+
+def _reward(options: argparse.Namespace) -> None:
+    if options.out.is_dir() or not options.out.parent.is_dir():
+        raise CaretreeError(f"{options.out}: no file can be written there, it must be one in a folder that exists")
+    _use_torch("reward")
+    from .reward import make_reward
+
+    print(make_reward(options.data, options.test, options.out, steps=options.steps, seed=options.seed, say=_say))
+
+
+def _train(options: argparse.Namespace) -> None:
+    _use_torch("train")
     from .train import Plan, train
 
-    torch.set_num_threads(1)  # as the other trainings: bit by bit the same on any number of cores
     plan = Plan(
         steps=0 if options.no_demonstrations else options.steps,
         trials=max(0, options.trials),
         grasp_only=options.grasp_only,
         seed=options.seed,
     )
-    print(train(options.data, options.out, plan, _say, options.apart))
+    print(train(options.data, options.out, plan, _say, options.apart, options.reward))
 
 
 def _evaluate(options: argparse.Namespace) -> None:

@@ -52,6 +52,16 @@ def export_grasps(
     return _write(network, path, given, {"calibration": calibration, "record": record})
 
 
+def export_reward(network: torch.nn.Module, path: Path, record: dict[str, object]) -> Path:
+    """Write the network that tells success by what lies around the hand; arguments as of `export`.
+
+    Raises:
+        CaretreeError: the package `onnx` is missing.
+    """
+    given = {"cells": torch.zeros(1, CELLS.up, CELLS.along, CELLS.across)}
+    return _write(network, path, given, {"record": record})
+
+
 def _write(network: torch.nn.Module, path: Path, given: dict[str, torch.Tensor], about: dict[str, Any]) -> Path:
     try:
         import onnx  # pyright: ignore[reportMissingImports] - in the extra `learn`

@@ -34,3 +34,21 @@ def signs(one: np.ndarray, other: np.ndarray) -> tuple[int, int, float]:
     mine, theirs = int((one & ~other).sum()), int((other & ~one).sum())
     p = float(binomtest(mine, mine + theirs).pvalue) if mine + theirs else 1.0
     return mine, theirs, p
+
+
+def area_under_curve(told: np.ndarray, won: np.ndarray, seed: int = 0) -> tuple[float, float, float]:
+    """Area under the ROC curve of scores (n,) for `won` (n,) bool, and its 95 % interval by 1,000 bootstrap samples.
+
+    It is the chance that a success is scored higher than a failure, a tie counting half; NaN where one sort is missing.
+    """
+    from scipy.stats import rankdata
+
+    def area(told: np.ndarray, won: np.ndarray) -> float:
+        hits = int(won.sum())
+        pairs = hits * (len(won) - hits)
+        return float((rankdata(told)[won].sum() - hits * (hits + 1) / 2) / pairs) if pairs else math.nan
+
+    rng = np.random.default_rng([seed, 25])
+    drawn = [rng.integers(len(won), size=len(won)) for _ in range(1000)]
+    low, high = np.nanpercentile([area(told[k], won[k]) for k in drawn], (2.5, 97.5))
+    return area(told, won), float(low), float(high)

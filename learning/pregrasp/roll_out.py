@@ -28,11 +28,13 @@ class Grasp:
         layers: between them.
         corner: whether the wanted corner is in what they hold.
         vertices: (V, 3) of the gown then [m].
+        hand: (4, 4) of the hand then.
     """
 
     layers: int
     corner: bool
     vertices: np.ndarray
+    hand: np.ndarray
 
     @property
     def success(self) -> bool:
@@ -42,8 +44,9 @@ class Grasp:
 
 def grasp_of(state: HungState, vertices: np.ndarray, path: HandPath, opening: float) -> Grasp:
     """What closing the fingers at the end of a path takes of the cloth (V, 3) [m]."""
-    pinched = cloth_between(vertices, state.faces, path.pose_at_end, opening)
-    return Grasp(layers=pinched.layers, corner=state.wanted in pinched.vertices, vertices=vertices)
+    hand = path.pose_at_end
+    pinched = cloth_between(vertices, state.faces, hand, opening)
+    return Grasp(layers=pinched.layers, corner=state.wanted in pinched.vertices, vertices=vertices, hand=hand)
 
 
 def waypoints(path: HandPath, dt: float, numbers: ActionNumbers = ACTION) -> np.ndarray:

@@ -19,7 +19,7 @@ import json
 import platform
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +30,11 @@ from torch.nn.functional import (  # pyright: ignore[reportMissingImports] - in 
 from torch.nn.functional import log_softmax, softplus  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ...sim.errors import CaretreeError
+from ...sim.pregrasp.action import hand_path
 from ...sim.pregrasp.affordance import COLUMN, CORNER, GOWN, GREY, any_action, best_action, seen, values_of, votes
 from ...sim.pregrasp.numbers import DIRECT
 from ...sim.pregrasp.policy import GRASPS, Policy
+from ...sim.pregrasp.reward import RewardClassifier
 from ...sim.pregrasp.surroundings import surroundings, voted_corner
 from ..seeds import KEPT_SEEDS
 from .calibration import fit_chance
@@ -42,8 +44,8 @@ from .export import export, export_grasps
 from .grasp_network import Grasps, together, train_grasps
 from .hung_state import hang
 from .network import PolicyNetwork
-from .oracle import attempt
 from .photograph import photograph
+from .roll_out import roll_out
 
 BATCH = 4  # states of a step
 RATE, LAMBDA = 2e-3, 0.03  # of learning, at first; lambda
@@ -64,19 +66,22 @@ class Plan:
         trials: active ones after them.
         grasp_only: whether the direct grasp is the only primitive.
         seed: of weights and choices.
+        reward: hash of the network that tells the trials' success by pictures; empty where the simulator tells it.
     """
 
     steps: int = 400
     trials: int = 1000
     grasp_only: bool = False
     seed: int = 0
+    reward: str = ""
 
 
 class Training:
     """Weights, what was tried, and how far it is."""
 
-    def __init__(self, data: Dataset, plan: Plan) -> None:
+    def __init__(self, data: Dataset, plan: Plan, reward: RewardClassifier | None = None) -> None:
         torch.manual_seed(plan.seed)
+        self.reward = reward
         self.plan, self.deep, self.physics, self.network = plan, data.deep, data.physics, PolicyNetwork()
         self.optimiser = torch.optim.Adam(self.network.parameters(), RATE)
         self.steps, self.trials, self.seconds = 0, 0, 0.0
@@ -151,7 +156,10 @@ class Training:
         return LAMBDA * lost + place
 
     def trial(self) -> bool:
-        """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded."""
+        """One attempt in a state that was never seen, greedy or exploring; tells whether it succeeded.
+
+        What is learned from it is what the reward says, where there is one; what counts is the truth.
+        """
         plan, k = self.plan, self.trials
         rng = np.random.default_rng([plan.seed, 19, k])
         seed = TRIAL_SEEDS + (plan.seed * 1000 + k) % (KEPT_SEEDS - TRIAL_SEEDS)
@@ -164,11 +172,15 @@ class Training:
             action = any_action(rng, views, plan.grasp_only)
         else:
             action = best_action(values_of(maps, views), views, plan.grasp_only)
-        won = attempt(state, views, action).success
+        grasp = roll_out(state, hand_path(views, action))
+        won = told = grasp.success
+        if self.reward is not None:
+            after = photograph(replace(state, vertices=grasp.vertices), hand=grasp.hand)
+            told = self.reward.chance(after, grasp.hand) > 0.5
         corner, spot = voted_corner(votes(maps, views), views.places()[0]), (action.view, action.row, action.column)
-        self.felt.append(Grasps(*surroundings(views, corner, np.array([spot])), [action.primitive], [won]))
+        self.felt.append(Grasps(*surroundings(views, corner, np.array([spot])), [action.primitive], [told]))
         self.images.append(image)
-        self.tried.append([(action.view, action.primitive, action.row, action.column, int(won))])
+        self.tried.append([(action.view, action.primitive, action.row, action.column, int(told))])
         self.curve.append(int(won))
         self.trials += 1
         return won
@@ -220,7 +232,12 @@ def _changed(image: np.ndarray, lighter: float, flip: bool) -> np.ndarray:
 
 
 def train(
-    folder: Path, out: Path, plan: Plan, say: Callable[[str], None] = lambda text: None, apart: Path | None = None
+    folder: Path,
+    out: Path,
+    plan: Plan,
+    say: Callable[[str], None] = lambda text: None,
+    apart: Path | None = None,
+    reward: Path | None = None,
 ) -> Path:
     """Train, or go on with a training; returns the first ONNX file.
 
@@ -230,6 +247,7 @@ def train(
         plan: what is trained.
         say: told of progress.
         apart: folder of `data` whose states are not trained on: they tell how sure a value is; None leaves that open.
+        reward: file of `make_reward`, whose network tells the trials' success; None leaves that to the simulator.
 
     Raises:
         CaretreeError: the data cannot be used, `out` holds another training, or there is nothing to train on.
@@ -237,9 +255,12 @@ def train(
     if plan.steps + plan.trials == 0:
         raise CaretreeError("neither demonstrations nor trials: there is nothing to train on")
     data = load_dataset(folder)
+    told_by = RewardClassifier(reward) if reward else None
+    if reward:
+        plan = replace(plan, reward=hashlib.sha256(reward.read_bytes()).hexdigest()[:16])
     about = {"data": data.digest, **asdict(plan)}
     identity = hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
-    training = Training(data, plan)
+    training = Training(data, plan, told_by)
     out.mkdir(parents=True, exist_ok=True)
     checkpoint = out / "checkpoint.pt"
     if checkpoint.is_file():

@@ -43,13 +43,13 @@ class Policy:
 
     def __init__(self, path: str | Path) -> None:
         self._path = Path(path)
-        about, self._pictures = _network(self._path)
+        about, self._pictures = read_network(self._path)
         self.record: Mapping[str, Any] = about["record"]
         self._batch: int = about["views"]
 
     @cached_property
     def _grasps(self) -> tuple[dict[str, Any], Any]:
-        return _network(self._path.with_name(GRASPS))
+        return read_network(self._path.with_name(GRASPS))
 
     def maps(self, views: Views) -> np.ndarray:
         """(n, 4, H, W) logits of n pictures; the network takes a number of its own at once."""
@@ -98,7 +98,7 @@ class Policy:
         return float(1.0 / (1.0 + np.exp(-np.clip(scale * value + shift, -50.0, 50.0))))
 
 
-def _network(path: Path) -> tuple[dict[str, Any], Any]:
+def read_network(path: Path) -> tuple[dict[str, Any], Any]:
     """What a file says about itself, and its network."""
     import cv2
 

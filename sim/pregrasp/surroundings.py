@@ -65,15 +65,29 @@ def surroundings(
         action: of the primitives.
     """
     cloud = views.places()[0]
+    cloud = cloud[np.linalg.norm(cloud - corner, axis=1) < numbers.side * (numbers.up + numbers.across + numbers.along)]
+    filling = np.zeros((len(spots), numbers.up, numbers.along, numbers.across), np.float32)
+    corners = np.zeros((len(spots), 3), np.float32)
+    for k, (view, row, column) in enumerate(spots.tolist()):
+        path = path_to(views.place(view, row, column), views.turn(view), DIRECT, action)
+        filling[k] = cells_around(cloud, path.turn, path.inside, numbers)
+        corners[k] = (corner - path.inside) @ path.turn
+    return filling, corners
+
+
+def cells_around(cloud: np.ndarray, turn: np.ndarray, tip: np.ndarray, numbers: CellNumbers = CELLS) -> np.ndarray:
+    """(up, along, across) filling of the cells around a hand, 0 to 1, float32.
+
+    Args:
+        cloud: (n, 3) points that show gown [m].
+        turn: (3, 3) of the hand: y along the closing direction, z out of the palm.
+        tip: (3,) middle between its fingertips [m].
+        numbers: of the cells.
+    """
     shape = (numbers.up, numbers.across, numbers.along)
     low = -numbers.side / 2 * np.array(shape, float)
     low[2] = numbers.beyond - numbers.side * numbers.along
-    cloud = cloud[np.linalg.norm(cloud - corner, axis=1) < numbers.side * sum(shape)]
-    filling, corners = np.zeros((len(spots), *shape)), np.zeros((len(spots), 3), np.float32)
-    for k, (view, row, column) in enumerate(spots.tolist()):
-        path = path_to(views.place(view, row, column), views.turn(view), DIRECT, action)
-        cells = np.floor(((cloud - path.inside) @ path.turn - low) / numbers.side).astype(int)
-        np.add.at(filling[k], tuple(cells[((cells >= 0) & (cells < shape)).all(axis=1)].T), 1.0)
-        corners[k] = (corner - path.inside) @ path.turn
-    filling = np.minimum(filling, numbers.full) / numbers.full
-    return filling.transpose(0, 1, 3, 2).astype(np.float32), corners
+    cells = np.floor(((cloud - tip) @ turn - low) / numbers.side).astype(int)
+    filling = np.zeros(shape)
+    np.add.at(filling, tuple(cells[((cells >= 0) & (cells < shape)).all(axis=1)].T), 1.0)
+    return (np.minimum(filling, numbers.full) / numbers.full).transpose(0, 2, 1).astype(np.float32)
