@@ -51,6 +51,13 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("data", type=Path, metavar="DATA", help="folder of `data`: its successes are demonstrations")
     train.add_argument("--out", required=True, type=Path, metavar="DIR", help="checkpoint, record and pregrasp.onnx")
     train.add_argument("--steps", type=whole_number, default=400, metavar="N", help="on demonstrations (default 400)")
+    train.add_argument(
+        "--grasp-steps",
+        type=whole_number,
+        default=6000,
+        metavar="N",
+        help="of the network of what fingers take (default 6000)",
+    )
     train.add_argument("--trials", type=int, default=1000, metavar="N", help="active trials after them (default 1000)")
     train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
     train.add_argument("--grasp-only", action="store_true", help="ablation: the direct grasp alone")
@@ -137,6 +144,7 @@ def _train(options: argparse.Namespace) -> None:
 
     plan = Plan(
         steps=0 if options.no_demonstrations else options.steps,
+        grasp_steps=options.grasp_steps,
         trials=max(0, options.trials),
         grasp_only=options.grasp_only,
         seed=options.seed,

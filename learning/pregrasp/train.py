@@ -53,7 +53,6 @@ FAR, SHOWS, BLOB = 0.15, 0.04, 0.02  # [m] of the corner: no success beyond; it 
 MIRRORED, LIGHTER = 0.33, 0.3  # share of states; by how much pictures are lighter or darker at most
 EPSILON, DECAY = 0.5, 300  # of exploring at the first trial; trials in which it falls to 37 %
 EVERY, SAVE, LAST = 4, 100, 200  # trials to a step; to a checkpoint; over which success is told
-GRASP_STEPS = 1500  # of the network of what fingers take
 TRIAL_SEEDS = 2000  # first seed of the states of active trials; they end before `KEPT_SEEDS`
 
 
@@ -63,6 +62,7 @@ class Plan:
 
     Attributes:
         steps: on demonstrations; 0 leaves demonstrations out altogether.
+        grasp_steps: of the network of what fingers take.
         trials: active ones after them.
         grasp_only: whether the direct grasp is the only primitive.
         seed: of weights and choices.
@@ -70,6 +70,7 @@ class Plan:
     """
 
     steps: int = 400
+    grasp_steps: int = 6000
     trials: int = 1000
     grasp_only: bool = False
     seed: int = 0
@@ -290,8 +291,8 @@ def train(
     path = export(training.network, out / "pregrasp.onnx", record)
     start = time.process_time()
     shown = [grasps_of(data, Policy(path), plan.grasp_only)] if plan.steps else []
-    grasps = train_grasps(together([*shown, *training.felt]), GRASP_STEPS, plan.seed)
-    record |= {"seconds": record["seconds"] + round(time.process_time() - start), "grasp_steps": GRASP_STEPS}
+    grasps = train_grasps(together([*shown, *training.felt]), plan.grasp_steps, plan.seed)
+    record |= {"seconds": record["seconds"] + round(time.process_time() - start)}
     export_grasps(grasps, out / GRASPS, record, (1.0, 0.0))
     if apart is not None:
         others = load_dataset(apart)

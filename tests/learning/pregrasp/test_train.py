@@ -54,8 +54,7 @@ def test_it_learns_from_values_that_have_died(folder: Path) -> None:
 
 def test_it_goes_on_where_it_stopped_and_runs_without_torch(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training_file, "SAVE", 2)
-    monkeypatch.setattr(training_file, "GRASP_STEPS", 3)
-    plan, out = Plan(steps=4, trials=4), folder.parent / "out"
+    plan, out = Plan(steps=4, grasp_steps=3, trials=4), folder.parent / "out"
     path = train(folder, folder.parent / "whole", plan)
     step, calls = Training.step, []
 
@@ -79,7 +78,7 @@ def test_it_goes_on_where_it_stopped_and_runs_without_torch(folder: Path, monkey
         assert np.allclose(network(torch.from_numpy(seen(views))).numpy(), values, atol=1e-4)
     assert path.stat().st_size < 2e6
     with pytest.raises(CaretreeError, match="another training"):
-        train(folder, out, Plan(steps=5, trials=4))
+        train(folder, out, Plan(steps=5, grasp_steps=3, trials=4))
 
 
 def test_nothing_to_train_on_is_refused(folder: Path) -> None:
