@@ -59,7 +59,7 @@ def export_reward(network: torch.nn.Module, path: Path, record: dict[str, object
         CaretreeError: the package `onnx` is missing.
     """
     given = {"cells": torch.zeros(1, CELLS.up, CELLS.along, CELLS.across)}
-    return _write(network, path, given, {"record": record})
+    return _write(network, path, given, {"reward": True, "record": record})
 
 
 def _write(network: torch.nn.Module, path: Path, given: dict[str, torch.Tensor], about: dict[str, Any]) -> Path:

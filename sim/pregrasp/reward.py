@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import CaretreeError
 from .policy import read_network
 from .surroundings import cells_around
 from .views import Views
@@ -29,7 +30,13 @@ class RewardClassifier:
     """
 
     def __init__(self, path: str | Path) -> None:
-        about, self._network = read_network(Path(path))
+        try:
+            about, self._network = read_network(Path(path))
+            about["reward"]  # no policy has it
+        except (CaretreeError, KeyError) as error:
+            raise CaretreeError(
+                f"{path}: this is no network of rewards; `caretree learn pregrasp reward` writes one"
+            ) from error
         self.record = about["record"]
 
     def chance(self, views: Views, hand: np.ndarray) -> float:

@@ -13,6 +13,7 @@ from caretree.learning.pregrasp.oracle import choices
 from caretree.learning.pregrasp.photograph import photograph
 from caretree.learning.pregrasp.rate import area_under_curve
 from caretree.learning.pregrasp.roll_out import roll_out
+from caretree.perception.learned.pre_grasp_policy import PACKAGED
 from caretree.sim.errors import CaretreeError
 from caretree.sim.pregrasp.action import hand_path
 from caretree.sim.pregrasp.numbers import DIRECT
@@ -41,10 +42,11 @@ def test_area_under_the_curve_counts_pairs() -> None:
     assert low < area < high < low + 0.2
 
 
-def test_a_file_that_is_no_network_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_no_network_of_rewards_is_refused(tmp_path: Path) -> None:
     (tmp_path / "no.onnx").write_bytes(b"no")
-    with pytest.raises(CaretreeError, match=r"no\.onnx"):
-        RewardClassifier(tmp_path / "no.onnx")
+    for path in (tmp_path / "no.onnx", tmp_path / "none.onnx", PACKAGED):
+        with pytest.raises(CaretreeError, match="this is no network of rewards"):
+            RewardClassifier(path)
 
 
 class TestTrained:
