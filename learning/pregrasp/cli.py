@@ -1,4 +1,4 @@
-"""`caretree learn pregrasp data|train|reward|evaluate`; each goes on where it was interrupted."""
+"""`caretree learn pregrasp data|train|reward|evaluate`; `data` and `train` go on where they were interrupted."""
 
 from __future__ import annotations
 
