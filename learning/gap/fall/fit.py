@@ -119,6 +119,20 @@ def fit_drops(
     return problem.fitted(solved.x)
 
 
+def lifted(fit: DropFit, drops: list[Drop], lift: float) -> np.ndarray:
+    """What a fit's numbers change by, effects and releases (p,), where a lift acts beside them.
+
+    Args:
+        fit: of the drops, without a lift among its effects.
+        drops: the drops.
+        lift: share of the weight, small.
+    """
+    problem = _DropProblem(drops, (*fit.names, "buoyancy"), fit.mode, np.append(fit.theta, lift), None)
+    x = np.concatenate([fit.releases[:, 0], fit.releases[: instants_of(fit.mode, len(drops)), 1]])
+    away = problem.residual(x) - problem.whitened(-np.concatenate(fit.residuals))
+    return -np.linalg.lstsq(problem.whitened(fit.jacobian), away, rcond=None)[0]
+
+
 class _DropProblem:
     """Residuals of drops over x = (effects' parameters that move, release heights, free release instants).
 
@@ -163,11 +177,11 @@ class _DropProblem:
 
     def residual(self, x: np.ndarray) -> np.ndarray:
         """Predicted minus measured heights of all drops in a row, whitened."""
-        return self._whitened(self._heights(x)[0] - self._measured)
+        return self.whitened(self._heights(x)[0] - self._measured)
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
         """Derivative of the residual with respect to x."""
-        return self._whitened(self._change(x))
+        return self.whitened(self._change(x))
 
     def fitted(self, x: np.ndarray) -> DropFit:
         """The fit with everything others ask of it."""
@@ -208,7 +222,8 @@ class _DropProblem:
             read[rows] = top[rows] + scale * (h - top[rows])
         return read, np.split(speeds, self._ends), scale
 
-    def _whitened(self, x: np.ndarray) -> np.ndarray:
+    def whitened(self, x: np.ndarray) -> np.ndarray:
+        """Rows (N,) or (N, k) of all drops, each drop's as its noise is coloured."""
         if not self._white:
             return x
         return np.concatenate([w @ y for w, y in zip(self._white, np.split(x, self._ends), strict=True)])

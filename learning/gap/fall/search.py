@@ -221,10 +221,15 @@ def implausibility(fit: DropFit, mass: float | None, diameter: float | None) -> 
         if name not in fit.names:
             continue
         if name == "buoyancy" and mass and diameter:
-            centre = AIR_DENSITY * np.pi / 6.0 * diameter**3 / mass
+            centre = air_lift(mass, diameter)
             spread = 0.1 * centre + 1e-4  # a diameter within 2 %, the weather
         total += ((fit.values[name][parameter] - centre) / spread) ** 2
     return total
+
+
+def air_lift(mass: float, diameter: float) -> float:
+    """Share of a ball's weight [kg] that the air it displaces carries, by its diameter [m]."""
+    return AIR_DENSITY * np.pi / 6.0 * diameter**3 / mass
 
 
 def rivals(found: DropSearch, fit: DropFit, most: int = MOST_RIVALS) -> list[Candidate]:

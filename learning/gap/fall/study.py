@@ -19,9 +19,10 @@ from .experiment import detectable, separating
 from .fit import Drop, DropFit, fit_drops
 from .follow_up import follow_up
 from .intervals import intervals
+from .kept import kept
 from .leftover import Leftover, repeating
 from .recording import drop_of
-from .search import EFFECT, LARGEST, DropSearch, beside, equals, foreseen, price_of, rivals, search
+from .search import EFFECT, LARGEST, DropSearch, air_lift, beside, equals, rivals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
 VISIBLE = 0.1  # of the floor, with ballast: then the same numbers have to hold for every mass, and less has to be left
@@ -61,15 +62,22 @@ class FallStudy(Study):
 
     @cached_property
     def chosen(self) -> DropFit:
-        """The set that is believed: none where the held-out drops are worse with the best one."""
-        best, late = self._best, self._lateness(self._best)
-        if not best.names and late is None:
-            return best
-        before, after = (np.concatenate(f.residuals) for f in self._compared(best, late))
-        if _rms(after) <= _rms(before):
-            return best
+        """The set that is believed: the best, or one that fits as well, with which held-out drops are no worse."""
+        best = self._best
+        for fit in (best, *(self.found.refit(c.fit.names, c.fit.mode) for c in rivals(self.found, best))):
+            if self._holds(fit):
+                return fit
+        late = self._lateness(best)
         self._rejected = " and ".join([*best.names, *(["delay"] if late else [])])
         return self.found.refit((), self.found.given.mode)
+
+    def _holds(self, fit: DropFit) -> bool:
+        """Whether the held-out drops are no farther from the model with a set than from the model as given."""
+        late = self._lateness(fit)
+        if not fit.names and late is None:
+            return fit is self._best
+        before, after = (np.concatenate(f.residuals) for f in self._compared(fit, late))
+        return _rms(after) <= _rms(before)
 
     @cached_property
     def _best(self) -> DropFit:
@@ -111,28 +119,7 @@ class FallStudy(Study):
         return {}
 
     def _kept(self, fit: DropFit) -> dict[str, float]:
-        """Part of resampled stretches in which each effect keeps paying its price."""
-        rng = np.random.default_rng(0)
-        out = {}
-        for name in fit.names:
-            rest = tuple(n for n in fit.names if n != name)
-            without = self.found.refit(rest, fit.mode)
-            table = np.array(
-                [
-                    (a.sum(), b.sum())
-                    for x, y in zip(without.parts, fit.parts, strict=True)
-                    for a, b in zip(np.array_split(x, 6), np.array_split(y, 6), strict=True)
-                ]
-            )
-            prices = [price_of(n, fit.mode, len(self.fitted), self.found.price) for n in (fit.names, rest)]
-            price = prices[0] - prices[1] - foreseen((name,), self.mass, self.diameter)
-            worth = self.found.worth
-            wins = 0
-            for _ in range(200):
-                s = table[rng.integers(len(table), size=len(table))].sum(axis=0)
-                wins += worth * np.log(s[0] / max(s[1], 1e-12)) > price
-            out[name] = wins / 200
-        return out
+        return kept(self.found, fit, self.mass, self.diameter)
 
     @cached_property
     def late(self) -> tuple[float, float, float] | None:
@@ -177,7 +164,8 @@ class FallStudy(Study):
     def _ends(self, fit: DropFit) -> tuple[np.ndarray, np.ndarray]:
         """Ends of the 95 % intervals of effects and releases (p,)."""
         if (fit.names, fit.mode) not in self._known:
-            self._known[fit.names, fit.mode] = intervals(fit, self._colours)
+            lift = air_lift(self.mass, self.diameter) if self.mass and self.diameter else 0.0
+            self._known[fit.names, fit.mode] = intervals(fit, self._colours, self.fitted, lift)
         return self._known[fit.names, fit.mode]
 
     @cached_property

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from caretree.learning.gap.bench.fall_case import write_fall_case
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.fall.search import beside, rivals
 from caretree.learning.gap.measurement import load_set
@@ -160,3 +161,15 @@ def test_a_wind_that_may_be_still_air_says_so(drop_set):
     coefficient, speed = BODY_EFFECTS["wind"].parameters
     assert study._interval("wind", 1, speed)[0] <= 0.0 <= study._interval("wind", 1, speed)[1]
     assert study._interval("wind", 0, coefficient)[0] < 0.02 < study._interval("wind", 0, coefficient)[1]
+
+
+def test_a_set_that_fits_as_well_is_named_where_the_best_one_makes_the_held_out_drop_worse(tmp_path):
+    hidden = write_fall_case(6026, tmp_path)  # a late release of 0.8 times the noise, which a lift fits a little better
+    assert [e["name"] for e in hidden.effects] == ["delay"]
+    study = open_study(load_set(tmp_path))
+    assert study.found.best.names == ("buoyancy",)
+    verdict, effects, _, _ = study.name()
+    assert (verdict, [f.name for f in effects]) == ("effects", ["delay"])
+    gap = study.show()[0]
+    assert gap.after <= gap.before
+    assert ("buoyancy",) in [tuple(n for n, _ in r.effects) for r in study.rivals()]
