@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ....perception.errors import PerceptionFailure
+from ....perception.estimates import GraspPoint
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import Side
 from ....skills.belief.person_motion import while_person_rests
@@ -21,6 +23,7 @@ from ....skills.control.withdraw import withdraw
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason
 from ....skills.core.skill import Skill
+from ....skills.core.tries import Tries
 from ....skills.geometry.arm_path import UP
 from ....skills.geometry.stances import HEADWARD, outwards
 
@@ -30,12 +33,12 @@ class DrawFlatTuning(Quantities):
     """Numbers of `DrawFlat`."""
 
     outwards: float = quantity(0.20, "m", "of the hand from the midline, where it takes the front", "choice: the thigh")
-    footward: float = quantity(
-        0.80,
+    footward: tuple[float, ...] = quantity(
+        (0.80, 0.65, 0.50),
         "m",
-        "of the hand from the shoulders, where it takes the front",
+        "of the hand from the shoulders, where it takes the front, the first of them where there is cloth",
         "measured with ideal hands, taken 0.65 and 0.90 m footward: no fold is left, the near sleeve comes to 0.31 "
-        "and 0.37 (109); 0.90 m is the hem of a short gown",
+        "and 0.37 (109); 0.90 m is the hem of a short gown; a fold had taken it above 0.80 m (116, 195)",
     )
     way: tuple[float, float] = quantity(
         (0.10, 0.15),
@@ -78,19 +81,29 @@ class DrawFlat(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look, stand near, take, lift, draw, lay down, let go."""
-        tuning = self.tuning
         self.note("looks at the front")
-        out, middle = outwards(self.side), between_shoulders(self)
-        aim = middle + tuning.outwards * out - tuning.footward * HEADWARD
-        yield from stand_for(self, self.hand, aim, tuning=tuning.stand)
-        yield from while_person_rests(self, self._draw(middle, aim, out))
+        out = outwards(self.side)
+        place = yield from self._place(out)
+        yield from while_person_rests(self, self._draw(place, out))
 
-    def _draw(self, middle: np.ndarray, aim: np.ndarray, out: np.ndarray) -> Iterator[None]:
+    def _place(self, out: np.ndarray) -> Generator[None, None, GraspPoint]:
+        """Where to take the front; the robot stands where its hand gets there.
+
+        Raises:
+            PerceptionFailure: no collar is seen, or no cloth at any of the places.
+        """
+        tuning, middle, tries = self.tuning, between_shoulders(self), Tries(PerceptionFailure)
+        for footward in tuning.footward:
+            aim = middle + tuning.outwards * out - footward * HEADWARD
+            yield from stand_for(self, self.hand, aim, tuning=tuning.stand)
+            yield from look_towards(self, middle)
+            with tries:
+                away = aim - look_at_collar(self, middle).position_in_map
+                return look_at_collar(self, middle, (float(away[0]), float(away[1])))
+        raise tries.last
+
+    def _draw(self, place: GraspPoint, out: np.ndarray) -> Iterator[None]:
         tuning = self.tuning
-        yield from look_towards(self, middle)
-        collar = look_at_collar(self, middle).position_in_map
-        away = aim - collar
-        place = look_at_collar(self, middle, (float(away[0]), float(away[1])))
         self.note("draws the front flat")
         yield from take_from_above(self, self.hand, place, out, tuning.grasp)
         start = hand_now(self, self.hand)[:3, 3]

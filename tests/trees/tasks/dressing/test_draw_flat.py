@@ -18,11 +18,11 @@ HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(side, *, shows=True, cloth=HELD):
-    """Beside the bed on a side; whether the gown `shows` where it is to be taken."""
+def bench(side, *, hem=0.9, cloth=HELD):
+    """Beside the bed on a side; the gown reaches down to `hem` [m] from the shoulders."""
 
     def collar(frame, *, near_in_map, away=(0.0, 0.0)):
-        if any(away) and not shows:
+        if away[1] > hem:
             raise HIDDEN
         return GraspPoint(
             stamp=0.0,
@@ -57,8 +57,17 @@ def test_it_is_drawn_footward_and_outwards(side, outwards):
     assert run.way(hand)[-1, 2] > path[-1, 2] + 0.08, "drawn back"
 
 
+@pytest.mark.parametrize(("hem", "taken"), [(0.75, 0.65), (0.60, 0.50)])
+def test_a_front_that_is_folded_up_is_taken_higher(hem, taken):
+    run = bench("left", hem=hem)
+    assert run.ended() is None
+    path = run.way(PULLING["left"])[run.openings(PULLING["left"]) < 0.005]
+    assert path[0, 1] == pytest.approx(MIDDLE[1] + taken, abs=0.03)
+    assert path[-1, 1] - path[0, 1] == pytest.approx(0.15, abs=0.03)
+
+
 def test_a_front_that_does_not_show_is_left_alone():
-    run = bench("left", shows=False)
+    run = bench("left", hem=0.4)
     assert run.ended() == Reason.NOTHING_SEEN
     assert run.openings(PULLING["left"]).min() > 0.03
 
