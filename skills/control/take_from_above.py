@@ -12,7 +12,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 from ..core.skill import Skill
 from ..geometry.from_above import from_above
-from .pinch import pinch_or_back_off, reach_in
+from .pinch import grasp_poses, pinch_or_back_off, reach_in
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +32,16 @@ class FromAbove(Quantities):
         "of the hand to before the cloth; half of it on the way in",
         "choice: slow beside the person; it does not lower the 80 N with which closing fingers met the trunk (101)",
     )
+
+
+def within_reach(skill: Skill, hand: Side, point: GraspPoint, outward: np.ndarray, law: FromAbove) -> None:
+    """Whether `take_from_above` gets to a point from where the robot stands; its arguments, and nothing moves.
+
+    Raises:
+        Unreachable: it does not.
+    """
+    approach = from_above(point.approach_in_map, outward, law.max_tilt)
+    grasp_poses(skill, hand, point.position_in_map, approach, point.closing_in_map, depth=law.depth)
 
 
 def take_from_above(skill: Skill, hand: Side, point: GraspPoint, outward: np.ndarray, law: FromAbove) -> Iterator[None]:

@@ -18,7 +18,7 @@ from ....skills.control.carry import Carry, carry
 from ....skills.control.fingers import open_gripper
 from ....skills.control.hands import hand_now
 from ....skills.control.head import look_towards
-from ....skills.control.take_from_above import FromAbove, take_from_above
+from ....skills.control.take_from_above import FromAbove, take_from_above, within_reach
 from ....skills.control.withdraw import withdraw
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason
@@ -26,19 +26,20 @@ from ....skills.core.skill import Skill
 from ....skills.core.tries import Tries
 from ....skills.geometry.arm_path import UP
 from ....skills.geometry.stances import HEADWARD, outwards
+from ....skills.motion.errors import Unreachable
 
 
 @dataclass(frozen=True, kw_only=True)
 class DrawFlatTuning(Quantities):
     """Numbers of `DrawFlat`."""
 
-    outwards: float = quantity(0.20, "m", "of the hand from the midline, where it takes the front", "choice: the thigh")
-    footward: tuple[float, ...] = quantity(
-        (0.80, 0.65, 0.50),
+    places: tuple[tuple[float, float], ...] = quantity(
+        ((0.20, 0.80), (0.20, 0.65), (0.10, 0.65), (0.20, 0.50), (0.10, 0.50)),
         "m",
-        "of the hand from the shoulders, where it takes the front, the first of them where there is cloth",
+        "outwards of the midline and footward of the shoulders, where the hand takes the front: the first of them with "
+        "cloth that it gets to",
         "measured with ideal hands, taken 0.65 and 0.90 m footward: no fold is left, the near sleeve comes to 0.31 "
-        "and 0.37 (109); 0.90 m is the hem of a short gown; a fold had taken it above 0.80 m (116, 195)",
+        "and 0.37 (109); 0.90 m is the hem of a short gown; folds had taken the hem above 0.80 m (116, 195)",
     )
     way: tuple[float, float] = quantity(
         (0.10, 0.15),
@@ -90,16 +91,19 @@ class DrawFlat(Skill):
         """Where to take the front; the robot stands where its hand gets there.
 
         Raises:
-            PerceptionFailure: no collar is seen, or no cloth at any of the places.
+            PerceptionFailure: no collar is seen, or no cloth at the last of the places.
+            Unreachable: there is cloth at the last of them, where the hand does not get to.
         """
-        tuning, middle, tries = self.tuning, between_shoulders(self), Tries(PerceptionFailure)
-        for footward in tuning.footward:
-            aim = middle + tuning.outwards * out - footward * HEADWARD
+        tuning, middle, tries = self.tuning, between_shoulders(self), Tries(PerceptionFailure, Unreachable)
+        for outward, footward in tuning.places:
+            aim = middle + outward * out - footward * HEADWARD
             yield from stand_for(self, self.hand, aim, tuning=tuning.stand)
             yield from look_towards(self, middle)
             with tries:
                 away = aim - look_at_collar(self, middle).position_in_map
-                return look_at_collar(self, middle, (float(away[0]), float(away[1])))
+                place = look_at_collar(self, middle, (float(away[0]), float(away[1])))
+                within_reach(self, self.hand, place, out, tuning.grasp)
+                return place
         raise tries.last
 
     def _draw(self, place: GraspPoint, out: np.ndarray) -> Iterator[None]:

@@ -18,8 +18,8 @@ HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(side, *, hem=0.9, cloth=HELD):
-    """Beside the bed on a side; the gown reaches down to `hem` [m] from the shoulders."""
+def bench(side, *, hem=0.9, high=0.9, cloth=HELD):
+    """Beside the bed on a side; the gown reaches down to `hem` [m], and is out of reach from `high` [m] on."""
 
     def collar(frame, *, near_in_map, away=(0.0, 0.0)):
         if away[1] > hem:
@@ -28,7 +28,7 @@ def bench(side, *, hem=0.9, cloth=HELD):
             stamp=0.0,
             confidence=0.9,
             target="collar_middle",
-            position_in_map=np.append(MIDDLE[:2] + (0.03, -0.05) + np.asarray(away), HEIGHT),
+            position_in_map=np.append(MIDDLE[:2] + (0.03, -0.05) + np.asarray(away), HEIGHT + 2.0 * (away[1] > high)),
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
@@ -57,9 +57,11 @@ def test_it_is_drawn_footward_and_outwards(side, outwards):
     assert run.way(hand)[-1, 2] > path[-1, 2] + 0.08, "drawn back"
 
 
-@pytest.mark.parametrize(("hem", "taken"), [(0.75, 0.65), (0.60, 0.50)])
-def test_a_front_that_is_folded_up_is_taken_higher(hem, taken):
-    run = bench("left", hem=hem)
+@pytest.mark.parametrize(
+    ("gown", "taken"), [({"hem": 0.75}, 0.65), ({"hem": 0.60}, 0.50), ({"high": 0.75}, 0.65)], ids=str
+)
+def test_a_front_that_is_folded_up_or_out_of_reach_is_taken_elsewhere(gown, taken):
+    run = bench("left", **gown)
     assert run.ended() is None
     path = run.way(PULLING["left"])[run.openings(PULLING["left"]) < 0.005]
     assert path[0, 1] == pytest.approx(MIDDLE[1] + taken, abs=0.03)
