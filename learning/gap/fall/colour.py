@@ -61,8 +61,13 @@ def colour(times: Sequence[np.ndarray], memory: float, slow: float) -> Colour:
         since = t - t[0]
         w = next(w for s, w in made if len(s) >= len(t) and np.allclose(s[: len(t)], since, atol=1e-4))
         white.append(w[: len(t), : len(t)])
-        volume -= 2.0 * float(np.sum(np.log(np.diag(white[-1]))))
+        volume += volume_of(white[-1])
     return Colour(memory=memory, slow=slow, white=tuple(white), volume=volume)
+
+
+def volume_of(white: np.ndarray) -> float:
+    """Log determinant of the covariance that (n, n) `white`, which is triangular, whitens."""
+    return -2.0 * float(np.sum(np.log(np.diag(white))))
 
 
 def grid(times: Sequence[np.ndarray]) -> list[Colour]:
@@ -83,12 +88,23 @@ def likelihood(which: Colour, residual: np.ndarray, jacobian: np.ndarray) -> flo
         residual: (N,) what a fit leaves, stacked [m].
         jacobian: (N, p) how it changes with what was fitted.
     """
-    r, J = which.apply(residual), which.apply(jacobian / (np.linalg.norm(jacobian, axis=0) + 1e-12))
+    size = np.linalg.norm(jacobian, axis=0) + 1e-12
+    return restricted(which.apply(residual), which.apply(jacobian / size), which.volume)
+
+
+def restricted(r: np.ndarray, J: np.ndarray, volume: float) -> float:
+    """Restricted log likelihood of a noise of any size, up to a constant.
+
+    Args:
+        r: (N,) what a fit leaves, whitened.
+        J: (N, p) how it changes with what was fitted, whitened, columns of about one size.
+        volume: log determinant of the covariance that whitens them.
+    """
     u, s, _ = np.linalg.svd(J, full_matrices=False)
     keep = s > 1e-6 * s[0]
     r = r - u[:, keep] @ (u[:, keep].T @ r)
     free = max(len(r) - int(keep.sum()), 1)
-    return -0.5 * (free * float(np.log(r @ r / free + 1e-30)) + which.volume + 2.0 * float(np.sum(np.log(s[keep]))))
+    return -0.5 * (free * float(np.log(r @ r / free + 1e-30)) + volume + 2.0 * float(np.sum(np.log(s[keep]))))
 
 
 def estimated(which: Sequence[Colour], residual: np.ndarray, jacobian: np.ndarray) -> Colour:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import stdtr
 
-from .colour import Colour
+from .colour import Colour, restricted, volume_of
 from .fit import Drop, DropFit, lifted
 
 LEVEL = 0.95
@@ -82,12 +82,7 @@ class _Part:
             white = colour.white[n]
             a, y = white @ J, white @ r
             self._said.append((a.T @ a, a.T @ y, float(y @ y)))
-            u, s, _ = np.linalg.svd(a, full_matrices=False)
-            keep = s > 1e-6 * s[0]
-            left = y - u[:, keep] @ (u[:, keep].T @ y)
-            free = max(len(y) - int(keep.sum()), 1)
-            volume = float(np.sum(np.log(s[keep])) - np.sum(np.log(np.diag(white))))
-            support.append(-0.5 * free * float(np.log(left @ left / free + 1e-30)) - volume)
+            support.append(restricted(y, a, volume_of(white)))
         weight = np.exp(np.array(support) - max(support))
         self._weight = weight / weight.sum()
 
