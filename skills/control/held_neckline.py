@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import SIDES, Side
+from ...sim.world import Side
 from ..core.skill import Skill
 from .hands import Way, hand_now, move_hands
 
 # The robot stands at the person's right, facing the head of the bed.
 NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
+FAR_HAND: Side = "right"
 NEAR_SLEEVE: Side = "right"  # the wearer's side of the sleeve that this hand holds
 
 
@@ -28,11 +29,24 @@ class NecklineTuning(Quantities):
         "of the near hand, at least",
         "choice: how it was found is not recorded; nearer, the hand is beside the base",
     )
+    far_lower: float = quantity(
+        0.45,
+        "m",
+        "by which the far end hangs lower than the near one",
+        "measured: far back panels that hung folded over the front fell open on 3 of 4 gowns, by 0.3 m on 2 of 4, "
+        "level on none (125, 133, 136, 139)",
+    )
+    level_from: float = quantity(
+        0.80, "m", "height at which both ends are level again, and below", "choice: the far hand, lower, is out of reach of the ways across"
+    )
 
 
 @dataclass
 class HeldNeckline:
-    """Both ends of a neckline in the hands of the robot.
+    """Both ends of a neckline in the hands of the robot, the far one lower while the gown hangs.
+
+    The back panel beyond an armhole hangs from the end of the neckline beside it, and turns about its edge as a door
+    does: folded over the front it stays there, hung lower it falls open.
 
     Attributes:
         skill: that moves.
@@ -49,14 +63,17 @@ class HeldNeckline:
     def to(self, y: float, z: float, share: float = 1.0, *, way: Way = "either") -> Iterator[None]:
         """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the `way` there, turned anyhow.
 
+        The height is that of the near end; the far one is lower by `far_lower`, as long as it is above `level_from`.
+
         Raises:
             MotionError: out of reach, or something is in the way.
         """
-        half = self.apart / 2
+        tuning, half = self.tuning, self.apart / 2
+        heights = (z, min(z, max(z - tuning.far_lower, tuning.level_from)))
         goals: dict[Side, np.ndarray] = {}
-        for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
+        for side, sign, height in zip((NEAR_HAND, FAR_HAND), (1.0, -1.0), heights, strict=True):
             pose = hand_now(self.skill, side)
-            there = np.array((max(self.middle, self.tuning.min_near_x - half) + sign * half, y, z))
+            there = np.array((max(self.middle, tuning.min_near_x - half) + sign * half, y, height))
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
-        yield from move_hands(self.skill, goals, speed=self.tuning.speed, free="any", way=way)
+        yield from move_hands(self.skill, goals, speed=tuning.speed, free="any", way=way)

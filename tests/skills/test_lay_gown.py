@@ -49,7 +49,7 @@ def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None):
         world.clock.wait_until(world.clock.now() + 1 / 15)
         x = {side: float(hand_now(skill, side)[0, 3]) for side in SIDES}
         if way_down is not None:
-            way_down.append(hand_now(skill, "left")[1:3, 3])
+            way_down.append([hand_now(skill, side)[1:3, 3] for side in SIDES])
         pull = 1.0 if x["left"] - x["right"] > taut_until + 0.005 else 0.1
         places.append((x["left"], x["right"]))
         way = sum(places[-1]) - sum(places[-2]) if len(places) > 1 else 0.0
@@ -72,7 +72,7 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
 def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_they_are_let_go_of():
     way_down = []
     let_go_at(armhole(STRAIGHT_AT), way_down=way_down)
-    y, z = np.array(way_down).T
+    y, z = np.array(way_down)[:, SIDES.index("left")].T
     assert z[-1] < 0.75
     low = int(np.argmax(z < 0.84))  # not before the gown is weighed
     assert y[low] - y[-1] == pytest.approx(0.10, abs=0.02)
@@ -100,3 +100,13 @@ def test_it_is_drawn_off_the_near_edge_as_far_as_the_hand_beside_the_base_gets()
     near, far = let_go_at(armhole(STRAIGHT_AT), uneven=0.4, width=0.76)
     assert near == pytest.approx(0.35, abs=0.01)
     assert near - far == pytest.approx(0.76, abs=0.01)
+
+
+def test_the_far_end_hangs_lower_until_the_gown_is_almost_down():
+    way_down = []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down)
+    near, far = np.moveaxis(np.array(way_down)[..., 1], 1, 0)
+    lower = near - far
+    assert np.max(lower[near > 1.2]) == pytest.approx(0.45, abs=0.02)
+    assert np.all(np.abs(lower[near < 0.74]) < 0.02)
+    assert np.min(lower) > -0.02
