@@ -37,7 +37,10 @@ class NecklineTuning(Quantities):
         "level on none (125, 133, 136, 139)",
     )
     level_from: float = quantity(
-        0.80, "m", "height at which both ends are level again, and below", "choice: the far hand, lower, is out of reach of the ways across"
+        0.80,
+        "m",
+        "height at which both ends are level again, and below",
+        "choice: a far hand that is lower does not reach the places across the bed",
     )
 
 
