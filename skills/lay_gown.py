@@ -12,8 +12,11 @@ from ..sim.quantity import Quantities, quantity
 from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
 from .control.even_out import EvenOutTuning, even_out
-from .control.held_neckline import HeldNeckline, NecklineTuning
+from .control.hands import hand_now
+from .control.head import look_towards
+from .control.held_neckline import NEAR_HAND, HeldNeckline, NecklineTuning
 from .control.leave_gown import LeaveGownTuning, leave_gown
+from .control.together import together
 from .core.ports import Input
 from .core.reasons import Reason
 from .core.skill import Skill
@@ -27,10 +30,10 @@ class LayGownTuning(Quantities):
 
     start_y: float = quantity(1.25, "m", "of the neckline at first", "choice: the hem begins to touch the legs")
     start_height: float = quantity(1.28, "m", "of the neckline at first", "choice: the hem is just above the bed")
-    start_shares: tuple[float, float, float] = quantity(
-        (0.25, 0.5, 0.75),
+    start_shares: tuple[float, float] = quantity(
+        (0.33, 0.67),
         "1",
-        "shares of the hands' way to the start at which they come between",
+        "shares of what is left of the hands' way to the start at which they come between",
         "choice: the hands cross before the chest one behind the other",
     )
     descent: tuple[tuple[float, float], tuple[float, float], tuple[float, float]] = quantity(
@@ -94,9 +97,10 @@ class LayGown(Skill):
         # down first: what then touches is drawn after the neckline, and nothing gets ahead of it
         for y, z in tuning.descent:
             yield from neckline.to(before, z)
-            yield from drive_to(self, self._base_for(y), speed=tuning.base_speed, straight=True)
+            if y != before:
+                drive = drive_to(self, self._base_for(y), speed=tuning.base_speed, straight=True)
+                yield from together(drive, look_towards(self, hand_now(self, NEAR_HAND)[:3, 3]))  # it comes along
             before = y
-        yield from neckline.to(*tuning.descent[-1])
         yield from draw_across(neckline, *tuning.descent[-1], tuning.across)
         yield from even_out(neckline, *tuning.descent[-1], tuning.even)
         yield from drive_to(self, self._base_for(tuning.drawn_y), speed=tuning.base_speed, straight=True)

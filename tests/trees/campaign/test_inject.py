@@ -66,7 +66,7 @@ def test_the_dressing_is_rehearsed_from_the_rail_to_the_bed():
     assert result.outcome == "success"
 
 
-@pytest.mark.parametrize(("stage", "end"), [("lay", 65.0), ("spread", 90.0)])
+@pytest.mark.parametrize(("stage", "end"), [("lay", 60.0), ("spread", 90.0)])
 def test_a_stage_of_the_dressing_is_rehearsed_alone(stage, end):
     task = load_task("dressing")
     world, senses = task.scripted(1)
