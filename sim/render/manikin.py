@@ -121,8 +121,8 @@ def _leg(name: str, hip: np.ndarray, foot: np.ndarray, radius: float) -> list[Pa
     shin = _limb(hip, foot, radius, _LEG)
     shorts = loft_mesh(hip, foot, np.linspace(-0.09, 0.33, 6), np.full(6, radius))
     axis = (foot - hip) / np.linalg.norm(foot - hip)
-    toes = foot + 0.02 * axis + (0.0, 0.0, 0.7 * radius)
-    sole = ellipsoid_mesh((foot + toes) / 2 + 0.012 * axis, np.array((0.42 * radius, 0.4 * radius, 1.25 * radius)))
+    size = radius * SNUG
+    sole = ellipsoid_mesh(foot + 0.30 * size * axis, np.array((0.42, 0.45, 0.84)) * size)
     return [(name, join_meshes([shin, sole]), "skin"), (f"{name}_shorts", shorts, "shorts")]
 
 

@@ -32,6 +32,16 @@ def test_limbs_reach_from_joint_to_joint_within_their_capsules(side):
     assert lengths[2] - 0.01 < hand[:, 2].max() < lengths[2] + 0.01
 
 
+@pytest.mark.parametrize("leg", ["leg_left", "leg_right"])
+def test_feet_are_in_the_legs_capsules_as_cloth_lies_on_those(leg):
+    start, end, radius = (np.asarray(value, float) for value in TRUNK[leg])
+    axis = end - start
+    vertices = dict((name, mesh[0]) for name, mesh, _ in lying_parts(TRUNK))[leg]
+    along = np.clip((vertices - start) @ axis / (axis @ axis), 0.0, 1.0)
+    assert np.linalg.norm(vertices - start - along[:, None] * axis, axis=1).max() <= radius + 1e-9
+    assert (vertices @ axis).max() > end @ axis + 0.5 * radius * np.linalg.norm(axis), "it has a foot"
+
+
 def test_thumbs_are_on_opposite_sides():
     left, right = (arm_parts((0.04, 0.035, 0.03), (0.3, 0.25, 0.18), side)[2][0] for side in (0, 1))
     assert left[:, 1].max() > -left[:, 1].min()
