@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import RecordError
 from .record import SPOOL_FOLDER, TRUTH_FILE
+from .recorder import FRAME_PERIOD
 from .spool import open_spool
 from .stored_arrays import stored_arrays
 
@@ -44,7 +45,7 @@ def recorded_state(directory: Path, time: float) -> RecordedState:
     """
     frames = _frames(directory)
     t = np.asarray(frames["t"], float)
-    if not t[0] <= time <= t[-1]:
+    if not t[0] <= time <= t[-1] + FRAME_PERIOD:  # the last event, whose time the log shows, is after the last frame
         raise RecordError(f"{directory} lasts from {t[0]:g} to {t[-1]:g} s, but {time:g} s is asked for")
     holding = np.any(frames["gripper_closed"], axis=1) | np.any(np.asarray(frames["holds_arm"]) >= 0, axis=1)
     free = np.logical_not(holding)

@@ -30,6 +30,10 @@ def test_the_frame_nearest_to_the_time_is_taken(record):
     np.testing.assert_array_equal(state.robot, (2.0, 2.0))
 
 
+def test_the_time_of_the_last_event_counts_which_comes_after_the_last_frame(record):
+    assert recorded_state(record, 0.35).t == 0.3
+
+
 @pytest.mark.parametrize("time", [0.1, 0.2])
 def test_a_run_does_not_begin_while_a_hand_holds_cloth_or_an_arm(record, time):
     with pytest.raises(RecordError, match=r"hold something; they are empty at 0\.[03]0 s"):
