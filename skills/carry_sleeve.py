@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
+from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import bare_share, careful, watch_arm
@@ -72,6 +75,19 @@ class CarrySleeveTuning(Quantities):
         "measured: 0.017 m deep, straight down or leaning, from three places of the base, no posture kept clear of the "
         "person where the strap lay right on a thigh or over a hand; 0.005 m deep it was taken, at 0 and by 0.005 m "
         "less the fingers closed on air (135)",
+    )
+    leans: tuple[float, ...] = quantity(
+        tuple(math.radians(lean) for lean in (0.0, 25.0, 40.0, 55.0)),
+        "rad",
+        "of the approach off the vertical, from the robot's side, tried in turn",
+        "measured: where the strap lay on the side of a thigh, straight down and leaning by 45 degrees the fingers met "
+        "it at any depth; by 55 degrees, square to it, they kept clear 0.004 m deep (138)",
+    )
+    min_across: float = quantity(
+        0.3,
+        "1",
+        "part of the strap's width across the approach from which on the fingers close along it, else along the bed",
+        "choice: a strap that stands up towards the hand has no width across it",
     )
     opening: float = quantity(
         0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
@@ -159,20 +175,25 @@ class CarrySleeve(Skill):
         yield from drive_to(self, lane - back, straight=True, retreat=True)
 
     def _reach(self, hand: Side, sleeve: SleeveOpening) -> Iterator[None]:
-        """Bring open fingers around the strap, as deep as they keep clear of the person.
+        """Bring open fingers around the strap, as deep as they keep clear of the person, and leaning where they must.
 
         Raises:
             MotionError: out of reach, or something is in the way.
         """
         tuning, tries = self.tuning, Tries(MotionError)
-        for depth in tuning.depths:
+        inwards = outwards(self.side) * (-1.0 if self.own_side else 1.0)
+        for depth, lean in product(tuning.depths, tuning.leans):
+            approach = -np.cos(lean) * UP + np.sin(lean) * inwards
+            closing = sleeve.closing_in_map - (sleeve.closing_in_map @ approach) * approach
+            if np.linalg.norm(closing) < tuning.min_across:
+                closing = HEADWARD
             with tries:
                 yield from reach_in(
                     self,
                     hand,
                     sleeve.position_in_map,
-                    -UP,
-                    sleeve.closing_in_map,
+                    approach,
+                    unit(closing),
                     opening=tuning.opening,
                     depth=depth,
                     speed=tuning.reaching_speed,

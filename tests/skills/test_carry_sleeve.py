@@ -13,6 +13,7 @@ from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
 from caretree.skills.belief.sleeve_search import SleeveMemory
 from caretree.skills.carry_sleeve import CarrySleeve
+from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
 from caretree.skills.geometry.person_zone import WHOLE
 from caretree.skills.geometry.stances import stance
@@ -22,9 +23,15 @@ from py_trees.common import Status
 
 from .fake_senses import fake_senses
 
+NOBODY = np.array(((0.0, -0.4, 0.66), (0.0, 0.6, 0.66))), 0.02  # out of the way
+THIGH = np.array(((-0.085, 0.0, 0.72), (-0.085, 0.8, 0.72))), 0.08
 
-def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False):
-    """Skill, world and memory after a run from beside the right shoulder, where the first arm was left, or the left."""
+
+def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False, person=NOBODY, taken=None):
+    """Skill, world and memory after a run from beside the right shoulder, where the first arm was left, or the left.
+
+    The pose (4, 4) of the hand that takes the sleeve is appended to `taken`.
+    """
     room, hand = scripted_room(), "left" if own_side else "right"
     start = (
         stance("left", "shoulder") - (0.25, 0.0, 0.0) if own_side else stance("right", "shoulder") + (0.25, 0.0, 0.0)
@@ -33,7 +40,7 @@ def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False):
     room.bed[1, 2] = 0.64  # low enough for hands that are ready to pass over the person
     world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
-    guard.update_person(np.array(((0.0, -0.4, 0.66), (0.0, 0.6, 0.66))), part=WHOLE, radius=0.02)  # out of the way
+    guard.update_person(person[0], part=WHOLE, radius=person[1])
     context = Context(
         world=guard,
         guard=guard,
@@ -46,6 +53,8 @@ def ran(sleeve, load=(0.0, 0.0, -1.0), *, own_side=False):
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)
         if "carries" in skill.feedback_message and not world.observe().gripper_opening[SIDES.index(hand)] > 0.01:
+            if taken is not None and not np.any(world.load[hand]):
+                taken.append(hand_now(skill, hand))
             world.load[hand] = np.append(load, np.zeros(3))
         if skill.status != Status.RUNNING:
             break
@@ -107,3 +116,17 @@ def test_from_its_own_side_one_beside_an_arm_that_shows_is_left_alone(shown):
     skill, _, memory = ran(at(-0.3, 0.13), own_side=True)
     assert skill.status == Status.SUCCESS, skill.failure
     assert not memory.last
+
+
+@pytest.mark.parametrize(
+    ("person", "sleeve", "lean"), [(NOBODY, ON_THE_TRUNK, 0.0), (THIGH, at(-0.153, 0.28, 0.763), 0.96)]
+)
+def test_the_hand_leans_as_far_as_the_body_beside_the_strap_asks_for(person, sleeve, lean, shown):
+    shown(1.0)
+    taken = []
+    upright = replace(sleeve, closing_in_map=np.array((-0.73, 0.11, 0.67)))
+    skill, _, _ = ran(upright, own_side=True, person=person, taken=taken)
+    assert skill.status == Status.SUCCESS, skill.failure
+    approach = taken[0][:3, 2]
+    assert np.arccos(-approach[2]) == pytest.approx(lean, abs=0.1)
+    assert approach[0] >= -0.05, "from its own side of the bed"
