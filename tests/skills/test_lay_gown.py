@@ -57,7 +57,7 @@ def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None):
     return places[-1]
 
 
-@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.04), (-0.2, 0.12)])
+@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.08), (-0.2, 0.12)])
 def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     near, far = let_go_at(armhole(STRAIGHT_AT + askew))
     assert (near + far) / 2 == pytest.approx(MIDDLE + shift, abs=0.01)
