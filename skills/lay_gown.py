@@ -11,6 +11,7 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
+from .control.even_out import EvenOutTuning, even_out
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.held_neckline import NEAR_HAND, HeldNeckline, NecklineTuning
@@ -61,15 +62,10 @@ class LayGownTuning(Quantities):
         "of the neckline in the end, tried in turn",
         "choice: as near to the bed, whose top is at 0.58 m, as the hands get straight down",
     )
-    middle_x: float = quantity(
-        0.04,
-        "m",
-        "of the middle of the neckline, towards the robot",
-        "measured: let go of first, the near end slides towards the far one, by 0.01 to 0.16 m; of 12 gowns let go of "
-        "in the middle the armholes ended 0.06 m to the far side on average, from 0.13 m to -0.01 m (119 to 147)",
-    )
+    middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
     neckline: NecklineTuning = field(default_factory=NecklineTuning)
     across: DrawAcrossTuning = field(default_factory=DrawAcrossTuning)
+    even: EvenOutTuning = field(default_factory=EvenOutTuning)
     leave: LeaveGownTuning = field(default_factory=LeaveGownTuning)
     approach_speed: float = quantity(0.4, "m/s", "of the base on its way to the bed", "choice: the gown hardly swings")
     base_speed: float = quantity(0.35, "m/s", "of the base along the bed", "choice: the gown is drawn, not dropped")
@@ -79,7 +75,8 @@ class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
     The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
-    far side, is drawn across to the near side before it is let go of.
+    far side, is drawn across to the near side before it is let go of, and one of which more hangs over one edge of the
+    bed to the other side.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -105,6 +102,7 @@ class LayGown(Skill):
                 yield from together(drive, look_towards(self, hand_now(self, NEAR_HAND)[:3, 3]))  # it comes along
             before = y
         yield from draw_across(neckline, *tuning.descent[-1], tuning.across)
+        yield from even_out(neckline, *tuning.descent[-1], tuning.even)
         yield from drive_to(self, self._base_for(tuning.drawn_y), speed=tuning.base_speed, straight=True)
         yield from self._lower(neckline, tuning.drawn_y, tuning.drawn_heights)
         yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)

@@ -77,7 +77,7 @@ def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTu
     except (PerceptionFailure, SensorLost):
         return  # it stays as it was taken
     shown = float(np.median(seen.armhole_points_in_map[:, 0]))
-    askew = shown + tuning.hidden_offset - neckline.middle - (neckline.apart + tuning.overhang) / 2
+    askew = shown + tuning.hidden_offset - (neckline.apart + tuning.overhang) / 2
     if askew < -tuning.min_askew:
         neckline.middle += min(-tuning.shift_factor * askew, tuning.max_shift)
         with suppress(MotionError):  # then it stays where it is
