@@ -177,6 +177,10 @@ class ClassicalSenses(Senses):
         """By the bindings of armhole and cuff near the upper arm."""
         return worn_sleeve(frame, side, arm_in_map, self._tuning.worn_sleeve)
 
+    def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
+        """As on an upper arm, by the bindings near the forearm."""
+        return worn_sleeve(frame, side, arm_in_map[1:], self._tuning.worn_sleeve)
+
     def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
         """By the gown that is nearest to the person's head beside the shoulder."""
         return shoulder_seam(frame, side, shoulders_in_map, self._tuning.shoulder_seam)

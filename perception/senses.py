@@ -274,6 +274,22 @@ class Senses(ABC):
             PerceptionFailure: too little of its armhole or of its cuff is seen.
         """
 
+    @abstractmethod
+    def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
+        """Where a sleeve shows that is over the hand, but not yet up the arm: along the forearm, as `worn_sleeve` does.
+
+        Args:
+            frame: of any camera.
+            side: of the person.
+            arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
+
+        Returns:
+            Where armhole and cuff show, 0 elbow to 1 wrist.
+
+        Raises:
+            PerceptionFailure: too little of its armhole or of its cuff is seen.
+        """
+
     # -- the gown on the person --------------------------------------------------------------------------
 
     @abstractmethod

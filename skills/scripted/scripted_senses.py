@@ -9,6 +9,7 @@ from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
+from ...perception.errors import PerceptionFailure, Problem
 from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
@@ -187,6 +188,10 @@ class ScriptedSenses(Senses):
         return WornSleeve(
             stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, reach=0.9, round_arm=0.8
         )
+
+    def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
+        """None: a sleeve that is over the hand is drawn up at once."""
+        raise PerceptionFailure(Problem.NOTHING_SEEN, f"the {side} sleeve's bindings beside the forearm")
 
     def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
         """Beside and headward of the shoulder."""

@@ -56,6 +56,7 @@ ELSEWHERE = {
     "relocalised_arm",
     "arm_shift",
     "worn_sleeve",
+    "sleeve_on_forearm",
     "sleeve_strap",
     "chest_cover",
     "chest_front",

@@ -37,6 +37,7 @@ from caretree.trees.tasks.draw_blanket.draw_up import DrawUp
 from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
 from caretree.trees.tasks.dressing.check_face import CheckFace
+from caretree.trees.tasks.dressing.check_over_hand import CheckOverHand
 from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.dressing.let_gown_go import LetGownGo
@@ -64,6 +65,7 @@ EXAMPLES = {
     CarrySleeve: lambda context: CarrySleeve("carry across", context, side="left"),
     CheckCollar: lambda context: CheckCollar("check collar", context),
     CheckFace: lambda context: CheckFace("check face", context),
+    CheckOverHand: lambda context: CheckOverHand("check over hand", context, side="left"),
     CheckLaidOut: lambda context: CheckLaidOut("check laid out", context, side="right"),
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     TakeSeam: lambda context: TakeSeam("take seam", context, side="right", hand="left"),

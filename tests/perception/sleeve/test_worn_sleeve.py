@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from caretree.perception.classical import ClassicalSenses
 from caretree.perception.errors import PerceptionFailure
 from caretree.perception.sleeve.worn_sleeve import worn_sleeve
+from caretree.sim.scripted.world import scripted_room
 from caretree.sim.world import Frame
 
 DOWN = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
@@ -43,3 +45,10 @@ def test_a_sleeve_that_shows_farther_down_reaches_less_far_up():
     places = (((20, 26), (60, 70)), ((29, 35), (75, 85)))
     high, low = (worn_sleeve(picture(armhole, cuff), "right", ARM).reach for armhole, cuff in places)
     assert 1.0 > high > low + 0.1 > 0.3
+
+
+def test_bindings_along_the_forearm_are_told_by_the_forearm():
+    seen = ClassicalSenses(scripted_room(), np.random.default_rng(1)).sleeve_on_forearm(
+        picture((90, 94), (120, 126)), side="right", arm_in_map=ARM
+    )
+    assert (seen.armhole_at, seen.cuff_at) == pytest.approx((0.24, 0.87), abs=0.06)

@@ -37,6 +37,7 @@ from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
+from .check_over_hand import CheckOverHand
 from .draw_flat import DrawFlat
 from .patience import FOR_A_MOMENT, patient, sight_again, unhurried
 from .take_down import fingers_closed
@@ -77,6 +78,14 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
             grasp_worn("grasp the worn sleeve", arm),
         )
 
+    as_it_is = sequence(
+        f"{side} sleeve as it is",
+        CheckOverHand("over the hand already", arm),
+        Navigate("go where it sits", arm, goal=stance(side, "lift")),
+        LookAtPerson("look where it sits", arm),
+        grasp_worn("take it as it sits", arm),
+    )
+
     def begin_again(scope: Scope, free: Callable[[Scope], Behaviour]) -> Behaviour:
         return sequence(
             f"{scope.prefix}begin again",
@@ -85,6 +94,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
             sight_again(scope, "then")(),
             fallback(
                 f"{scope.prefix}arm and sleeve laid out",
+                CheckOverHand("over the hand by now", scope),
                 CheckLaidOut("bare, its sleeve at hand", scope),
                 lay_out(scope),
                 off_trunk(scope, side),
@@ -116,7 +126,9 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
         {Reason.SLEEVE_MISSED: lambda: sequence(f"{side} arm once more", *go_beside(Scope(arm, "surely"), side))},
     )
     lies = patient(arm, put_down("in the end", arm))
-    once = sequence(f"{side} arm once", over_hand(arm, sleeve), far, away, lies, inside)
+    once = sequence(
+        f"{side} arm once", fallback(f"{side} hand inside", as_it_is, over_hand(arm, sleeve)), far, away, lies, inside
+    )
     again: dict[Reason, Callable[[], Behaviour]] = {
         **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once

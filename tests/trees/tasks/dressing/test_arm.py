@@ -11,9 +11,11 @@ from caretree.skills.lift_arm import LiftArm
 from caretree.skills.look_at_person import LookAtPerson
 from caretree.skills.lower_arm import LowerArm
 from caretree.skills.navigate import Navigate
+from caretree.skills.pull_along_arm import PullAlongArm
 from caretree.skills.retreat import Retreat
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
+from caretree.trees.tasks.dressing.check_over_hand import CheckOverHand
 
 
 def rehearsed(*faults):
@@ -169,3 +171,30 @@ def test_an_arm_is_begun_again_although_the_guard_stopped_the_hands_as_they_drew
     monkeypatch.setattr(GraspSleeve, "steps", out_of_reach)
     rehearsed()
     assert said.count("left arm/again/free hands") == 2
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_a_sleeve_that_is_over_the_hand_is_drawn_on_and_not_laid_out_or_lifted_into(monkeypatch, side):
+    look, pull = CheckOverHand.steps, PullAlongArm.steps
+    caught = []
+
+    def over_it_once_caught(self):
+        if self.name.startswith(f"{side} arm/") and caught:
+            return
+        yield from look(self)
+
+    def caught_at_first(self):
+        if self.name == f"{side} arm/pull over the hand" and not caught:
+            caught.append(self.name)
+            raise SkillFailure(Reason.MOTION_BLOCKED, "")
+        yield from pull(self)
+
+    monkeypatch.setattr(CheckOverHand, "steps", over_it_once_caught)
+    monkeypatch.setattr(PullAlongArm, "steps", caught_at_first)
+    ended = rehearsed()
+    failed = ended.index((f"{side} arm/pull over the hand", "failure"))
+    told = [name for name, status in ended[failed + 1 :] if status == "success" and name.startswith(f"{side} arm/")]
+    begun = told.index(f"{side} arm/again/over the hand by now")
+    expected = ["over the hand already", "go where it sits", "look where it sits", "take it as it sits", "pull up"]
+    assert told[begun + 1 : begun + 6] == [f"{side} arm/{name}" for name in expected]
+    assert ended.count((f"{side} arm/lift", "success")) == 1
