@@ -31,6 +31,7 @@ from .gown.hang_point import HangPointTuning, grasp_near_hang
 from .gown.hung_corner import HungCornerTuning, hook, hung_corner, shown_corner
 from .gown.hung_side import HungSideTuning, hung_side
 from .gown.layers import LayersTuning, gripped_cloth, layers
+from .gown.overhang import OverhangTuning, overhang
 from .gown.pregrasp import PreGraspTuning, pregrasp_proposal
 from .image.garment import GarmentTuning, gown_side
 from .person.arm_shift import ArmShiftTuning, arm_shift
@@ -67,6 +68,7 @@ class ClassicalTuning(Quantities):
     worn_sleeve: WornSleeveTuning = field(default_factory=WornSleeveTuning)
     cuff_round: CuffTuning = field(default_factory=CuffTuning)
     collar: CollarTuning = field(default_factory=CollarTuning)
+    overhang: OverhangTuning = field(default_factory=OverhangTuning)
     skin: SkinTuning = field(default_factory=SkinTuning)
     head: HeadTuning = field(default_factory=HeadTuning)
     arm: ArmTrackerTuning = field(default_factory=ArmTrackerTuning)
@@ -200,6 +202,10 @@ class ClassicalSenses(Senses):
     def chest_front(self, frame: Frame, *, shoulders_in_map: np.ndarray) -> ChestFront:
         """By the depth of cells on the front of the chest."""
         return chest_front(frame, self._bed, shoulders_in_map, self._tuning.chest_front)
+
+    def overhang(self, frame: Frame, *, side: Side) -> Cover:
+        """By the area of the gown that each pixel shows."""
+        return overhang(frame, self._bed, side, self._tuning.overhang)
 
     def collar_middle(
         self,

@@ -357,6 +357,21 @@ class Senses(ABC):
         """
 
     @abstractmethod
+    def overhang(self, frame: Frame, *, side: Side) -> Cover:
+        """How much of the gown lies or hangs beyond the edge of the bed on a side of the person.
+
+        Args:
+            frame: of any camera.
+            side: of the person.
+
+        Returns:
+            The share of what shows of it.
+
+        Raises:
+            PerceptionFailure: too little of the gown is seen.
+        """
+
+    @abstractmethod
     def collar_middle(
         self,
         frame: Frame,

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..perception.errors import PerceptionFailure
 from ..perception.estimates import SleeveOpening
-from ..perception.image.cloud import unit
+from ..perception.image.cloud import main_direction, unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.person_tracking import bare_share, careful, watch_arm
@@ -88,6 +88,19 @@ class CarrySleeveTuning(Quantities):
         "1",
         "part of the strap's width across the approach from which on the fingers close along it, else along the bed",
         "choice: a strap that stands up towards the hand has no width across it",
+    )
+    rim_top: float = quantity(
+        0.95, "1", "of what shows of the rim, by height, above which is its top", "choice: no noise"
+    )
+    rim_above: float = quantity(
+        0.04,
+        "m",
+        "of the rim's top above the strap, from which on it is taken where the strap is out of reach",
+        "choice: clear of the body; a strap on the hip lay within what is known of the trunk, the rim 0.08 m higher "
+        "(151)",
+    )
+    rim_reach: float = quantity(
+        0.04, "m", "of the rim round its top, which tells how it runs", "choice: a hand's width"
     )
     opening: float = quantity(
         0.06, "m", "between the fingers around the strap", "choice: 5 mm more than the strap's width"
@@ -181,19 +194,14 @@ class CarrySleeve(Skill):
             MotionError: out of reach, or something is in the way.
         """
         tuning, tries = self.tuning, Tries(MotionError)
-        inwards = outwards(self.side) * (-1.0 if self.own_side else 1.0)
-        for depth, lean in product(tuning.depths, tuning.leans):
-            approach = -np.cos(lean) * UP + np.sin(lean) * inwards
-            closing = sleeve.closing_in_map - (sleeve.closing_in_map @ approach) * approach
-            if np.linalg.norm(closing) < tuning.min_across:
-                closing = HEADWARD
+        for position, approach, closing, depth in self._grips(sleeve):
             with tries:
                 yield from reach_in(
                     self,
                     hand,
-                    sleeve.position_in_map,
+                    position,
                     approach,
-                    unit(closing),
+                    closing,
                     opening=tuning.opening,
                     depth=depth,
                     speed=tuning.reaching_speed,
@@ -201,6 +209,30 @@ class CarrySleeve(Skill):
                 )
                 return
         raise tries.last
+
+    def _grips(self, sleeve: SleeveOpening) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
+        """Where the sleeve may be taken, best first: position (3,), approach (3,), closing direction (3,), depth [m].
+
+        By the strap; where that lies right on the body, and its armhole stands up beside it, by the highest of its rim.
+        """
+        tuning = self.tuning
+        inwards = outwards(self.side) * (-1.0 if self.own_side else 1.0)
+        for depth, lean in product(tuning.depths, tuning.leans):
+            approach = -np.cos(lean) * UP + np.sin(lean) * inwards
+            closing = sleeve.closing_in_map - (sleeve.closing_in_map @ approach) * approach
+            if np.linalg.norm(closing) < tuning.min_across:
+                closing = HEADWARD
+            yield sleeve.position_in_map, approach, unit(closing), depth
+        rim = sleeve.armhole_points_in_map
+        top = np.median(rim[rim[:, 2] >= np.quantile(rim[:, 2], tuning.rim_top)], axis=0)
+        if top[2] < sleeve.position_in_map[2] + tuning.rim_above:
+            return
+        near = rim[np.linalg.norm(rim - top, axis=1) < tuning.rim_reach]
+        along = main_direction(near)
+        across = np.cross(UP, along)
+        if np.linalg.norm(across) > tuning.min_across:
+            for depth in tuning.depths:
+                yield top, -UP, unit(across), depth
 
     def _go(self, hand: Side, there: np.ndarray) -> Iterator[None]:
         """Bring what the hand holds to a position (3,), as far as it goes."""

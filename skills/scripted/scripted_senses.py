@@ -222,6 +222,10 @@ class ScriptedSenses(Senses):
         height = PERSON.front_height
         return ChestFront(stamp=frame.stamp, confidence=0.9, height=height, breastbone=height)
 
+    def overhang(self, frame: Frame, *, side: Side) -> Cover:
+        """A quarter of it."""
+        return Cover(stamp=frame.stamp, confidence=0.9, share=0.25)
+
     def collar_middle(
         self,
         frame: Frame,

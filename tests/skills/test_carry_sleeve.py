@@ -15,6 +15,7 @@ from caretree.skills.belief.sleeve_search import SleeveMemory
 from caretree.skills.carry_sleeve import CarrySleeve
 from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
+from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.person_zone import WHOLE
 from caretree.skills.geometry.stances import stance
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
@@ -130,3 +131,21 @@ def test_the_hand_leans_as_far_as_the_body_beside_the_strap_asks_for(person, sle
     approach = taken[0][:3, 2]
     assert np.arccos(-approach[2]) == pytest.approx(lean, abs=0.1)
     assert approach[0] >= -0.05, "from its own side of the bed"
+
+
+HIP = np.array(((-0.1, -0.5, 0.704), (-0.1, 0.3, 0.704))), 0.104
+
+
+@pytest.mark.parametrize("rim", [0.90, 0.76])
+def test_a_strap_right_on_the_body_is_left_to_the_top_of_a_rim_that_stands_up_beside_it(rim, shown):
+    shown(1.0)
+    taken, strap = [], at(-0.172, 0.12, 0.761)
+    along = np.linspace(-0.05, 0.05, 21)
+    arch = np.column_stack((np.full(21, -0.12), 0.12 + along, rim - 4.0 * along**2))
+    skill, _, _ = ran(replace(strap, armhole_points_in_map=arch), own_side=True, person=HIP, taken=taken)
+    if rim < 0.8:
+        assert skill.failure.reason == Reason.UNREACHABLE
+        return
+    assert skill.status == Status.SUCCESS, skill.failure
+    assert taken[0][:3, 3] == pytest.approx((-0.12, 0.12, rim), abs=0.03)
+    assert abs(taken[0][0, 1]) > 0.7, "its fingers close across the rim"

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from caretree.perception.estimates import Cover
 from caretree.sim.world import SIDES
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
@@ -13,14 +14,20 @@ MATTRESS = 0.60  # [m] above the floor, its middle at x = y = 0, its head toward
 FINGERTIP = PATH.points[3]
 
 
-def bench(*, hold=None, each_tick=lambda bench: None, stand=None):
+def bench(*, hold=None, each_tick=lambda bench: None, stand=None, beyond=0.2):
     """The right hand has the sleeve above the wrist of the person, whose right arm lies; far off, it is ready."""
     hands, held = {"right": above_arm(2.0, 0.15)} if stand is None else {}, {"right": CLOTH}
     if hold is not None:
         hands[hold.hand], held[hold.hand] = on_arm(hold.coordinate), ARM
     return LeafBench(
         lambda context: LaySleeve("lay", context, side="right", hand="right", hold=hold),
-        beside_bed(stand=stand, hands=hands, held=held, load={"right": (0.0, 0.0, -1.4)}),
+        beside_bed(
+            stand=stand,
+            hands=hands,
+            held=held,
+            load={"right": (0.0, 0.0, -1.4)},
+            overhang=Cover(stamp=0.0, confidence=0.9, share=beyond),
+        ),
         each_tick=each_tick,
     )
 
@@ -91,3 +98,12 @@ def test_a_place_out_of_reach_is_told():
     run = bench(stand=(1.05, -1.30, np.pi))
     assert run.ended() == Reason.UNREACHABLE
     assert run.openings("right").max() < 0.01
+
+
+@pytest.mark.parametrize(("beyond", "x"), [(0.4, 0.26), (0.7, -0.10)])
+def test_a_gown_that_lies_beyond_the_edge_of_the_bed_is_drawn_back_over_the_person(beyond, x):
+    run = bench(beyond=beyond)
+    assert run.ended() is None
+    strap = let_go(run)
+    assert strap[0] == pytest.approx(x, abs=0.02)
+    assert strap[2] > MATTRESS + (0.2 if x < 0.0 else 0.0), "clear of the thighs"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
+from caretree.skills.belief.shoulders import COLLAR_SEEN
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
@@ -24,7 +25,7 @@ def collar_at(aside, y):
         stamp=0.0,
         confidence=0.9,
         target="collar_middle",
-        position_in_map=np.array((aside, y, HEIGHT)),
+        position_in_map=np.array((aside + COLLAR_SEEN.aside, y, HEIGHT)),
         approach_in_map=np.array((0.0, 0.0, -1.0)),
         closing_in_map=np.array((0.0, 1.0, 0.0)),
     )
@@ -45,9 +46,9 @@ def bench(*, aside=0.14, along=-0.53, cloth=HELD, collar=None, each_tick=lambda 
     )
 
 
-def carried(run):
-    """Positions (n, 3) of the hand while its fingers were closed [m]."""
-    return run.way("right")[run.openings("right") < 0.005]
+def carried(run, hand="right"):
+    """Positions (n, 3) of a hand while its fingers were closed [m]."""
+    return run.way(hand)[run.openings(hand) < 0.005]
 
 
 def test_a_collar_that_lies_aside_is_lifted_and_laid_down_at_the_midline():
@@ -63,12 +64,12 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_at_the_midline():
 
 
 def test_a_collar_on_the_throat_is_drawn_footward_by_one_hand():
-    run = bench(aside=0.0, along=-0.65)  # 0.10 m headward of the shoulders
+    run = bench(aside=-0.018, along=-0.65)  # 0.10 m headward of the shoulders
     assert run.ended() is None
-    way = carried(run)
+    way = carried(run, "left")
     assert way[-1, 1] - way[0, 1] == pytest.approx(0.15, abs=0.02), "to 5 cm footward of the shoulders"
     assert np.ptp(way[:, 0]) < 0.02  # [m]
-    assert run.openings("left").min() > 0.05, "the other hand holds nothing"
+    assert run.openings("right").min() > 0.05, "the other hand holds nothing"
 
 
 def test_a_collar_a_little_headward_is_brought_as_far_beyond_the_line_as_one_on_the_throat():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from caretree.skills.belief.shoulders import between_shoulders, off_middle
+from caretree.skills.belief.shoulders import CollarSeen, between_shoulders, off_middle
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
 
@@ -27,5 +27,5 @@ def test_arms_that_are_not_known_are_looked_for_and_then_remembered():
     assert len(looks) == seen
 
 
-def test_aside_is_to_the_right_of_the_bed_and_headward_away_from_the_feet():
-    assert off_middle(MIDDLE + (0.1, -0.2, 0.3), MIDDLE) == pytest.approx((0.1, 0.2))
+def test_aside_is_to_the_right_of_the_bed_less_what_is_seen_too_much_and_headward_away_from_the_feet():
+    assert off_middle(MIDDLE + (0.1, -0.2, 0.3), MIDDLE, CollarSeen(aside=0.02)) == pytest.approx((0.08, 0.2))

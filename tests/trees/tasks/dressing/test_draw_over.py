@@ -7,6 +7,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
 from caretree.sim.world import SIDES
+from caretree.skills.belief.shoulders import COLLAR_SEEN
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
@@ -28,7 +29,7 @@ def bench(aside, *, cloth=HELD, shown=0.9):
             stamp=0.0,
             confidence=shown,
             target="collar_middle",
-            position_in_map=np.append(MIDDLE[:2] + (aside, -0.05) + np.asarray(away), HEIGHT),
+            position_in_map=np.append(MIDDLE[:2] + (aside + COLLAR_SEEN.aside, -0.05) + np.asarray(away), HEIGHT),
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )

@@ -190,18 +190,17 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
 @pytest.mark.parametrize(
     ("shown", "from_left", "from_right", "ends"),
     [
-        (0.95, (0.12, 0.0), (0.12, 0.0), "success"),
-        (0.92, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
-        (0.92, (0.01, 0.0), (0.12, 0.0), "success"),
+        (0.95, (0.0, 0.0), (0.0, 0.0), "success"),
+        (0.95, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
+        (0.80, (0.12, 0.0), (0.01, 0.0), "success"),
         (0.80, (0.01, 0.0), (0.12, 0.0), "success"),
-        (0.80, (0.08, 0.0), (0.01, 0.0), "success"),
-        (0.80, (0.12, 0.0), (0.01, 0.0), "safe_stop"),
-        (0.80, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
-        (0.80, (0.12, 0.0), (-0.12, 0.0), "safe_stop"),
+        (0.80, (0.12, 0.0), (0.09, 0.0), "safe_stop"),
+        (0.80, (-0.12, 0.0), (-0.03, 0.0), "safe_stop"),
+        (0.80, (0.12, 0.0), (-0.12, 0.0), "success"),
         (0.60, (0.0, 0.0), (0.0, 0.0), "safe_stop"),
     ],
 )
-def test_a_collar_that_does_not_show_whole_is_claimed_where_two_of_three_looks_agree(
+def test_a_collar_is_claimed_where_it_lies_in_the_middle_on_an_average_of_three_looks(
     shown, from_left, from_right, ends
 ):
     outcome, done = rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}, stays=True)
@@ -211,5 +210,5 @@ def test_a_collar_that_does_not_show_whole_is_claimed_where_two_of_three_looks_a
 
 
 def test_a_collar_that_looks_aside_from_both_sides_is_laid_and_all_of_it_seen_anew():
-    aside = (0.07, 0.0)
+    aside = (0.10, 0.0)
     assert rehearsed(0.85, shown=0.92, beside={-1.0: aside, 1.0: aside}) == ("success", ["spread"])
