@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....perception.errors import PerceptionFailure
+from ....perception.image.cloud import unit
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import Side
 from ....skills.belief.person_tracking import watch_arm
@@ -73,9 +74,10 @@ class CheckOverHand(Skill):
         yield
 
     def _covered(self, arm: np.ndarray, armhole_at: float, cuff_at: float) -> float:
-        """Share of the forearm of an arm (4, 3) [m] between armhole and cuff that shows something else than skin."""
-        along = np.linspace(*np.clip((armhole_at, cuff_at), 0.0, 1.0), self.tuning.points)[:, None]
-        points = arm[1] + along * (arm[2] - arm[1])
+        """Share of the axis of an arm (4, 3) [m] between armhole and cuff that shows something else than skin."""
+        shoulder, elbow, wrist, _ = arm
+        along = np.linspace(armhole_at, min(cuff_at, 1.0), self.tuning.points)[:, None] * np.linalg.norm(wrist - elbow)
+        points = elbow + np.where(along < 0.0, along * unit(elbow - shoulder), along * unit(wrist - elbow))
         try:
             return self.context.senses.skin_cover(self.world.look("head"), points_in_map=points).share
         except PerceptionFailure:

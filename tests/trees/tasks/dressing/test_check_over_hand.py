@@ -4,6 +4,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, WornSleeve
 from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_over_hand import CheckOverHand
 
@@ -41,15 +42,16 @@ def test_only_a_sleeve_round_the_forearm_that_covers_it_is_over_the_hand(sleeve,
     assert LeafBench(lambda context: CheckOverHand("over", context, side="left"), senses).ended(seconds=1.0) == reason
 
 
-def test_it_looks_at_the_forearm_between_armhole_and_cuff():
+@pytest.mark.parametrize(("armhole_at", "cuff_at", "first", "last"), [(0.5, 1.4, 1.5, 2.0), (-0.5, 0.5, 0.5, 1.5)])
+def test_it_looks_at_the_arm_between_armhole_and_cuff(armhole_at, cuff_at, first, last):
     asked, arm = [], lying_posture("left")
 
     def skin_cover(frame, points_in_map):
         asked.append(points_in_map)
         return covered(1.0)
 
-    senses = beside_bed(sleeve_on_forearm=on_forearm(0.5, 1.4, 0.8), skin_cover=skin_cover, arm=arm)
+    senses = beside_bed(sleeve_on_forearm=on_forearm(armhole_at, cuff_at, 0.8), skin_cover=skin_cover, arm=arm)
     LeafBench(lambda context: CheckOverHand("over", context, side="left"), senses).ended(seconds=1.0)
-    _, elbow, wrist, _ = arm.points_in_map
-    assert asked[0][0] == pytest.approx((elbow + wrist) / 2)
-    assert asked[0][-1] == pytest.approx(wrist)
+    path = ArmPath.of(arm)
+    assert asked[0][0] == pytest.approx(path.point(first), abs=0.03)
+    assert asked[0][-1] == pytest.approx(path.point(last), abs=0.03)
