@@ -33,6 +33,7 @@ FRICTION_CLOTH = 0.6  # rubber pads on cotton
 FRICTION_SKIN = 0.6  # rubber pads on vinyl skin
 SMOOTHING = 0.3  # share of a new load reading, taken every 10 ms
 CATCH = 0.020  # an arm whose axis is this near to the grip is centred by the closing fingers [m]
+STEP = 0.003  # a command to close by more is no step of a slow closing [m]
 TOUCH = 0.003  # fingers at most this much further apart than an arm is wide touch it [m]
 ARM_SLIP = 0.03  # an arm that has moved this far in the grip is lost [m]
 _SAMPLES = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4.0  # barycentric, (15, 3)
@@ -126,10 +127,15 @@ class Grip:
     def on_command(self, opening: float, now_open: float) -> None:
         """A new opening is commanded; remember how far the fingers were apart before they close.
 
-        Fingers that have what is rigid and are told to close on do not take it again as they open.
+        Fingers that have what is rigid and are told to close on do not take it again as they open.  Those that close
+        step by step, as slowly as round an arm, began to at the first step.
         """
-        if opening < now_open - 0.003 and self.kind not in ("arm", "object"):
+        if self.kind in ("arm", "object"):
+            return
+        if opening < now_open - STEP or (opening < now_open and not self._armed):
             self._open_before, self._armed = now_open, True
+        elif opening > now_open + STEP:
+            self._armed = False
 
     def catch_arm(self, pose_hand_in_map: np.ndarray, opening: float, force: float, only: int | None = None) -> bool:
         """Take the arm if its axis runs between the closing fingers and they touch it; tells whether it did.
@@ -278,6 +284,8 @@ class Grip:
                 axis = (b - a) / np.linalg.norm(b - a)
                 # across the fingers the arm must lie within their stroke, along the approach within the pads' depth
                 fits = abs(local[1]) <= CATCH and abs(local[2]) <= 0.03 and abs(axis @ turn[:, 1]) < 0.5
+                # what ends before it comes between them is not: a hand was taken 0.17 m away, at a forearm
+                fits = fits and (only is not None or abs(local[0]) <= PAD_HALF_WIDTH + CATCH)
                 if fits:
                     distance = float(np.linalg.norm(local))
                     if best is None or distance < best[0]:

@@ -240,13 +240,18 @@ def shown(context: Context, name: str, side: Side) -> Behaviour:
 def still_inside(context: Context, side: Side, collar: CheckCollar) -> Behaviour:
     """From beside a shoulder, see the `collar`, and that the arm lies in its sleeve: its cuff shows all round it."""
     sleeve = arm_scope(context, f"{side} cuff", side)
-    return sequence(
-        f"the {side} arm is still inside",
-        *go_beside(sleeve, side),
-        collar,
-        LowerArm("lies", sleeve, hand=sleeve["pulling"]),
-        CheckSleeve("is inside", sleeve),
+    off = Scope(sleeve, "off")
+
+    def from_farther_off() -> Behaviour:
+        go = Navigate("go off", off, goal=f"bed_{side}")
+        return sequence(f"the {side} cuff from farther off", go, LookAtPerson("look from there", off))
+
+    # a cuff that showed 42 % of the way round from beside its shoulder ended a run that was dressed (0)
+    inside = RecoverBy(
+        f"{side} sleeve on its arm", CheckSleeve("is inside", sleeve), {Reason.SLEEVE_MISSED: from_farther_off}
     )
+    lies = LowerArm("lies", sleeve, hand=sleeve["pulling"])
+    return sequence(f"the {side} arm is still inside", *go_beside(sleeve, side), collar, lies, inside)
 
 
 def chest_looks_right(context: Context) -> Behaviour:
