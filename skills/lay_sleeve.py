@@ -57,10 +57,11 @@ class LaySleeveTuning(Quantities):
         "the floor (154), those with 0.14 to 0.37 stayed (0, 138)",
     )
     laid_over: tuple[float, float, float] = quantity(
-        (-0.10, 0.20, 0.26),
+        (0.10, 0.20, 0.26),
         "m",
         "where its strap is laid then: outwards and feetward from the bed's middle, and above the mattress",
-        "choice: over the thighs, as far beyond the middle as two thirds of the gown's width lie on the bed",
+        "choice: over the thigh on its own side; drawn 0.20 m farther, 0.80 to 0.16 of it beyond the edge, the gown stayed on "
+        "the bed, but turned over, its sleeve on the other side (154)",
     )
     most_load_over: float = quantity(
         5.0, "N", "at which it is drawn back no farther", "choice: as one that is carried across the bed"
