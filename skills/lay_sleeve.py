@@ -60,8 +60,8 @@ class LaySleeveTuning(Quantities):
         (0.10, 0.20, 0.26),
         "m",
         "where its strap is laid then: outwards and feetward from the bed's middle, and above the mattress",
-        "choice: over the thigh on its own side; drawn 0.20 m farther, 0.80 to 0.16 of it beyond the edge, the gown stayed on "
-        "the bed, but turned over, its sleeve on the other side (154)",
+        "choice: over the thigh on its own side; drawn 0.20 m farther, the gown stayed on the bed, 0.16 of it beyond the "
+        "edge, 0.80 before, but turned over, its sleeve on the other side (154)",
     )
     most_load_over: float = quantity(
         5.0, "N", "at which it is drawn back no farther", "choice: as one that is carried across the bed"
