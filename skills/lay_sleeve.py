@@ -60,7 +60,7 @@ class LaySleeveTuning(Quantities):
         (0.10, 0.20, 0.26),
         "m",
         "where its strap is laid then: outwards and feetward from the bed's middle, and above the mattress",
-        "choice: over the thigh on its own side; drawn 0.20 m farther, the gown stayed on the bed, 0.16 of it beyond the "
+        "choice: over the thigh on its own side; 0.20 m farther, the gown stayed on the bed, 0.16 of it beyond the "
         "edge, 0.80 before, but turned over, its sleeve on the other side (154)",
     )
     most_load_over: float = quantity(
