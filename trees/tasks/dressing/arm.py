@@ -65,8 +65,8 @@ def arm_scope(context: Context, name: str, side: Side) -> Scope:
     return Scope(context, name, keys=("grip",), side=side, lifting=LIFTING[side], pulling=PULLING[side])
 
 
-def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: bool) -> Behaviour:
-    """One arm into its `sleeve`, from beside the bed; one that `strays` may lie on the other side of it."""
+def dress_arm(context: Context, side: Side, sleeve: SleeveTuning) -> Behaviour:
+    """One arm into its `sleeve`, from beside the bed."""
     arm = arm_scope(context, f"{side} arm", side)
 
     def grasp_again() -> Behaviour:
@@ -98,7 +98,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, strays: boo
                 CheckLaidOut("bare, its sleeve at hand", scope),
                 lay_out(scope),
                 off_trunk(scope, side),
-                *([fetch_sleeve(scope, side)] if strays else []),
+                fetch_sleeve(scope, side),
                 back_off("leave it as it lies", scope),
             ),
         )

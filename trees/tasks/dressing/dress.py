@@ -19,7 +19,7 @@ def dress(context: Context) -> Stage:
         "dress",
         Retreat("bring the arms back", bed, hand_distance=DRESSING.arms_back),
         Navigate("go to the right side", bed, goal="bed_right"),
-        dress_arm(context, "right", FIRST_SLEEVE, strays=False),
+        dress_arm(context, "right", FIRST_SLEEVE),
         fallback(
             "bring the left sleeve to its side",
             carried_across("the left sleeve", bed, "left"),
@@ -29,7 +29,7 @@ def dress(context: Context) -> Stage:
         not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
         at_hand(arm_scope(context, "second sleeve", "left")),
-        dress_arm(context, "left", SECOND_SLEEVE, strays=True),
+        dress_arm(context, "left", SECOND_SLEEVE),
         flat(arm_scope(context, "front", "left")),
         seconds=DRESSING.dress_timeout,
     )
