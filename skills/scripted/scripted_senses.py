@@ -9,7 +9,6 @@ from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from ...perception.errors import PerceptionFailure, Problem
 from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
@@ -190,8 +189,9 @@ class ScriptedSenses(Senses):
         )
 
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
-        """None: a sleeve that is over the hand is drawn up at once."""
-        raise PerceptionFailure(Problem.NOTHING_SEEN, f"the {side} sleeve's bindings beside the forearm")
+        """Beyond the hand: one that is over it is drawn up at once."""
+        seen = ScriptedSenses.worn_sleeve(self, frame, side=side, arm_in_map=arm_in_map)
+        return replace(seen, armhole_at=2.0, cuff_at=2.5, reach=0.0, round_arm=0.2)
 
     def shoulder_seam(self, frame: Frame, *, side: Side, shoulders_in_map: np.ndarray) -> GraspPoint:
         """Beside and headward of the shoulder."""

@@ -37,6 +37,7 @@ HOWEVER_LITTLE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0)
 MIDDLE = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
 )
+WHOLE = CheckCollarTuning(min_shown=DRESSING.collar_whole, max_aside=DRESSING.collar_aside_on_average)
 ON_AVERAGE = CheckCollarTuning(min_shown=DRESSING.collar_shown, min_looks=2, max_aside=DRESSING.collar_aside_on_average)
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
@@ -55,6 +56,7 @@ def spread(context: Context) -> Stage:
         *(patient(bed, arm_lies(context, side)) for side in SIDES),
         Navigate("go round to the head", bed, goal="bed_head"),
         surely_neat(context, bed),
+        *(patient(bed, still_inside(context, side)) for side in SIDES[::-1]),  # from the right, where it stands by then
         patient(bed, chest_looks_right(context)),
         seconds=DRESSING.spread_timeout,
     )
@@ -88,9 +90,9 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 
 
 def surely_neat(context: Context, bed: Scope) -> Behaviour:
-    """Worn neatly, as seen from the head of the bed, and from beside both shoulders too.
+    """Worn neatly, as seen from the head of the bed, and the collar in the middle for other looks too.
 
-    A collar that looks from beside saw 0.06 and 0.07 m aside, where it was, ended a run that had all the time it needed
+    One that looks from beside saw 0.06 and 0.07 m aside, where it was, ended a run that had all the time it needed
     (191): it is laid in the middle once more, however it looks from the head, and all of it is seen anew.
     """
 
@@ -98,9 +100,7 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
         anew = Scope(bed, "anew")
         return sequence("lay the collar once more", *go_to_head(anew), laid_in_the_middle(anew))
 
-    both = sequence(
-        "neat", patient(bed, neaten(context, bed)), *(patient(bed, seen) for seen in all_round(context, bed))
-    )
+    both = sequence("neat", patient(bed, neaten(context, bed)), patient(bed, surely_middle(context, bed)))
     aside = {Reason.COLLAR_ASIDE: laid_once_more}
     return RecoverBy("until it is surely neat", both, aside, attempts=DRESSING.surely_neat_attempts)
 
@@ -155,18 +155,24 @@ def looked_again(context: Context, bed: Scope) -> Behaviour:
     return sequence("both arms again", *beside, *go_to_head(again), straight(again))
 
 
-def all_round(context: Context, bed: Scope) -> list[Behaviour]:
-    """See from the head of the bed and from beside each shoulder where the collar lies, and both arms in their sleeves.
+def surely_middle(context: Context, bed: Scope) -> Behaviour:
+    """See the whole collar in the middle; else that it is there on an average of three looks.
 
-    One look misses the collar's middle by up to 0.06 m where most of it shows, three on average by 0.03 m.  Seen at
-    0.05, 0.10 and 0.03 m, one was claimed as two of the three said so, and lay 0.08 m aside (0).
+    From the head of the bed and from beside each shoulder: one look misses the collar's middle by up to 0.06 m where
+    most of it shows, three on average by 0.03 m.  Seen at 0.05, 0.10 and 0.03 m, one was claimed as two of the three
+    said so, and lay 0.08 m aside (0).
     """
     seen = [bed.key(f"seen_from_{where}") for where in ("head", *SIDES)]
-    first = CheckCollar("its middle from the head", bed, decide=False, looks=seen[0], tuning=MIDDLE)
     left, right = (Scope(bed, f"from the {side}") for side in SIDES)
-    then = CheckCollar("its middle", left, decide=False, before=seen[0], looks=seen[1], tuning=MIDDLE)
-    last = CheckCollar("its middle", right, before=seen[1], looks=seen[2], tuning=ON_AVERAGE)
-    return [first, *(still_inside(context, side, look) for side, look in zip(SIDES, (then, last), strict=True))]
+    three = sequence(
+        "from three places",
+        CheckCollar("its middle from the head", bed, decide=False, looks=seen[0], tuning=MIDDLE),
+        *go_beside(arm_scope(context, "left of the collar", "left"), "left"),
+        CheckCollar("its middle", left, decide=False, before=seen[0], looks=seen[1], tuning=MIDDLE),
+        *go_beside(arm_scope(context, "right of the collar", "right"), "right"),
+        CheckCollar("its middle", right, before=seen[1], looks=seen[2], tuning=ON_AVERAGE),
+    )
+    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), three)
 
 
 def over(bed: Scope) -> Behaviour:
@@ -237,28 +243,25 @@ def shown(context: Context, name: str, side: Side) -> Behaviour:
     return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
 
-def still_inside(context: Context, side: Side, collar: CheckCollar) -> Behaviour:
-    """From beside a shoulder, see the `collar`, and that the arm lies in its sleeve: its cuff shows all round it."""
+def still_inside(context: Context, side: Side) -> Behaviour:
+    """Look from beside the bed whether the arm lies, inside its sleeve: its cuff shows all round it there.
+
+    From beside the shoulder a cuff showed 42 % of the way round, and a run that was dressed ended (0).
+    """
     sleeve = arm_scope(context, f"{side} cuff", side)
-    off = Scope(sleeve, "off")
-
-    def from_farther_off() -> Behaviour:
-        go = Navigate("go off", off, goal=f"bed_{side}")
-        return sequence(f"the {side} cuff from farther off", go, LookAtPerson("look from there", off))
-
-    # a cuff that showed 42 % of the way round from beside its shoulder ended a run that was dressed (0)
-    inside = RecoverBy(
-        f"{side} sleeve on its arm", CheckSleeve("is inside", sleeve), {Reason.SLEEVE_MISSED: from_farther_off}
+    return sequence(
+        f"the {side} arm is still inside",
+        Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
+        LookAtPerson("look", sleeve),
+        LowerArm("lies", sleeve, hand=sleeve["pulling"]),
+        CheckSleeve("is inside", sleeve),
     )
-    lies = LowerArm("lies", sleeve, hand=sleeve["pulling"])
-    return sequence(f"the {side} arm is still inside", *go_beside(sleeve, side), collar, lies, inside)
 
 
 def chest_looks_right(context: Context) -> Behaviour:
-    """Look at the trunk, from a little farther off: covered, the outside out."""
+    """Look at the trunk: covered, the outside out."""
     return sequence(
         "the chest",
-        Navigate("go off", Scope(context, "chest"), goal="bed_right"),
         LookAtPerson("look at the chest", Scope(context, "chest", side="right"), part="trunk"),
         Condition("the chest is covered", chest_covered, Reason.NOTHING_SEEN),
         Condition("the outside is out", outside_out, Reason.WRONG_SIDE),

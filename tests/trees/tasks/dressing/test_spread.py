@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.world import SIDES
-from caretree.skills.check_sleeve import CheckSleeve
-from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.run.runner import run
@@ -193,7 +191,8 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
     ("shown", "from_left", "from_right", "ends"),
     [
         (0.95, (0.0, 0.0), (0.0, 0.0), "success"),
-        (0.95, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
+        (0.95, (0.12, 0.0), (0.12, 0.0), "success"),
+        (0.92, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
         (0.80, (0.12, 0.0), (0.01, 0.0), "success"),
         (0.80, (0.01, 0.0), (0.12, 0.0), "success"),
         (0.80, (0.12, 0.0), (0.09, 0.0), "safe_stop"),
@@ -202,7 +201,7 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
         (0.60, (0.0, 0.0), (0.0, 0.0), "safe_stop"),
     ],
 )
-def test_a_collar_is_claimed_where_it_lies_in_the_middle_on_an_average_of_three_looks(
+def test_a_collar_that_does_not_show_whole_is_claimed_where_three_looks_on_average_have_it_in_the_middle(
     shown, from_left, from_right, ends
 ):
     outcome, done = rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}, stays=True)
@@ -214,20 +213,3 @@ def test_a_collar_is_claimed_where_it_lies_in_the_middle_on_an_average_of_three_
 def test_a_collar_that_looks_aside_from_both_sides_is_laid_and_all_of_it_seen_anew():
     aside = (0.10, 0.0)
     assert rehearsed(0.85, shown=0.92, beside={-1.0: aside, 1.0: aside}) == ("success", ["spread"])
-
-
-@pytest.mark.parametrize(("misses", "ends"), [(0, "success"), (1, "success"), (2, "safe_stop")])
-def test_a_cuff_that_hardly_shows_from_beside_the_shoulder_is_looked_at_from_farther_off(monkeypatch, misses, ends):
-    look, looked = CheckSleeve.steps, []
-
-    def missed_at_first(self):
-        if self.name == "right cuff/is inside":
-            looked.append(self.world.observe().pose_base_in_map[0])
-            if len(looked) <= misses:
-                raise SkillFailure(Reason.SLEEVE_MISSED, "")
-        yield from look(self)
-
-    monkeypatch.setattr(CheckSleeve, "steps", missed_at_first)
-    assert rehearsed(0.85) == (ends, [])
-    assert len(looked) == min(misses + 1, 2)
-    assert all(there > looked[0] + 0.1 for there in looked[1:]), "farther off"
