@@ -276,18 +276,9 @@ class Senses(ABC):
 
     @abstractmethod
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
-        """Where a sleeve shows that is over the hand, but not yet up the arm: along the forearm, as `worn_sleeve` does.
+        """Where a sleeve shows that is over the hand, but not yet up the arm: 0 elbow to 1 wrist.
 
-        Args:
-            frame: of any camera.
-            side: of the person.
-            arm_in_map: (4, 3) shoulder, elbow, wrist, fingertip [m].
-
-        Returns:
-            Where armhole and cuff show, 0 elbow to 1 wrist.
-
-        Raises:
-            PerceptionFailure: too little of its armhole or of its cuff is seen.
+        Arguments and errors are those of `worn_sleeve`.
         """
 
     # -- the gown on the person --------------------------------------------------------------------------
