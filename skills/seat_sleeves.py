@@ -59,6 +59,14 @@ class SeatSleevesTuning(Quantities):
         "measured: left ones at 0.62 came to 0.92, drawn all the way to 0.96 and 1.00, with the collar 0.12 instead of "
         "0.14 m headward (106, 142); a right one at 0.39 came to 0.68, drawn all the way to 0.79 (106)",
     )
+    drawn_alone: tuple[float, float] = quantity(
+        (0.10, 0.16),
+        "m",
+        "likewise, of one that is drawn up alone",
+        "measured, the collar laid: right ones at 0.63 to 0.74 came to 0.76 to 0.78 (0 twice, 155, 157), drawn "
+        "by 0.07 and 0.14 m to 0.72 to 0.77; the left one stayed, and the collar but for one of six times (headward by "
+        "0.05 m)",
+    )
     farther_again: float = quantity(
         0.5,
         "1",
@@ -145,6 +153,7 @@ class SeatSleeves(Skill):
     drawn back, after a missed grasp too.
     """
 
+    side = Input(Side, default=None, doc="whose sleeve is drawn up, alone and however high it is; None: both, if low")
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
     reasons = (
         Reason.NOTHING_SEEN,
@@ -171,9 +180,9 @@ class SeatSleeves(Skill):
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             reach[side] = self._reach(frame, side)
-            if side not in left_before and self._as_high_as_it_gets(side, reach[side], drawn):
+            if not self.side and side not in left_before and self._as_high_as_it_gets(side, reach[side], drawn):
                 drawn.left.add(side)
-            elif reach[side] < tuning.up_already:
+            elif side == self.side or (not self.side and reach[side] < tuning.up_already):
                 with hidden:  # one that does not show does not keep the other from being drawn
                     seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
         if not seams and hidden.problems:
@@ -216,6 +225,8 @@ class SeatSleeves(Skill):
     def _drawn_to(self, side: Side, reach: float, times: int) -> tuple[float, float]:
         """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
         tuning = self.tuning
+        if self.side:
+            return tuning.drawn_alone
         between = tuning.low_and_almost if side == "left" else tuning.low_and_almost_right
         farther = float(np.interp(reach, between, (1.0, 0.0))) + tuning.farther_again * times
         less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)

@@ -18,7 +18,7 @@ class Reason(enum.Enum):
     MULTI_LAYER = "The fingers hold more than one layer of cloth."
     WRONG_SIDE = "The gown shows the wrong side."
     CLOTH_SLIPPED = "The cloth slipped out of the fingers."
-    SLEEVE_MISSED = "The sleeve went past the person's hand."
+    SLEEVE_MISSED = "The sleeve is not over the person's hand."
     SLEEVE_FOLDED = "The sleeve does not open towards the person's hand."
     SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
     COLLAR_ASIDE = "The collar does not lie in the middle between the person's shoulders."
