@@ -57,7 +57,7 @@ def spread(context: Context) -> Stage:
         "spread",
         *(patient(bed, arm_lies(context, side)) for side in SIDES),
         Navigate("go round to the head", bed, goal="bed_head"),
-        surely_up(context, bed),
+        surely_neat(context, bed),
         patient(bed, chest_looks_right(context)),
         seconds=DRESSING.spread_timeout,
     )
@@ -90,20 +90,15 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     return fallback(f"the {side} arm lies, or later", lies, later)
 
 
-def surely_up(context: Context, bed: Scope) -> Behaviour:
-    """Worn neatly, and both sleeves up as seen from beside the bed too; one that is not is drawn up alone.
+def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
+    """See from beside the bed, too, that a sleeve is up; one that is not is drawn up alone.
 
     The collar, laid after both were drawn up, takes the right sleeve down again by up to 0.1, which hardly shows from
-    the head of the bed (155, 156).  Drawn up alone, it leaves the collar where it is.  The right one comes first, as
-    the robot stands there by then.
+    the head of the bed (155, 156).  Drawn up alone, it leaves the collar where it is.
     """
-    up = surely_neat(context, bed)
-    for side in SIDES[::-1]:
-        anew = Scope(bed, f"{side} alone")
-        once_more = {Reason.SLEEVE_LOW: lambda anew=anew, side=side: drawn_alone(anew, side)}
-        looked_at = sequence(f"{side} sleeve too", up, patient(bed, still_inside(context, bed, side)))
-        up = RecoverBy(f"until the {side} sleeve is surely up", looked_at, once_more, attempts=DRESSING.alone_attempts)
-    return up
+    inside = patient(bed, still_inside(context, side, seen_from_head(bed, side)))
+    low = {Reason.SLEEVE_LOW: lambda: drawn_alone(Scope(bed, f"{side} alone"), side)}
+    return RecoverBy(f"until the {side} sleeve is up", inside, low, attempts=DRESSING.alone_attempts)
 
 
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
@@ -119,18 +114,20 @@ def seen_from_head(bed: Scope, side: Side) -> Key:
 
 
 def surely_neat(context: Context, bed: Scope) -> Behaviour:
-    """Worn neatly, as seen from the head of the bed, and the collar in the middle for other looks too.
+    """Worn neatly, as seen from the head of the bed, both sleeves up and the collar in the middle for other looks too.
 
-    One that looks from beside saw 0.06 and 0.07 m aside, where it was, ended a run that had all the time it needed
-    (191): it is laid in the middle once more, however it looks from the head, and all of it is seen anew.
+    The collar comes last, as a sleeve that is drawn up may take it along.  One that looks from beside saw 0.06 and
+    0.07 m aside, where it was, ended a run that had all the time it needed (191): it is laid in the middle once more,
+    however it looks from the head, and all of it is seen anew.
     """
 
     def laid_once_more() -> Behaviour:
         anew = Scope(bed, "anew")
         return sequence("lay the collar once more", *go_to_head(anew), laid_in_the_middle(anew))
 
-    both = sequence("neat", patient(bed, neaten(context, bed)), patient(bed, surely_middle(context, bed)))
-    aside = {Reason.COLLAR_ASIDE: laid_once_more}
+    up = (surely_up(context, bed, side) for side in SIDES[::-1])
+    both = sequence("neat", patient(bed, neaten(context, bed)), *up, patient(bed, surely_middle(context, bed)))
+    aside = dict.fromkeys((Reason.COLLAR_ASIDE, Reason.FACE_COVERED), laid_once_more)
     return RecoverBy("until it is surely neat", both, aside, attempts=DRESSING.surely_neat_attempts)
 
 
@@ -191,7 +188,7 @@ def surely_middle(context: Context, bed: Scope) -> Behaviour:
     most of it shows, three on average by 0.03 m.  Seen at 0.05, 0.10 and 0.03 m, one was claimed as two of the three
     said so, and lay 0.08 m aside (0).
     """
-    seen = [bed.key(f"seen_from_{where}") for where in ("head", *SIDES)]
+    seen, end = [bed.key(f"seen_from_{where}") for where in ("head", *SIDES)], Scope(bed, "in the end")
     left, right = (Scope(bed, f"from the {side}") for side in SIDES)
     three = sequence(
         "from three places",
@@ -201,7 +198,9 @@ def surely_middle(context: Context, bed: Scope) -> Behaviour:
         *go_beside(arm_scope(context, "right of the collar", "right"), "right"),
         CheckCollar("its middle", right, before=seen[1], looks=seen[2], tuning=ON_AVERAGE),
     )
-    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), three)
+    surely = fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), three)
+    first = (*go_to_head(end), CheckFace("the face is free", end), CheckCollar("about the middle", end, tuning=MIDDLE))
+    return sequence("the collar in the end", *first, surely)
 
 
 def over(bed: Scope) -> Behaviour:
@@ -272,7 +271,7 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
 
-def still_inside(context: Context, bed: Scope, side: Side) -> Behaviour:
+def still_inside(context: Context, side: Side, seen: Key) -> Behaviour:
     """Look from beside the bed whether the arm lies, inside its sleeve, which is up: its cuff shows all round it there.
 
     From beside the shoulder a cuff showed 42 % of the way round, and a run that was dressed ended (0).
@@ -286,7 +285,7 @@ def still_inside(context: Context, bed: Scope, side: Side) -> Behaviour:
         CheckSleeve(
             "is inside",
             sleeve,
-            seen_before=seen_from_head(bed, side),
+            seen_before=seen,
             min_together=DRESSING.armhole_surely,
             tuning=BOTH_ALIKE,
         ),
