@@ -21,7 +21,7 @@ LEANS = SeatSleevesTuning().leans  # [rad]
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, each_tick=lambda bench: None):
+def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tick=lambda bench: None):
     reaches = dict.fromkeys(SIDES, 0.3) if reach is None else reach
 
     def worn(frame, side, arm_in_map):
@@ -44,7 +44,7 @@ def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, each_tick=lambda be
         )
 
     return LeafBench(
-        lambda context: SeatSleeves("seat", context, tuning=SeatSleevesTuning(leans=leans)),
+        lambda context: SeatSleeves("seat", context, side=side, tuning=SeatSleevesTuning(leans=leans)),
         beside_bed(
             stand=stance_at_head(),
             shoulder_seam=seam,
@@ -214,3 +214,15 @@ def test_one_that_was_left_as_it_was_is_drawn_again_when_that_is_asked_for_once_
     assert run.ended() is None
     assert memory.times["left"] == (3 if before else 2)
     assert memory.left == (set() if before else {"left"})
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("seen", [0.3, 0.9])
+def test_one_that_is_asked_for_is_drawn_alone_and_farther_however_high_it_is_seen(side, seen):
+    other = "right" if side == "left" else "left"
+    run = bench(reach=dict.fromkeys(SIDES, seen), side=side)
+    assert run.ended() is None
+    off = last_held(run, side) - SHOULDERS[side]
+    assert off @ outwards(side) == pytest.approx(-0.10, abs=0.03)
+    assert off @ HEADWARD == pytest.approx(0.16, abs=0.02)
+    assert np.ptp(run.way(other), axis=0) == pytest.approx(0.0, abs=0.02)  # [m]

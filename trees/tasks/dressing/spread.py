@@ -127,7 +127,7 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), *up, patient(bed, surely_middle(context, bed)))
-    aside = dict.fromkeys((Reason.COLLAR_ASIDE, Reason.FACE_COVERED), laid_once_more)
+    aside = {Reason.COLLAR_ASIDE: laid_once_more}
     return RecoverBy("until it is surely neat", both, aside, attempts=DRESSING.surely_neat_attempts)
 
 
@@ -199,8 +199,10 @@ def surely_middle(context: Context, bed: Scope) -> Behaviour:
         CheckCollar("its middle", right, before=seen[1], looks=seen[2], tuning=ON_AVERAGE),
     )
     surely = fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), three)
-    first = (*go_to_head(end), CheckFace("the face is free", end), CheckCollar("about the middle", end, tuning=MIDDLE))
-    return sequence("the collar in the end", *first, surely)
+    covered = {Reason.FACE_COVERED: lambda: straight(Scope(end, "off the face"))}
+    face = RecoverBy("until the face is free", CheckFace("the face is free", end), covered, attempts=2)
+    about = CheckCollar("about the middle", end, tuning=MIDDLE)
+    return sequence("the collar in the end", *go_to_head(end), face, about, surely)
 
 
 def over(bed: Scope) -> Behaviour:

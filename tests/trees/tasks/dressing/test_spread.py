@@ -15,6 +15,7 @@ from caretree.trees.run.worlds import prepare_stage
 SEATED, FLAT = "gown/sleeves/seat", "fold/draw flat"
 LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again", "off the face", "anew"))
 PULLED = {f"{side} sleeve/pull up": side for side in SIDES}
+ALONE = {f"gown/{side} alone/seat": side for side in SIDES}
 ON_FACE = -0.15  # along y, a collar so far headward lies over mouth and nose [m]
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
@@ -29,7 +30,7 @@ class WornGown(ScriptedSenses):
         beside: where the collar is seen from the left (-1) and the right (1) of the bed, if those are other places.
         pulled: how much farther up a sleeve is after it was pulled by its strap.
         hidden: side of the sleeve that does not show.
-        lower: how much lower an armhole is seen from the head of the bed.
+        lower: how much lower an armhole is seen from the head of the bed, not from beside.
     """
 
     def __init__(
@@ -64,6 +65,9 @@ class WornGown(ScriptedSenses):
         if progress.status == "success" and progress.name in PULLED and self.pulled:
             self.done.append(progress.name)
             self.low[PULLED[progress.name]] += self.pulled
+        if progress.status == "success" and progress.name in ALONE:
+            self.done.append(f"{ALONE[progress.name]} alone")
+            self.low[ALONE[progress.name]] += DRAWN_UP
         if progress.status != "success" or progress.name not in (SEATED, FLAT, *LAID):
             return
         self.done.append(progress.name.rpartition("/")[2])
@@ -165,6 +169,23 @@ def test_a_sleeve_that_looks_a_little_low_from_the_head_of_the_bed_and_up_from_b
 
 def test_a_sleeve_that_looks_low_from_the_head_of_the_bed_is_drawn_up_although_it_looks_up_from_beside():
     assert rehearsed(0.78, lower=0.12) == ("success", ["seat"])  # 0.70 in the mean
+
+
+@pytest.mark.parametrize(
+    ("reach", "ends", "done"),
+    [
+        ((0.80, 0.62), "success", ["right alone"]),
+        ((0.62, 0.80), "success", ["left alone"]),
+        ((0.62, 0.62), "success", ["right alone", "left alone"]),
+    ],
+)
+def test_a_sleeve_that_looks_up_from_the_head_of_the_bed_and_low_from_beside_is_drawn_up_alone(reach, ends, done):
+    assert rehearsed(reach, lower=-0.14) == (ends, done)
+
+
+def test_a_sleeve_that_stays_low_from_beside_the_bed_is_not_claimed():
+    outcome, done = rehearsed((0.80, 0.10), lower=-0.65)
+    assert (outcome, set(done)) == ("safe_stop", {"right alone"})
 
 
 def test_a_sleeve_a_little_too_low_to_be_claimed_is_drawn_up():
