@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -92,6 +92,13 @@ class SeatSleevesTuning(Quantities):
         "of the upper arm, from which an armhole is left alone while the other one is lower",
         "measured: drawn up with the other one, an armhole at 0.87 came to 1.00 and the collar 0.15 m headward (106)",
     )
+    up_by_now: float = quantity(
+        0.72,
+        "1",
+        "likewise, of one that was drawn up before",
+        "measured: a left one at 0.71 that was drawn up alone came to 0.79, and the right one, at 0.75, and the collar "
+        "stayed; with both drawn, 0.04 m aside and headward went the collar, and four rounds followed (157)",
+    )
     enough_draws: int = quantity(
         2,
         "1",
@@ -147,8 +154,9 @@ class SeatSleeves(Skill):
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
     which takes half of the time, each as far as it is low: drawn too far, one takes the collar headward and to the
-    other side.  One that is up already is left alone, and so is one that is most likely up and comes no higher; one
-    that is missed does not keep the other from being drawn.
+    other side.  One that is up already is left alone, and so is one that is most likely up and comes no higher; once
+    they were drawn, the lower one is drawn alone, which leaves the collar where it is.  One that is missed does not
+    keep the other from being drawn.
     The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and
     drawn back, after a missed grasp too.
     """
@@ -190,13 +198,14 @@ class SeatSleeves(Skill):
         if not seams:
             self.note("both are up already, or come no higher")
             return
+        seams = {side: seams[side] for side in self._low(list(seams), reach, drawn)}
         held = yield from take_each({side: partial(self._take, side, seam) for side, seam in seams.items()})
         self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
         above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
         yield from carry_each(self, above, tuning.carry, tuning.apart)
         over, laid = {}, {}
         for side in held:
-            inward, headward = self._drawn_to(side, reach[side], drawn.times[side])
+            inward, headward = self._drawn_to(side, reach[side], drawn.times[side], alone=len(held) == 1)
             drawn.times[side] += 1
             drawn.reach[side] = reach[side]
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
@@ -222,10 +231,16 @@ class SeatSleeves(Skill):
         often, likely = drawn.times[side] >= tuning.enough_draws, reach >= tuning.likely_up
         return often and likely and reach < drawn.reach.get(side, 0.0) + tuning.brought_higher
 
-    def _drawn_to(self, side: Side, reach: float, times: int) -> tuple[float, float]:
+    def _low(self, sides: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
+        """Of those that may be drawn up: without one that was before and is up by now, unless it is the lowest."""
+        lowest = min(sides, key=reach.__getitem__)
+        low = (s for s in sides if not drawn.times[s] or reach[s] < self.tuning.up_by_now)
+        return list(low) or [lowest]
+
+    def _drawn_to(self, side: Side, reach: float, times: int, *, alone: bool) -> tuple[float, float]:
         """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
         tuning = self.tuning
-        if self.side:
+        if self.side or (alone and times):
             return tuning.drawn_alone
         between = tuning.low_and_almost if side == "left" else tuning.low_and_almost_right
         farther = float(np.interp(reach, between, (1.0, 0.0))) + tuning.farther_again * times

@@ -226,3 +226,22 @@ def test_one_that_is_asked_for_is_drawn_alone_and_farther_however_high_it_is_see
     assert off @ outwards(side) == pytest.approx(-0.10, abs=0.03)
     assert off @ HEADWARD == pytest.approx(0.16, abs=0.02)
     assert np.ptp(run.way(other), axis=0) == pytest.approx(0.0, abs=0.02)  # [m]
+
+
+@pytest.mark.parametrize("seen", [(0.65, 0.76), (0.74, 0.78), (0.76, 0.65), (0.78, 0.74)])
+def test_once_they_were_drawn_the_lower_one_is_drawn_alone_and_farther(seen):
+    lower, other = SIDES if seen[0] < seen[1] else SIDES[::-1]
+    run = bench(reach=dict(zip(SIDES, seen, strict=True)))
+    run.context.memory.of(Drawn, Drawn).times.update(dict.fromkeys(SIDES, 1))
+    assert run.ended() is None
+    off = last_held(run, lower) - SHOULDERS[lower]
+    assert off @ outwards(lower) == pytest.approx(-0.10, abs=0.03)
+    assert off @ HEADWARD == pytest.approx(0.16, abs=0.02)
+    assert np.ptp(run.way(other), axis=0) == pytest.approx(0.0, abs=0.02)  # [m]
+
+
+def test_both_are_drawn_again_where_both_came_down():
+    run = bench(reach=dict.fromkeys(SIDES, 0.65))
+    run.context.memory.of(Drawn, Drawn).times.update(dict.fromkeys(SIDES, 1))
+    assert run.ended() is None
+    assert all(np.ptp(run.way(side), axis=0).max() > 0.2 for side in SIDES)
