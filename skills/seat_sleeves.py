@@ -182,7 +182,9 @@ class SeatSleeves(Skill):
         """Look at both, take one after the other, lift, draw, lay down, let go."""
         tuning, drawn = self.tuning, self.context.memory.of(Drawn, Drawn)
         shoulders = np.array([watch_arm(self, side).points_in_map[0] for side in SIDES])
-        seams, reach, left_before, hidden = {}, {}, set(drawn.left), Tries(PerceptionFailure)
+        seams: dict[Side, GraspPoint] = {}
+        reach: dict[Side, float] = {}
+        left_before, hidden = set(drawn.left), Tries(PerceptionFailure)
         drawn.left.clear()
         for n, side in enumerate(SIDES):  # before a hand comes in between
             yield from look_towards(self, shoulders[n])
@@ -234,8 +236,7 @@ class SeatSleeves(Skill):
     def _low(self, sides: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
         """Of those that may be drawn up: without one that was before and is up by now, unless it is the lowest."""
         lowest = min(sides, key=reach.__getitem__)
-        low = (s for s in sides if not drawn.times[s] or reach[s] < self.tuning.up_by_now)
-        return list(low) or [lowest]
+        return [s for s in sides if not drawn.times[s] or reach[s] < self.tuning.up_by_now] or [lowest]
 
     def _drawn_to(self, side: Side, reach: float, times: int, *, alone: bool) -> tuple[float, float]:
         """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
