@@ -99,9 +99,9 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
     """
 
     def once_more() -> Behaviour:
-        anew = Scope(bed, f"{side} alone")
+        anew = Scope(context, f"{side} alone")
         face = CheckFace("the face is free", anew)
-        covered = {Reason.FACE_COVERED: lambda: straight(Scope(anew, "off the face"))}
+        covered = {Reason.FACE_COVERED: lambda: straight(Scope(anew, "face"))}
         return sequence(
             f"{side} sleeve once more",
             *go_to_head(anew),

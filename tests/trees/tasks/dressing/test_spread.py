@@ -15,7 +15,7 @@ from caretree.trees.run.worlds import prepare_stage
 SEATED, FLAT = "gown/sleeves/seat", "fold/draw flat"
 LAID = tuple(f"gown/{when}/spread" for when in ("then", "collar", "again", "off the face", "anew"))
 PULLED = {f"{side} sleeve/pull up": side for side in SIDES}
-ALONE = {f"gown/{side} alone/seat": side for side in SIDES}
+ALONE = {f"{side} alone/seat": side for side in SIDES}
 ON_FACE = -0.15  # along y, a collar so far headward lies over mouth and nose [m]
 DRAWN_UP = 0.15  # how much farther up the arm a sleeve is after it was drawn up
 
