@@ -235,7 +235,7 @@ class SeatSleeves(Skill):
 
     def _low(self, sides: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
         """Of those that may be drawn up: without one that was before and is up by now, unless it is the lowest."""
-        lowest = min(sides, key=reach.__getitem__)
+        lowest = min(sides, key=lambda side: reach[side])
         return [s for s in sides if not drawn.times[s] or reach[s] < self.tuning.up_by_now] or [lowest]
 
     def _drawn_to(self, side: Side, reach: float, times: int, *, alone: bool) -> tuple[float, float]:
