@@ -102,7 +102,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
         anew = Scope(context, f"{side} alone")
         face = CheckFace("the face is free", anew)
         covered = {Reason.FACE_COVERED: lambda: straight(Scope(anew, "face"))}
-        return sequence(
+        drawn = sequence(
             f"{side} sleeve once more",
             *go_to_head(anew),
             drawn_alone(anew, side),
@@ -110,6 +110,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
             straight(anew),
             CheckCollar("about the middle", anew, tuning=MIDDLE),
         )
+        return patient(anew, drawn)
 
     inside = patient(bed, still_inside(context, side, seen_from_head(bed, side)))
     low = {Reason.SLEEVE_LOW: once_more}
