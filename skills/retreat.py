@@ -11,7 +11,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Hands, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
-from .control.fingers import open_gripper
+from .control.fingers import FINGERS, open_gripper
 from .control.hands import move_arms
 from .control.ready import Ready, ready_or_not
 from .control.withdraw import WithdrawTuning, withdraw
@@ -25,12 +25,6 @@ class RetreatTuning(Quantities):
     """Numbers of the way back."""
 
     withdraw: WithdrawTuning = field(default_factory=WithdrawTuning)
-    cloth_opening: float = quantity(
-        0.035,
-        "m",
-        "of fingers that let cloth go, until the hand has drawn back",
-        "measured: opened wide beside the shoulder, a finger pushed it with 68 N (seed 104)",
-    )
     arm_opening: float = quantity(
         0.06, "m", "of fingers, below which no arm is between them", "choice: an adult's forearm is thicker"
     )
@@ -65,7 +59,7 @@ class Retreat(Skill):
         """
         tuning, now = self.tuning, float(self.world.observe().gripper_opening[SIDES.index(side)])
         if self.hand_distance > 0.0 and now < tuning.arm_opening:
-            return max(now, tuning.cloth_opening)
+            return max(now, FINGERS.cloth_opening)
         return self.world.robot.gripper.stroke
 
     def _back(self, ready: bool) -> Iterator[None]:

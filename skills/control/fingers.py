@@ -22,6 +22,13 @@ class FingersTuning(Quantities):
     open_tolerance: float = quantity(
         0.004, "m", "short of the opening that was asked for at which the fingers are open", "choice: half a finger"
     )
+    cloth_opening: float = quantity(
+        0.035,
+        "m",
+        "of fingers that let cloth go right beside the person",
+        "measured: opened wide, a finger pushed the shoulder with 68 N (104), and the chest with 67 to 82 N (156, 253, "
+        "262)",
+    )
     grip_force: float = quantity(30.0, "N", "of squeezing cloth, at most", "choice: thin cloth is held without a slip")
     timeout: float = quantity(3.0, "s", "for the fingers to open or close", "choice: five times what they take")
     min_closing: float = quantity(0.002, "m", "of the fingers that counts as motion", "choice: above the noise")
@@ -69,6 +76,16 @@ def open_gripper(
         reason=Reason.COMMAND_LOST,
     )
     skill.context.guard.declare_grip(side, "nothing")
+
+
+def let_cloth_go(skill: Skill, side: Side, *, tuning: FingersTuning = FINGERS) -> Iterator[None]:
+    """Open the fingers just enough for cloth to slip out, and wait for it; ones that are open already stay so.
+
+    Raises:
+        SkillFailure: COMMAND_LOST when they are not open in time.
+    """
+    now = float(skill.world.observe().gripper_opening[SIDES.index(side)])
+    yield from open_gripper(skill, side, max(now, tuning.cloth_opening), tuning=tuning)
 
 
 def close_gripper(

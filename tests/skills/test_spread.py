@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
+from caretree.perception.person.person_facts import PERSON
 from caretree.skills.belief.shoulders import COLLAR_SEEN
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance_at_head
@@ -59,7 +60,7 @@ def test_a_collar_that_lies_aside_is_lifted_and_laid_down_at_the_midline():
     assert way[:, 2].max() - way[0, 2] == pytest.approx(0.10, abs=0.02)  # [m]
     assert way[-1, 2] - way[0, 2] == pytest.approx(0.02, abs=0.02)
     assert way[-1, 0] - way[0, 0] == pytest.approx(-0.13, abs=0.02), "to 1 cm from the midline"
-    assert run.openings("right")[-1] > 0.08
+    assert run.openings("right")[-1] == pytest.approx(0.035, abs=0.005), "wide, a finger would push the chest [m]"
     assert run.way("right")[-1, 2] - way[-1, 2] == pytest.approx(0.12, abs=0.03), "drawn back"
 
 
@@ -104,6 +105,15 @@ def test_a_collar_that_lies_well_is_left_alone(aside):
     run = bench(aside=aside)
     assert run.ended() is None
     assert run.sent == 0
+
+
+def test_a_collar_that_was_taken_low_at_the_flank_is_laid_down_above_the_chest():
+    low = dataclasses.replace(collar_at(0.18, -0.53), position_in_map=np.array((0.18, -0.53, 0.79)))
+    run = bench(collar=low)
+    assert run.ended() is None
+    way = carried(run)
+    chest = run.world.room.bed[1, 2] + PERSON.front_height
+    assert way[way[:, 0] < 0.08, 2].min() > chest + 0.005  # [m]
 
 
 def test_a_collar_that_pulls_is_carried_no_farther():

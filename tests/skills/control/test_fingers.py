@@ -2,8 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from caretree.sim.world import GripperOpening
-from caretree.skills.control.fingers import close_gripper, open_gripper
+from caretree.sim.world import SIDES, GripperOpening
+from caretree.skills.control.fingers import close_gripper, let_cloth_go, open_gripper
 from caretree.skills.core.reasons import Reason
 
 from ..moving import carry_out, robot
@@ -18,6 +18,14 @@ def test_closing_tells_what_is_between_the_fingers():
     skill = carry_out(world, context, lambda skill: open_gripper(skill, "right", 0.06))
     assert skill.failure is None
     assert world.observe().gripper_opening[1] == pytest.approx(0.06, abs=0.005)
+
+
+def test_cloth_is_let_go_of_with_little_room_and_open_fingers_stay_as_they_are():
+    world, context = robot()
+    world._opening[:] = world._opening_goal[:] = (0.0, 0.07)
+    for side, opening in (("left", 0.035), ("right", 0.07)):
+        carry_out(world, context, lambda skill, side=side: let_cloth_go(skill, side))
+        assert world.observe().gripper_opening[SIDES.index(side)] == pytest.approx(opening, abs=0.005)
 
 
 def test_fingers_that_close_slowly_take_their_time_until_they_meet_something():
