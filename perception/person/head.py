@@ -10,6 +10,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..errors import PerceptionFailure, Problem
 from ..estimates import Head
+from ..image.projection import project
 from .person_facts import PERSON
 from .skin import DEFAULT as SKIN_DEFAULT
 from .skin import SkinTuning, skin_on_bed
@@ -33,8 +34,8 @@ class HeadTuning(Quantities):
     sure_points: int = quantity(
         150, "1", "of a head that is seen with certainty", "choice: well above the least that counts"
     )
-    cut_confidence: float = quantity(
-        0.8, "1", "of a head where skin touches the picture's border", "choice: it may be cut off"
+    border: float = quantity(
+        2.0, "px", "of the picture, within which what shows of a head is cut off", "choice: two pixels"
     )
     round_from: float = quantity(
         0.05, "m", "from the crown, where the head begins to be as a cylinder", "choice: clear of the crown's round"
@@ -67,7 +68,7 @@ def head_seen(
     Raises:
         PerceptionFailure: no skin at the head end, or the image cuts it off.
     """
-    points, skin = skin_on_bed(frame, bed, tuning=skin_tuning)
+    points, _ = skin_on_bed(frame, bed, tuning=skin_tuning)
     if len(points) < tuning.min_person_points:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "person")
     middle_of_bed = bed[:, 0].mean()
@@ -80,10 +81,9 @@ def head_seen(
     width = float(np.ptp(np.percentile(blob[:, 0], tuning.width_percentiles)))
     height = float(np.percentile(blob[:, 2], tuning.top_percentile)) - bed[1, 2]
     fits = _within(width, PERSON.head_width_range) and _within(height, PERSON.head_top_range)
-    if not (fits and len(blob) >= tuning.min_points):
+    if not (fits and len(blob) >= tuning.min_points) or _cut_off(frame, blob, tuning):
         raise PerceptionFailure(Problem.NOTHING_SEEN, "head")
-    cut = skin[0].any() or skin[:, 0].any() or skin[:, -1].any()
-    confidence = min(1.0, len(blob) / tuning.sure_points) * (tuning.cut_confidence if cut else 1.0)
+    confidence = min(1.0, len(blob) / tuning.sure_points)
     middle = _centre_of_round(blob[blob[:, 1] > crown + tuning.round_from], tuning)
     crown = _end_of_round(blob[blob[:, 1] < crown + tuning.round_to], crown, tuning)
     return Head(
@@ -92,6 +92,17 @@ def head_seen(
         middle=middle,
         crown_in_map=np.array((middle, crown, float(np.median(blob[:, 2])))),
     )
+
+
+def _cut_off(frame: Frame, blob: np.ndarray, tuning: HeadTuning) -> bool:
+    """Whether points (n, 3) of a head reach the picture's border, so that more of it, or all, may lie beyond.
+
+    A neck whose head was out of the picture was taken for it, 0.08 m footward of that, and the shoulders with it (165).
+    """
+    u, v, _ = project(frame, blob).T
+    height, width = frame.depth.shape
+    off_border = np.minimum(np.minimum(u, width - 1 - u), np.minimum(v, height - 1 - v))
+    return bool(off_border.min() < tuning.border)
 
 
 def _within(value: float, bounds: tuple[float, float]) -> bool:

@@ -1,5 +1,6 @@
 """The head that stops the base's approach."""
 
+import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
 from caretree.perception.person.head import head_seen
@@ -13,6 +14,22 @@ def test_head_is_where_it_is(scenes, bed, seed):
     assert head.middle == pytest.approx(0.0, abs=0.025)
     assert head.crown_in_map[1] == pytest.approx(-0.55 - 0.31 * scene.scale, abs=0.025)
     assert head.confidence > 0.5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_head_that_the_picture_cuts_off_is_not_told(scenes, bed, seed):
+    scene, told, cut = scenes.person(seed), 0, 0
+    for aim in np.arange(-0.3, 0.7, 0.05):  # along the bed [m]
+        scene.camera = looking_at((1.25, -0.24, 1.5), (0.0, aim, 0.6))
+        try:
+            head = head_seen(scene.frame(seed), bed)
+        except PerceptionFailure:
+            cut += 1
+        else:
+            told += 1
+            assert head.crown_in_map[1] == pytest.approx(-0.55 - 0.31 * scene.scale, abs=0.04)
+    assert told > 3
+    assert cut > 3
 
 
 def test_no_head_in_view(scenes, bed, black):
