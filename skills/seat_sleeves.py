@@ -15,7 +15,7 @@ from ..sim.world import SIDES, Frame, Side
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.carry import Carry
-from .control.fingers import open_gripper
+from .control.fingers import let_cloth_go
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.take_from_above import FromAbove, take_from_above
@@ -216,7 +216,7 @@ class SeatSleeves(Skill):
         yield from carry_each(self, over, tuning.carry, tuning.apart)
         yield from carry_each(self, laid, tuning.carry, tuning.apart)
         # at once, so that neither side gives way to the other
-        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
+        yield from together(*(let_cloth_go(self, side) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
 
     def _reach(self, frame: Frame, side: Side) -> float:

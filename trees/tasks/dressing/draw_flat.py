@@ -15,7 +15,7 @@ from ....skills.belief.person_motion import while_person_rests
 from ....skills.belief.shoulders import between_shoulders, look_at_collar
 from ....skills.control.base import BaseTuning, stand_for
 from ....skills.control.carry import Carry, carry
-from ....skills.control.fingers import open_gripper
+from ....skills.control.fingers import let_cloth_go
 from ....skills.control.hands import hand_now
 from ....skills.control.head import look_towards
 from ....skills.control.take_from_above import FromAbove, take_from_above, within_reach
@@ -116,5 +116,5 @@ class DrawFlat(Skill):
             yield from carry(self, self.hand, start + shift, tuning.carry)
         laid = np.append(hand_now(self, self.hand)[:2, 3], start[2] + tuning.laid_height)
         yield from carry(self, self.hand, laid, tuning.carry, tuning.laying_speed)
-        yield from open_gripper(self, self.hand, tuning.grasp.opening)
+        yield from let_cloth_go(self, self.hand)
         yield from withdraw(self, [self.hand], tuning.withdrawal)

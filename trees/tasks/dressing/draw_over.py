@@ -14,7 +14,7 @@ from ....sim.world import SIDES, Side
 from ....skills.belief.person_motion import while_person_rests
 from ....skills.belief.shoulders import between_shoulders, look_at_collar, off_middle
 from ....skills.control.carry import Carry
-from ....skills.control.fingers import open_gripper
+from ....skills.control.fingers import let_cloth_go
 from ....skills.control.hands import hand_now
 from ....skills.control.head import look_towards
 from ....skills.control.take_from_above import FromAbove, take_from_above
@@ -123,7 +123,7 @@ class DrawOver(Skill):
         for side, place in start.items():
             laid[side] = np.append(hand_now(self, side)[:2, 3], place[2] + tuning.laid_height)
         yield from carry_each(self, laid, tuning.carry, tuning.gap, tuning.laying_speed)
-        yield from together(*(open_gripper(self, side, tuning.grasp.opening) for side in held))
+        yield from together(*(let_cloth_go(self, side) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
 
     def _places(self, middle: np.ndarray, collar: np.ndarray) -> dict[Side, GraspPoint]:
