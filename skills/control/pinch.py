@@ -24,7 +24,7 @@ from ..core.skill import Skill
 from ..core.tries import Tries
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
-from ..motion.trajectory import free_postures
+from ..motion.trajectory import HandSpeed, free_postures
 from .fingers import FINGERS, close_gripper, open_gripper
 from .hands import HANDS, collision_checker, hand_now, move_hands, until_load
 
@@ -78,6 +78,7 @@ def reach_in(
     standoff: float = PINCH.standoff,
     depth: float = PINCH.depth,
     speed: float = HANDS.speed,
+    inwards: HandSpeed | None = None,
     tuning: PinchTuning = PINCH,
 ) -> Iterator[None]:
     """Bring open fingers around the edge of cloth, at first in front of it and then straight in, or until they touch.
@@ -91,7 +92,8 @@ def reach_in(
         opening: of the fingers on the way in, as far as they go by default [m].
         standoff: where to begin the straight way [m].
         depth: how far the fingertips go beyond the position [m].
-        speed: of the hand until it waits in front of the cloth; less of it on the straight way [m/s].
+        speed: of the hand until it waits in front of the cloth [m/s].
+        inwards: on the straight way; less than `speed` if not given [m/s].
         tuning: rolls of the hand that are tried, how much slower the straight way is, and what ends it.
 
     Raises:
@@ -105,8 +107,8 @@ def reach_in(
     skill.world.send(GripperOpening(side=side, opening=wide), retreat=True)
     yield from move_hands(skill, {side: before}, speed=speed, way="any")
     yield from open_gripper(skill, side, wide)
-    inwards = move_hands(skill, {side: inside}, speed=tuning.inwards_share * speed)
-    yield from until_load(skill, side, tuning.touch_load, inwards)
+    slower = tuning.inwards_share * speed if inwards is None else inwards
+    yield from until_load(skill, side, tuning.touch_load, move_hands(skill, {side: inside}, speed=slower))
 
 
 def grasp_poses(

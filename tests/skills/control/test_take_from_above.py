@@ -51,6 +51,17 @@ def test_it_comes_from_above_whatever_way_the_cloth_faces_and_closes_there():
     assert np.rad2deg(np.arccos(down)) <= 36.0
 
 
+def test_the_last_of_the_way_down_is_slow():
+    run, _ = taken(Estimate(stamp=0.0, confidence=0.9))
+    way = run.way("right")
+    speed = np.linalg.norm(np.diff(way, axis=0), axis=1) * 15  # [m/s]
+    left = np.linalg.norm(way[:-1] - PLACE, axis=1)
+    closing = int(np.argmax(run.openings("right") < 0.045))
+    near, before = (left < 0.02)[:closing], ((left > 0.04) & (left < 0.10))[:closing]
+    assert speed[:closing][near].max() < 0.025
+    assert speed[:closing][before].max() > 0.04
+
+
 def test_a_miss_ends_open_and_drawn_back():
     run, failure = taken(PerceptionFailure(Problem.NOTHING_SEEN, "cloth"))
     assert failure == Reason.GRASP_MISSED
