@@ -214,11 +214,12 @@ def test_a_collar_that_stays_on_the_throat_ends_the_task_without_a_claim():
         (0.95, (0.0, 0.0), (0.0, 0.0), "success"),
         (0.95, (0.12, 0.0), (0.12, 0.0), "success"),
         (0.92, (0.12, 0.0), (0.12, 0.0), "safe_stop"),
-        (0.80, (0.12, 0.0), (0.01, 0.0), "success"),
-        (0.80, (0.01, 0.0), (0.12, 0.0), "success"),
-        (0.80, (0.12, 0.0), (0.09, 0.0), "safe_stop"),
-        (0.80, (-0.12, 0.0), (-0.03, 0.0), "safe_stop"),
-        (0.80, (0.12, 0.0), (-0.12, 0.0), "success"),
+        (0.85, (0.12, 0.0), (0.01, 0.0), "success"),
+        (0.85, (0.01, 0.0), (0.12, 0.0), "success"),
+        (0.85, (0.12, 0.0), (0.09, 0.0), "safe_stop"),
+        (0.85, (-0.12, 0.0), (-0.03, 0.0), "safe_stop"),
+        (0.85, (0.12, 0.0), (-0.12, 0.0), "success"),
+        (0.80, (0.0, 0.0), (0.0, 0.0), "safe_stop"),
         (0.60, (0.0, 0.0), (0.0, 0.0), "safe_stop"),
     ],
 )
@@ -227,8 +228,7 @@ def test_a_collar_that_does_not_show_whole_is_claimed_where_three_looks_on_avera
 ):
     outcome, done = rehearsed(0.85, shown=shown, beside={-1.0: from_left, 1.0: from_right}, stays=True)
     assert outcome == ends
-    aside = ends == "safe_stop" and shown >= 0.8
-    assert done == (["spread"] * 2 if aside else []), "laid after each of three looks but the last"
+    assert done == (["spread"] * 2 if ends == "safe_stop" else []), "laid after each of three looks but the last"
 
 
 def test_a_collar_that_looks_aside_from_both_sides_is_laid_and_all_of_it_seen_anew():
