@@ -29,14 +29,8 @@ class FromAbove(Quantities):
     speed: float = quantity(
         0.10,
         "m/s",
-        "of the hand to before the cloth; half of it on the way in",
+        "of the hand to before the cloth; half of it on the way in, and less next to the person",
         "choice: slow beside the person; it does not lower the 80 N with which closing fingers met the trunk (101)",
-    )
-    touch_speed: float = quantity(
-        0.02, "m/s", "of the hand on the last of that way", "choice: at 0.05 m/s it met a leg with 96 N (163)"
-    )
-    touch_length: float = quantity(
-        0.025, "m", "of the way that is gone so slowly", "choice: cloth and person are seen to 1 cm"
     )
 
 
@@ -65,11 +59,6 @@ def take_from_above(skill: Skill, hand: Side, point: GraspPoint, outward: np.nda
         SkillFailure: GRASP_MISSED, COMMAND_LOST or MOTION_BLOCKED.
     """
     approach = from_above(point.approach_in_map, outward, law.max_tilt)
-    end = point.position_in_map + law.depth * approach
-
-    def slower(place: np.ndarray) -> float:
-        return law.touch_speed if float(np.linalg.norm(place - end)) < law.touch_length else law.speed / 2
-
     yield from reach_in(
         skill,
         hand,
@@ -79,6 +68,5 @@ def take_from_above(skill: Skill, hand: Side, point: GraspPoint, outward: np.nda
         opening=law.opening,
         depth=law.depth,
         speed=law.speed,
-        inwards=slower,
     )
     yield from pinch_or_back_off(skill, hand)
