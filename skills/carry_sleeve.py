@@ -19,7 +19,7 @@ from .belief.person_tracking import bare_share, careful, watch_arm
 from .belief.refused_stands import REFUSED, refused_stands
 from .belief.sleeve_search import SleeveMemory
 from .control.base import drive_to
-from .control.fingers import open_gripper
+from .control.fingers import let_cloth_go
 from .control.hands import hand_now, move_hands, until_load
 from .control.head import look_towards
 from .control.pinch import PinchTuning, back_off, pinch_or_back_off, reach_in
@@ -301,6 +301,6 @@ class CarrySleeve(Skill):
                 break
         memory.last[self.side] = hand_now(self, hand)[:3, 3]
         refused_stands(self, self.side).clear()
-        yield from open_gripper(self, hand)
+        yield from let_cloth_go(self, hand)
         with suppress(MotionError):  # it is open, and the next motion begins with a way out
             yield from back_off(self, hand)

@@ -25,7 +25,7 @@ from ..core.tries import Tries
 from ..motion.errors import Unreachable
 from ..motion.ik import hand_pose, solve_ik
 from ..motion.trajectory import free_postures
-from .fingers import FINGERS, close_gripper, open_gripper
+from .fingers import FINGERS, close_gripper, let_cloth_go, open_gripper
 from .hands import HANDS, collision_checker, hand_now, move_hands, until_load
 
 
@@ -193,7 +193,7 @@ def pinch_or_back_off(skill: Skill, side: Side, *, force: float = FINGERS.grip_f
         yield from pinch(skill, side, force=force)
     except SkillFailure as miss:
         if miss.reason == Reason.GRASP_MISSED:
-            yield from open_gripper(skill, side)
+            yield from let_cloth_go(skill, side)
             yield from back_off(skill, side)
         raise
 

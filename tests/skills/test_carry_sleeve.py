@@ -80,7 +80,7 @@ def test_a_stray_sleeve_is_laid_beyond_the_arm_it_belongs_to():
     middle = world.room.bed[:, :2].mean(axis=0)
     assert np.allclose(memory.last["left"][:2], middle + (-0.33, 0.16), atol=0.03)
     assert memory.last["left"][2] < world.room.bed[1, 2] + 0.25
-    assert world.observe().gripper_opening.min() > 0.05, "both hands are open"
+    assert world.observe().gripper_opening.min() > 0.03, "neither hand holds anything"
 
 
 def test_it_goes_no_farther_than_the_other_sleeve_lets_it():
