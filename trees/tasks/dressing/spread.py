@@ -145,8 +145,9 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), patient(bed, surely_middle(context, bed)), *up)
-    unsure = dict.fromkeys((Reason.COLLAR_ASIDE, Reason.NOTHING_SEEN), laid_once_more)
-    return RecoverBy("until it is surely neat", both, unsure, attempts=DRESSING.surely_neat_attempts)
+    unsure: tuple[Reason, ...] = (Reason.COLLAR_ASIDE, Reason.NOTHING_SEEN)
+    again = dict.fromkeys(unsure, laid_once_more)
+    return RecoverBy("until it is surely neat", both, again, attempts=DRESSING.surely_neat_attempts)
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
