@@ -145,9 +145,8 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), patient(bed, surely_middle(context, bed)), *up)
-    unsure: tuple[Reason, ...] = (Reason.COLLAR_ASIDE, Reason.NOTHING_SEEN)
-    again = dict.fromkeys(unsure, laid_once_more)
-    return RecoverBy("until it is surely neat", both, again, attempts=DRESSING.surely_neat_attempts)
+    unsure = {Reason.COLLAR_ASIDE: laid_once_more, Reason.NOTHING_SEEN: laid_once_more}
+    return RecoverBy("until it is surely neat", both, unsure, attempts=DRESSING.surely_neat_attempts)
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
