@@ -65,6 +65,12 @@ class PersonFacts(Quantities):
     )
     trunk_length: float = quantity(0.55, "m", "from the shoulders to the hips", "choice: an adult of 174 cm")
     leg_length: float = quantity(0.85, "m", "from the hips to the feet", "choice: an adult of 174 cm")
+    thigh_half_width: float = quantity(
+        0.185,
+        "m",
+        "from the midline to the outside of legs that lie flat and spread a little",
+        "choice: between hips that stand and that sit; at 0.17 m a hand met the outside of a thigh with 296 N (166)",
+    )
     leg_radius: float = quantity(0.08, "m", "of legs that lie flat", "choice: an adult of 174 cm")
     axis_height: float = quantity(
         0.11, "m", "of the body's axis above the mattress", "choice: half the depth of a trunk that lies on its back"

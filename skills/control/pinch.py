@@ -195,6 +195,7 @@ def pinch_or_back_off(skill: Skill, side: Side, *, force: float = FINGERS.grip_f
         if miss.reason == Reason.GRASP_MISSED:
             yield from let_cloth_go(skill, side)
             yield from back_off(skill, side)
+            yield from open_gripper(skill, side)
         raise
 
 

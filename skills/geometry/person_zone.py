@@ -157,8 +157,7 @@ def body_parts(
     left, right = middle - aside, middle + aside
     between = (middle, low, level - dip)
     trunk = np.array(((left, hips, level), (left, low, level), between, (right, low, level), (right, hips, level)))
-    # as wide as the trunk: legs that lie flat spread a little, and a hand met the outside of a thigh with 296 N (166)
-    flat, spread = mattress + PERSON.leg_radius, PERSON.trunk_half_width * scale - PERSON.leg_radius
+    flat, spread = mattress + PERSON.leg_radius, PERSON.thigh_half_width * scale - PERSON.leg_radius
     left, right = middle - spread, middle + spread
     legs = np.array(((left, feet, flat), (left, hips, flat), (right, hips, flat), (right, feet, flat)))
     axis = mattress + PERSON.axis_height

@@ -114,7 +114,7 @@ def test_a_sleeve_that_pulls_back_is_drawn_no_farther_and_the_other_one_is():
 def test_a_miss_ends_with_the_hand_open_and_drawn_back():
     run = bench(cloth=HIDDEN)
     assert run.ended() == Reason.GRASP_MISSED
-    assert run.openings("left")[-1] == pytest.approx(0.035, abs=0.005)
+    assert run.openings("left")[-1] > 0.08
     assert run.way("left")[-1, 2] > SEAMS["left"][2] + 0.05  # [m]
 
 
@@ -131,7 +131,7 @@ def test_where_one_is_missed_the_other_is_drawn_all_the_same(missed):
     closed = run.way(other)[run.openings(other) < 0.005]
     assert (closed[-1] - SHOULDERS[other]) @ outwards(other) == pytest.approx(-0.07, abs=0.03)
     assert ((run.way(missed) - SHOULDERS[missed]) @ outwards(missed)).min() > 0.05, "that hand went nowhere else"
-    assert run.openings(missed)[-1] == pytest.approx(0.035, abs=0.005)
+    assert run.openings(missed)[-1] > 0.08
 
 
 @pytest.mark.parametrize("low", SIDES)

@@ -130,7 +130,7 @@ def test_a_miss_ends_with_the_hand_open_and_drawn_back():
     run = bench(cloth=HIDDEN)
     assert run.ended() == Reason.GRASP_MISSED
     assert run.openings("right").min() < 0.005
-    assert run.openings("right")[-1] == pytest.approx(0.035, abs=0.005)
+    assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] > HEIGHT + 0.05  # [m]
 
 

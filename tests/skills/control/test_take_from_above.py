@@ -66,5 +66,5 @@ def test_right_beside_the_person_the_way_down_is_slow():
 def test_a_miss_ends_open_and_drawn_back():
     run, failure = taken(PerceptionFailure(Problem.NOTHING_SEEN, "cloth"))
     assert failure == Reason.GRASP_MISSED
-    assert run.openings("right")[-1] == pytest.approx(0.035, abs=0.005)
+    assert run.openings("right")[-1] > 0.08
     assert run.way("right")[-1, 2] > PLACE[2] + 0.05  # [m]
