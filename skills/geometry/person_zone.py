@@ -157,7 +157,8 @@ def body_parts(
     left, right = middle - aside, middle + aside
     between = (middle, low, level - dip)
     trunk = np.array(((left, hips, level), (left, low, level), between, (right, low, level), (right, hips, level)))
-    flat, spread = mattress + PERSON.leg_radius, PERSON.thigh_half_width * scale - PERSON.leg_radius
+    flat = mattress + PERSON.leg_radius
+    spread = PERSON.thigh_half_width * max(scale, 1.0) - PERSON.leg_radius  # by a head that looks small, not narrower
     left, right = middle - spread, middle + spread
     legs = np.array(((left, feet, flat), (left, hips, flat), (right, hips, flat), (right, feet, flat)))
     axis = mattress + PERSON.axis_height

@@ -89,3 +89,10 @@ def test_a_held_arm_turns_about_its_shoulder_with_the_hand():
     zone.move_arm("right arm", np.array((0.0, 0.3, 0.0)))
     zone.move_arm("right arm", np.array((0.3, 0.0, 0.0)))
     assert zone.ends[zone.names.index("right arm"), 1] == pytest.approx((0.3, 0.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(("scale", "outside"), [(0.85, 0.185), (1.0, 0.185), (1.1, 0.2035)])
+def test_legs_that_lie_flat_end_beyond_the_thighs_of_people_of_any_size(scale, outside):
+    points, radius = body_parts(0.1, -0.9, 0.6, scale=scale)[LEGS]
+    assert points[:, 0].max() + radius - 0.1 == pytest.approx(outside, abs=0.001)  # [m] from the midline
+    assert 0.1 - points[:, 0].min() + radius == pytest.approx(outside, abs=0.001)
