@@ -11,7 +11,7 @@ begin from what the tree was between these two ticks.  Any other tree is followe
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, NamedTuple
@@ -27,7 +27,8 @@ from ...skills.core.reasons import Reason
 from ...skills.core.skill import Skill
 from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
-from .quick_nodes import REMEMBERING, quickened, remembers
+from .memory import Memory
+from .quick_nodes import quickened, remembers
 from .stub import KeyMissing, Stub
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
@@ -40,12 +41,6 @@ ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, wi
 
 # Nodes that go on with the child that runs and do nothing else in a tick, and so may be ticked once more.
 RESUMING = (FailSafe, RecoverBy, Retry, Stage, Timeout)
-# Attributes of every node that no tick changes, or that nobody reads again.
-FIXED = frozenset(vars(py_trees.behaviours.Success("any"))) - {"status", "feedback_message"} | {
-    "context",
-    "tick",
-    "stop",
-}
 
 
 class _Known(Exception):  # noqa: N818 ends an execution, no defect
@@ -60,14 +55,14 @@ class _Point(NamedTuple):
     """An execution between two ticks.
 
     Attributes:
-        states: of each node, what `_state_of` gave when it last changed; points share what has not changed.
+        number: by which the memory of the nodes knows it.
         board: keys written so far.
         time: of the clock [s].
         way: leaves and outcomes so far.
         moved: whether one of them moved the robot outside of a safe branch.
     """
 
-    states: list[Any]
+    number: int
     board: frozenset[str]
     time: float
     way: tuple[tuple[Stub, Any], ...]
@@ -116,12 +111,10 @@ class Explorer:
         self._options = {node: self._outcomes(node) for node in self._nodes if isinstance(node, Stub)}
         self._inner = [node for node in self._nodes if node not in self._options]
         self._forms = {node: _Form.of(node) for node in self._nodes}
-        self._place = {node: n for n, node in enumerate(self._nodes)}
-        self._states: list[Any] = [None] * len(self._nodes)  # of the nodes that have not changed since
-        self.changed.update(self._nodes)
         self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
         self._resumes = all(_resumes(node) for node in self._inner)
-        self._read = {leaf: self._read_from(leaf) for leaf in self._options}  # what nobody reads changes nothing
+        below = self._read_below()
+        self._read = {leaf: _read_from(leaf, below) for leaf in self._options}  # what nobody reads changes nothing
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._numbers: dict[Any, int] = {}  # of every situation
         self._seen: set[int] = set()
@@ -135,6 +128,8 @@ class Explorer:
         self._hung = False  # some leaf chose in this tick never to end
         for node in self._inner:
             self._watch(node)
+        self.changed.clear()
+        self._memory = Memory(self._nodes, self.changed)
         self._point = self._here()
         self._stack = [_Branch(self._point, [], ())]
 
@@ -247,11 +242,8 @@ class Explorer:
         node.tick, node.stop = ticked, stopped
 
     def _here(self) -> _Point:
-        for node in self.changed if self._resumes else self._nodes:
-            self._states[self._place[node]] = _state_of(node)
-        self.changed.clear()
         return _Point(
-            states=self._states.copy(),
+            number=self._memory.keep(),
             board=frozenset(self.board),
             time=self._clock.time,
             way=tuple(self._way),
@@ -260,16 +252,10 @@ class Explorer:
 
     def _go_to(self, branch: _Branch) -> None:
         point = branch.point
-        moved: Iterable[Behaviour] = self._nodes
-        if self._resumes:
-            if point is not self._point:
-                states = zip(self._nodes, self._states, point.states, strict=True)
-                self.changed.update([node for node, now, then in states if now is not then])
-            moved = self.changed
-        for node in moved:
-            _restore(node, point.states[self._place[node]])
-        self.changed.clear()
-        self._point, self._states = point, point.states.copy()
+        if not self._resumes:  # there may be nodes that nobody hears of
+            self.changed.update(self._nodes)
+        self._memory.go_back(point.number)
+        self._point = point
         self.board.clear()
         self.board |= point.board
         self._clock.time, self._way, self._moved = point.time, list(point.way), point.moved
@@ -297,21 +283,13 @@ class Explorer:
             return (*state, child, child and self._state(child, active))
         return (*state, *(self._state(child, active) for child in node.children))
 
-    @staticmethod
-    def _read_from(leaf: Stub) -> frozenset[str]:
-        """Keys that may be read from `leaf` on: by it, by what comes after it, and by all that is tried again."""
-        readers: list[Behaviour] = [leaf]
-        for above, child in _ancestors(leaf):
-            n = above.children.index(child)
-            if remembers(above) or type(above) is FailSafe:
-                readers += above.children[n + 1 :]
-            elif type(above) is Stage:  # the pre-condition stands after the body, and comes before it
-                readers += above.children[:n]
-            elif type(above) is not Timeout:
-                readers.append(above)
-        return frozenset(
-            key for top in readers for node in top.iterate() if isinstance(node, Stub) for key in node.reads
-        )
+    def _read_below(self) -> dict[Behaviour, frozenset[str]]:
+        """Keys that may be read at or below each node."""
+        below: dict[Behaviour, frozenset[str]] = {}
+        for node in self._nodes:  # children come before their parents
+            keys = node.reads if isinstance(node, Stub) else ()
+            below[node] = frozenset(keys).union(*(below[child] for child in node.children))
+        return below
 
     def _outcomes(self, stub: Stub) -> list[Any]:
         """True, then one reason for each way of reacting above, then `never` under a timeout."""
@@ -377,22 +355,18 @@ class _Form:
         )
 
 
-def _state_of(node: Behaviour) -> Any:
-    """All that a tick may change of a node."""
-    if type(node) is Stub:
-        return node.status, node.failure
-    if type(node) in REMEMBERING:
-        return node.status, node.current_child  # type: ignore[attr-defined]
-    return {name: value for name, value in vars(node).items() if name not in FIXED}
-
-
-def _restore(node: Behaviour, state: Any) -> None:
-    if type(node) is Stub:
-        node.status, node.failure = state
-    elif type(node) in REMEMBERING:
-        node.status, node.current_child = state  # type: ignore[attr-defined]
-    else:
-        vars(node).update(state)
+def _read_from(leaf: Stub, below: Mapping[Behaviour, frozenset[str]]) -> frozenset[str]:
+    """Keys that may be read from `leaf` on: by it, by what comes after it, and by all that is tried again."""
+    readers: list[Behaviour] = [leaf]
+    for above, child in _ancestors(leaf):
+        n = above.children.index(child)
+        if remembers(above) or type(above) is FailSafe:
+            readers += above.children[n + 1 :]
+        elif type(above) is Stage:  # the pre-condition stands after the body, and comes before it
+            readers += above.children[:n]
+        elif type(above) is not Timeout:
+            readers.append(above)
+    return frozenset().union(*(below[reader] for reader in readers))
 
 
 def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:
