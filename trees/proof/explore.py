@@ -28,7 +28,7 @@ from ...skills.core.skill import Skill
 from ..nodes.condition import Condition
 from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
 from .memory import Memory
-from .quick_nodes import quickened, remembers
+from .quick_nodes import RESUMING, quickened, quickened_wrapper, remembers
 from .stub import KeyMissing, Stub
 
 # What the guard or the world can do to any skill, whatever the skill says of itself.
@@ -37,10 +37,6 @@ OTHER = Reason.INTERNAL_ERROR  # stands for every reason that nobody reacts to
 TICKS_MAX = 2000
 FINDINGS_MAX = 20
 ATTEMPTS = 2  # followed of each retry: a third begins as the second one did, with the same data unset
-
-
-# Nodes that go on with the child that runs and do nothing else in a tick, and so may be ticked once more.
-RESUMING = (FailSafe, RecoverBy, Retry, Stage, Timeout)
 
 
 class _Known(Exception):  # noqa: N818 ends an execution, no defect
@@ -223,23 +219,14 @@ class Explorer:
         self.findings.append(f"{what}, after {more}{', '.join(steps) or 'nothing'}")
 
     def _watch(self, node: Behaviour) -> None:
-        """Hear of every tick and stop of a node: nothing else changes one, but for a stage that counts attempts."""
+        """Hear of every tick and stop of a node; nothing else changes one, but a stage that begins what it counts."""
+        change = partial(self.changed.add, node)
         if remembers(node):
-            node.tick, node.stop = quickened(node, partial(self.changed.add, node))  # type: ignore[arg-type,assignment]
-            return
-        counted = [below for below in node.iterate() if isinstance(below, (Retry, RecoverBy))]
-        changing = (node, *counted) if isinstance(node, Stage) else (node,)
-        change, tick, stop = self.changed.update, node.tick, node.stop
-
-        def ticked() -> Iterator[Behaviour]:
-            change(changing)
-            return tick()
-
-        def stopped(new_status: Status = Status.INVALID) -> None:
-            change(changing)
-            stop(new_status)
-
-        node.tick, node.stop = ticked, stopped
+            node.tick, node.stop = quickened(node, change)  # type: ignore[arg-type,assignment]
+        elif type(node) in RESUMING:
+            counted = [below for below in node.iterate() if isinstance(below, (Retry, RecoverBy))]
+            begin = partial(self.changed.update, (node, *counted)) if isinstance(node, Stage) else change
+            node.tick, node.stop = quickened_wrapper(node, begin, change)  # type: ignore[arg-type,assignment]
 
     def _here(self) -> _Point:
         return _Point(

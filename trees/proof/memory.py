@@ -24,7 +24,7 @@ class Memory:
     """Every node as it was at the last point, and what it takes to go back to an earlier one.
 
     A point keeps what those nodes were before it that had changed by then, so that points and ways back cost as much as
-    was changed, not as much as the tree is large.  No point is gone back to that does not lie on the way to the last one.
+    was changed, not as much as the tree is large.  Points that one can go back to lie on the way to the last one.
 
     Args:
         nodes: of the tree.

@@ -1,19 +1,23 @@
-"""Sequences and fallbacks of py_trees as they tick, without their log and without a generator for each.
+"""Inner nodes as they tick, without a log, without a generator for each and without an iterator after each stop.
 
-An exploration ticks little else.  Only nodes that remember which child runs are ticked like this.
+An exploration ticks little else.  Of py_trees' own only sequences and fallbacks that remember which child runs are
+ticked like this, of this project's those that go on with it and do nothing else in a tick.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
 import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from ..nodes.decorators import FailSafe, RecoverBy, Retry, Stage, Timeout, Wrapper
+
 RUNNING, SUCCESS, FAILURE, INVALID = Status.RUNNING, Status.SUCCESS, Status.FAILURE, Status.INVALID
 REMEMBERING = (py_trees.composites.Selector, py_trees.composites.Sequence)
+RESUMING = (FailSafe, RecoverBy, Retry, Stage, Timeout)
 
 Tick = Callable[[], Iterable[Behaviour]]
 Stop = Callable[..., None]
@@ -71,6 +75,52 @@ def quickened(node: py_trees.composites.Composite, change: Callable[[], None]) -
         return ()
 
     return (tick_selector if isinstance(node, py_trees.composites.Selector) else tick_sequence), stop
+
+
+def quickened_wrapper(node: Wrapper, begin: Callable[[], None], change: Callable[[], None]) -> tuple[Tick, Stop]:
+    """What `tick` and `stop` of one of the `RESUMING` do; the tick is over when it returns, and yields nothing.
+
+    Args:
+        node: of the tree.
+        begin: called before a tick with which the node begins.
+        change: called before the node changes otherwise.
+    """
+    children: list[Any] = node.children
+
+    def stop(new_status: Status = INVALID) -> None:
+        change()
+        for child in children:
+            if child.status is RUNNING:
+                child.stop(INVALID)
+        if new_status is INVALID:
+            node.current_child = None
+            _invalidate(children)
+        node.terminate(new_status)
+        node.status = new_status
+
+    def tick() -> Iterable[Behaviour]:
+        if node.status is RUNNING:
+            change()
+        else:
+            begin()
+            _invalidate(children)
+            node.failure, node.current_child = None, children[0]
+            node.initialise()
+        status = _end_of(node.advance())
+        if status is not RUNNING:
+            node.stop(status)
+        node.status = status
+        return ()
+
+    return tick, stop
+
+
+def _end_of(steps: Generator[Behaviour, None, Status]) -> Status:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
 
 
 def _invalidate(children: list[Any]) -> None:
