@@ -72,7 +72,7 @@ def story(seed, quick):
 
     root = random_tree(rng, 4, itertools.count(), asked)
     nodes = list(root.iterate())
-    clock = SimpleNamespace(now=lambda: time)
+    clock = SimpleNamespace(now=lambda: clock.time)
     changed = set()
     for node in nodes:
         if hasattr(node, "bind"):
@@ -84,7 +84,7 @@ def story(seed, quick):
             node.tick, node.stop = quickened_wrapper(
                 node, lambda counts=counts: changed.update(counts), lambda node=node: changed.add(node)
             )
-    for time in range(60):
+    for clock.time in range(60):
         before = [told_of(node) for node in nodes]
         changed.clear()
         if rng.random() < 0.1:
