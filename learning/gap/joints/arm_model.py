@@ -175,7 +175,12 @@ class ArmModel(RigidModel):
                 c = np.array([term.shape[f"com_{a}"] for a in "xyz"])
                 point = pin.Inertia(1.0, c, np.zeros((3, 3))).toDynamicParameters()
                 mix[4:, 0] = point[4:]
-        return self._regressor(q, dq, ddq)[:, :, 10 * (index - 1) : 10 * index] @ mix
+        return self.inertial_columns(term.target, q, dq, ddq) @ mix
+
+    def inertial_columns(self, body: str, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+        """Torque per unit of each of a body's ten inertial parameters, (T, n, 10), in pinocchio's order."""
+        index = self.model.getJointId(body)
+        return self._regressor(q, dq, ddq)[:, :, 10 * (index - 1) : 10 * index]
 
     def _regressor(self, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Joint loads per inertial parameter of every body along a motion, (T, n, 10 n).

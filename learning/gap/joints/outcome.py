@@ -43,6 +43,7 @@ class Outcome:
 
 
 REFIT_GAIN = 0.2  # part of what is left on held-out logs that other numbers for the same effects have to remove
+MET_ONCE = "repeat the motion: a contact with something in the way comes back at the same place"
 SIGNIFICANT = 0.01  # level of the test on leftovers, all channels together
 
 
@@ -337,7 +338,7 @@ def _contacts(found: list[Burst], joints: tuple[str, ...], unit: str) -> tuple[E
                         high=float(load.mean() + spread),
                     ),
                 ),
-                experiment="repeat the motion: a contact with something in the way comes back at the same place",
+                experiment=MET_ONCE,
             )
         )
     return tuple(out)

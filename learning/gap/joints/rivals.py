@@ -10,6 +10,7 @@ between the directions, in a log that never rests.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 import numpy as np
 from scipy.stats import chi2, norm
@@ -18,19 +19,22 @@ from .alternatives import SAME, forget
 from .block import Block
 from .log import JointLog
 from .search import Search, Set
+from .unsearched import Unsearched
 
 SWALLOWED = 0.05  # chance that noise alone gains as much as an effect that is told as perhaps swallowed
 HIDES = 1.0  # load over the noise from which on an effect that the log would not show is told
 TRIED = 6  # of the effects that could take the place of others, those that gain most
+PAIRED = 2  # and of those that could join it
 MOST = 6
 
 
-def rivals(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
+def rivals(search: Search, chosen: Set, others: Unsearched | None = None, most: int = MOST) -> list[Set]:
     """Other sets that fit as well, best first.
 
     Args:
         search: knows all blocks and how well any set of them fits.
         chosen: the named set.
+        others: logs that nothing was chosen on, where there are some.
         most: how many at most.
     """
     base, mine = _misfit(search, chosen), _named(search, chosen)
@@ -41,16 +45,35 @@ def rivals(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
             continue
         worse = _misfit(search, other) - base
         widest = max(float(search.widening[i]) for i in {*chosen, *other})
-        added = set(other) - set(chosen)
-        if set(chosen) < set(other):
-            numbers = sum(search.blocks[i].size for i in added)
+        numbers = _numbers(search, other) - _numbers(search, chosen)
+        if len(names) > len(mine) and numbers > 0:
             keep = -worse > chi2.isf(SWALLOWED, numbers) * widest
         else:
-            keep = worse < SAME * widest
+            keep = worse < SAME * widest or (others is not None and others.leaves_open(chosen, other, worse))
         score = search.score(other)
         if keep and (names not in found or score < found[names][0]):
             found[names] = (score, other)
+    found = {names: pair for names, pair in found.items() if not _padded(search, names, found)}
+    every = chosen if others is None else others.together(chosen)
+    if _named(search, every) not in (mine, frozenset()):
+        found[_named(search, every)] = (-np.inf, every)
     return [other for _, other in sorted(found.values(), key=lambda pair: pair[0])][:most]
+
+
+def _padded(
+    search: Search,
+    names: frozenset[tuple[str, str]],
+    found: dict[frozenset[tuple[str, str]], tuple[float, Set]],
+) -> bool:
+    """Whether a set is another one of those found and something that noise alone would gain as much with."""
+    other = found[names][1]
+    for less, (_, part) in found.items():
+        if less < names:
+            numbers = max(_numbers(search, other) - _numbers(search, part), 1)
+            widest = max(float(search.widening[i]) for i in {*other, *part})
+            if _misfit(search, part) - _misfit(search, other) < chi2.isf(SWALLOWED, numbers) * widest:
+                return True
+    return False
 
 
 def beside(search: Search, chosen: Set, most: int = MOST) -> list[Set]:
@@ -103,8 +126,13 @@ def _named(search: Search, chosen: Set) -> frozenset[tuple[str, str]]:
     return frozenset(search.blocks[i].key for i in chosen if not search.blocks[i].recalibration)
 
 
+def _numbers(search: Search, chosen: Set) -> int:
+    """How many numbers a set has."""
+    return sum(search.blocks[i].size for i in chosen)
+
+
 def _neighbours(search: Search, chosen: Set) -> Iterator[Set]:
-    """Sets with one or two members left out, one put in their place, or one more."""
+    """Sets with one or two members left out, one put in their place, or one more; one with two in its place."""
     dropped: list[Set] = [(), *((i,) for i in chosen)]
     dropped += [
         (i, j)
@@ -116,7 +144,10 @@ def _neighbours(search: Search, chosen: Set) -> Iterator[Set]:
         rest = tuple(i for i in chosen if i not in drop)
         if drop:
             yield rest
-        yield from _with_another(search, chosen, rest, drop)
+        for other in _with_another(search, chosen, rest, drop):
+            yield other
+            if len(drop) == 1:
+                yield from islice(_with_another(search, chosen, other, drop), PAIRED)
         yield from _other_forms(search, chosen, rest, drop)
     yield from _halves(search, chosen)
 

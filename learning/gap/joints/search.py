@@ -22,6 +22,7 @@ from .thresholds import ALPHA, CROSS, MATERIAL, SHARE
 
 Set = tuple[int, ...]
 COLLINEAR = 1e-5
+EQUAL_FRICTION = frozenset({"coulomb_friction", "stribeck_friction"})  # dry, the same in both directions
 
 
 @dataclass
@@ -278,15 +279,17 @@ class Search:
         return out + self._splits(chosen)
 
     def _splits(self, chosen: Set) -> list[tuple[float, Set, int | None]]:
-        """One into two, where one is nearly the sum of two others."""
+        """One into two, where one is nearly the sum of two others: unequal friction is dry friction and an offset."""
         out: list[tuple[float, Set, int | None]] = []
-        index = {b.key: i for i, b in enumerate(self.blocks) if not b.shape}
+        offsets = {b.target: i for i, b in enumerate(self.blocks) if b.name == "offset"}
         for i in chosen:
-            halves = [(n, self.blocks[i].target) for n in ("coulomb_friction", "offset")]
-            if self.blocks[i].name == "asymmetric_friction" and all(half in index for half in halves):
-                parts = [index[half] for half in halves]
-                new = (*(j for j in chosen if j not in (i, parts[1])), *parts)
-                out.append((self.score(new), new, parts[0]))
+            zero = offsets.get(self.blocks[i].target)
+            if self.blocks[i].name != "asymmetric_friction" or zero is None:
+                continue
+            rest = tuple(j for j in chosen if j not in (i, zero))
+            for k, block in enumerate(self.blocks):
+                if block.target == self.blocks[i].target and block.name in EQUAL_FRICTION:
+                    out.append((self.score((*rest, k, zero)), (*rest, k, zero), k))
         return out
 
 

@@ -23,13 +23,15 @@ from .intervals import Intervals, intervals, value_within
 from .localise import places
 from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
-from .outcome import Outcome, farther, inadequacy, judge, makes_worse, unexplained
+from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, makes_worse, unexplained
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .placebo import placebos
 from .rigid import RigidModel
 from .rivals import beside, determined, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
 from .search import Search
+from .solid import with_solid_body
+from .unsearched import Unsearched
 from .workflow import Named, explained, name_effects
 
 SHARED_OUT = "beside another effect that fits as well, any part of it may be that one's"
@@ -229,19 +231,28 @@ class JointStudy(Study):
         if self.outcome.verdict != "effects" or not self.named.chosen:
             return ()
         search, chosen, floor = self.named.search, self.named.chosen, self.named.noise.rms
-        out = []
-        for other in (*self._rival_sets, *beside(search, chosen, most=MOST_BESIDE)):
-            blocks = [search.blocks[i] for i in other if not search.blocks[i].recalibration]
-            text, apart = parting(search, chosen, other, self._motions, floor)
+        # a burst was met once, and beside an effect it may be no more than that one's form being a little wrong
+        bursts = tuple((e.name, e.target) for e in self.outcome.contacts)
+        named = tuple(b.key for b in self.named.blocks if not b.recalibration)
+        out = [Rival(effects=named, experiment=MET_ONCE)] if bursts and named else []
+        pairs = [(search, chosen, o) for o in (*self._rival_sets, *beside(search, chosen, most=MOST_BESIDE))]
+        if isinstance(self.model, ArmModel):
+            pairs = [*with_solid_body(search, chosen, self.model, self.fitted), *pairs]
+        for inside, first, other in pairs:
+            blocks = [inside.blocks[i] for i in other if not inside.blocks[i].recalibration]
+            text, apart = parting(inside, first, other, self._motions, floor)
             name = " + ".join(b.name for b in self.named.blocks)
             names = " + ".join(b.name for b in blocks)
-            out.append(Rival(effects=tuple(b.key for b in blocks), experiment=told_apart(text, name, names, apart)))
+            keys = tuple(dict.fromkeys([*(b.key for b in blocks), *bursts]))
+            if keys and frozenset(keys) not in {frozenset(r.effects) for r in out}:
+                out.append(Rival(effects=keys, experiment=told_apart(text, name, names, apart)))
         return tuple(out)
 
     @cached_property
     def _rival_sets(self) -> list[tuple[int, ...]]:
         """Other sets of the search's blocks that fit as well."""
-        return rivals(self.named.search, self.named.chosen)
+        n = self.named
+        return rivals(n.search, n.chosen, Unsearched(n.search, self.heldout))
 
     @cached_property
     def _motions(self) -> dict[str, JointLog]:

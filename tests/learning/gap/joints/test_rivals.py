@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 from caretree.learning.gap.joints.alternatives import experiments
 from caretree.learning.gap.joints.rivals import beside, determined, parting, rivals
@@ -59,3 +61,19 @@ def test_what_hides_beside_the_named_effects_is_told_and_nothing_else(axis_set):
     assert determined(search, unequal).all()
     assert not determined(search, (*unequal, at["offset"])).any()
     assert determined(search, viscous).all()
+
+
+def test_a_burst_beside_an_effect_may_be_that_effects_own_form(axis_set):
+    folder = axis_set(lambda q, v, a: 6.0 * v, noise=0.1)
+    data = np.loadtxt(folder / "e0.csv", delimiter=",", skiprows=1)
+    turns = np.flatnonzero(np.diff(np.sign(data[:, 2])))
+    a, b = max(pairwise(turns), key=lambda pair: pair[1] - pair[0])
+    middle = (a + b) // 2  # far from a reversal
+    data[middle - 20 : middle + 20, 3] += 1.5
+    np.savetxt(folder / "e0.csv", data, delimiter=",", header="t,q,dq,force", comments="")
+    study = open_study(load_set(folder))
+    assert {f.name for f in study.name()[1]} == {"viscous_friction", "contact"}
+    first, *others = study.rivals()
+    assert first.effects == (("viscous_friction", "axis"),)
+    assert "repeat the motion" in first.experiment
+    assert all(("contact", "axis") in r.effects for r in others)  # it is beside the other sets too

@@ -30,3 +30,10 @@ def test_on_another_residual_it_is_the_search_that_is_built_anew_for_it(search):
     assert np.array_equal(other.gains(chosen), anew.gains(chosen))
     assert other.held(chosen) == anew.held(chosen)
     assert search.score(search.run()) == before
+
+
+def test_unequal_friction_gives_way_to_one_that_falls_with_speed_and_an_offset(axis_set):
+    study = open_study(load_set(axis_set(lambda q, v, a: np.sign(v) * (1.0 + 3.0 * np.exp(-((v / 0.05) ** 2))) - 1.5)))
+    search = study.named.search
+    unequal = next(i for i, b in enumerate(search.blocks) if b.name == "asymmetric_friction")
+    assert {search.blocks[i].name for i in search.run((unequal,))} == {"stribeck_friction", "offset"}
