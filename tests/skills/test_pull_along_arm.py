@@ -80,6 +80,15 @@ def test_it_slows_down_under_load_and_gives_way_under_more():
     assert speed(yields) < -0.01  # [m/s]
 
 
+def test_a_sleeve_that_pulls_hard_by_the_shoulder_is_on_as_far_as_it_goes():
+    hard = bench(load=6.5, begin=0.6, goal=-0.5)  # [N]
+    assert hard.ended() is None
+    assert coordinates(hard)[-1] == pytest.approx(0.3, abs=0.05)
+    slides = bench(load=SLIDES, begin=0.6, goal=-0.5)
+    assert slides.ended() is None
+    assert coordinates(slides)[-1] < 0.0
+
+
 @pytest.mark.parametrize(("load", "reason"), [(6.0, Reason.SLEEVE_CAUGHT), (4.0, Reason.MOTION_BLOCKED)])
 def test_a_hand_that_stands_is_held_by_the_sleeve_or_by_something_else(load, reason):
     run = bench(load=load, deaf_to=(HandTwist,))
