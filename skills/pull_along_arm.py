@@ -144,8 +144,8 @@ class PullAlongArmTuning(Quantities):
         6.0,
         "N",
         "at which it ends there",
-        "measured: at 7.1 to 7.7 N 1 % of the gown's edges were stretched by 25 % and more (163, 165, 168), which ended "
-        "runs that were dressed otherwise; at 6 N by 19 to 24 %",
+        "measured: at 7.1 to 7.7 N 1 % of a gown's edges were stretched by 25 % and more (163, 165, 168), which "
+        "ended runs that were dressed otherwise; at 6 N by 19 to 24 %",
     )
     law: PullLaw = field(default_factory=PullLaw)
 
