@@ -6,6 +6,7 @@ A user's mistake is answered by one sentence and exit status 2.
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import importlib.util
 import io
@@ -38,6 +39,9 @@ FAULTS = (
 )
 IN_THE_RECORD = ""  # where --log is written if no file is given
 SHELLS = ("bash", "zsh")
+# Objects made until Python looks for circles among them, instead of 700: what a command loads is much and forms none
+# that end, and looking through it takes a tenth of a short command.
+MADE_UNTIL_LOOKED_THROUGH = 50_000
 EXTRAS = {"gap": "gap", "learn": "learn", "robot": "ros", "serve-robot": "ros"}  # of commands that need one
 DELEGATED = {"gap": "..learning.gap.cli", "learn": ".commands.learn"}
 
@@ -266,6 +270,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without an accent must not end a run
+    gc.set_threshold(MADE_UNTIL_LOOKED_THROUGH)
     given = list(sys.argv[1:] if argv is None else argv)
     return answered("caretree", lambda: _dispatch(given), extra=EXTRAS.get(given[0]) if given else None)
 
