@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from .candidates import Candidate, candidates
 from .catches import best_catch
-from .fitting import ClothFit, ClothFitter, ClothModel, Free, scaled
+from .fitting import ENOUGH, ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .patches import best_patch
 from .scene import ClothEpisode, ClothScene
@@ -27,6 +27,8 @@ HOPELESS = 3.0  # once one explains all, those screened this far off are not fit
 NUMBER = 10.0  # what a fitted number has to keep gaining to stay
 SPACING = 0.1  # between the instants a slip is screened at, over a recording's length
 SAME = 12.0  # criterion within which two explanations fit alike
+FINER = 0.1  # finite differences once a fit stands still, over those before
+MOST_BESIDE = 3  # effects told that may act beside the chosen ones
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +51,8 @@ class ClothSearch:
         before, after: shared and unshared parts of its residual and of the final one.
         rivals: per chosen candidate, other names that fitted as well.
         worth: independent samples.
+        weights: (columns,) one over the noise of each column.
+        beside: what gains more beside the chosen ones than noise would, and yet does not pay its price.
     """
 
     chosen: tuple[Candidate, ...]
@@ -58,6 +62,8 @@ class ClothSearch:
     after: Coherence
     rivals: dict[str, tuple[str, ...]]
     worth: float
+    weights: np.ndarray
+    beside: tuple[Candidate, ...] = ()
 
 
 def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]) -> ClothSearch:
@@ -97,6 +103,7 @@ class _Rounds:
         self._worth = self._rows / memory(self._plain.residuals)
         self._fit, self._chosen = self._start, list[Candidate]()
         self._rivals: dict[str, tuple[str, ...]] = {}
+        self._beside: tuple[Candidate, ...] = ()
 
     @property
     def more(self) -> bool:
@@ -124,8 +131,9 @@ class _Rounds:
         explained = self._start.rss * count / self._rows - top.fit.rss
         now = self._score(part, self._fit.model, count, len(pool))
         if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
+            self._beside = tuple(t.added for t in scored if self._gains(part, t))[:MOST_BESIDE]
             return False
-        polished = _polish(self._fitter, top.fit, [*self._chosen, top.added], self._scene)
+        polished = polish(self._fitter, top.fit, [*self._chosen, top.added], self._scene)
         after = self._coherence(polished)
         if drop < SHARE * explained and _shares(after):
             return False  # a large effect that is not quite right leaves something to mop up for any other
@@ -146,6 +154,8 @@ class _Rounds:
             after=self._coherence(fit),
             rivals=self._rivals,
             worth=self._worth,
+            weights=self._weights,
+            beside=self._beside,
         )
 
     def _coherence(self, fit: ClothFit) -> Coherence:
@@ -156,7 +166,7 @@ class _Rounds:
         with_bodies = self._fitter.residuals(replace(self._fit.model, carried=True))
         taken = {c.name for c in self._chosen}
         every = candidates(self._scene, self._episodes, with_bodies)
-        return [c for c in every if c.name not in taken and not _clash(c.name, taken)]
+        return [c for c in every if c.name not in taken and not clash(c.name, taken)]
 
     def _verified(self, pool: list[Candidate], part: ClothFit) -> list[tuple[Candidate, ClothFit]]:
         """The best screened candidates, each fitted beside what is chosen.
@@ -176,13 +186,18 @@ class _Rounds:
             least = min((f.rss for _, f in verified), default=0.0) * seen.rss / max(part.rss, 1e-30)
             if done and left[c.name] > max(HOPELESS * least, 0.25 * seen.rss):
                 continue
-            begun = _begun(self._some, self._fit.model, c, part.rss)
-            joined = self._some.fit(begun, _steps([*self._chosen, c]), rounds=1 if done else 2)
+            first = begun(self._some, self._fit.model, c, part.rss)
+            joined = self._some.fit(first, steps_of([*self._chosen, c]), rounds=1 if done else 2)
             done = done or not _shares(self._coherence(joined))
             part_left = np.sqrt(joined.rss / max(part.rss, 1e-30))
             self._say(f"  {k + 1}/{VERIFIED} {c.name}: {part_left:.3f} of the residual left")
             verified.append((c, joined))
         return verified
+
+    def _gains(self, part: ClothFit, tried: Tried) -> bool:
+        """Whether a hypothesis that does not pay its price gains more than noise alone would."""
+        gained = self._worth * np.log(part.rss / tried.fit.rss)
+        return not tried.added.recalibration and gained > chi2.isf(ALPHA, len(tried.added.start.free))
 
     def _score(self, fit: ClothFit, model: ClothModel, count: int, tried: int) -> float:
         """The criterion, smaller is better: misfit over `count` samples, and the price of a model among `tried`."""
@@ -208,7 +223,8 @@ def _weights(fitter: ClothFitter, markers: int) -> np.ndarray:
     return out
 
 
-def _clash(name: str, taken: set[str]) -> bool:
+def clash(name: str, taken: set[str]) -> bool:
+    """Whether a hypothesis and one of those taken are the same load."""
     return (name == "added_mass" and "mass" in taken) or (name == "mass" and "added_mass" in taken)
 
 
@@ -216,7 +232,8 @@ def _price(tried: int, model: ClothModel) -> float:
     return float(chi2.isf(ALPHA / max(tried, 1), 1)) * len(model.free)
 
 
-def _steps(chosen: list[Candidate]) -> dict[Free, float]:
+def steps_of(chosen: list[Candidate]) -> dict[Free, float]:
+    """Finite difference of every number of some candidates."""
     return {f: s for c in chosen for f, s in c.steps.items()}
 
 
@@ -234,7 +251,7 @@ def _screen(
             model = fit.model.joined(c.start.moved({f: c.push.value(f)}))
             runs += [(e, model.acting, model.physics) for e in fitter.episodes]
     sim.ahead(runs)
-    own = [fitter.columns(fit.model, fit.residuals, _steps(chosen))] if chosen and fit.model.free else []
+    own = [fitter.columns(fit.model, fit.residuals, steps_of(chosen))] if chosen and fit.model.free else []
     scored = []
     for c in pool:
         base = fit.model.joined(c.start)
@@ -270,7 +287,7 @@ def _screen(
     return list(firsts.values()), lefts
 
 
-def _begun(fitter: ClothFitter, model: ClothModel, c: Candidate, limit: float) -> ClothModel:
+def begun(fitter: ClothFitter, model: ClothModel, c: Candidate, limit: float) -> ClothModel:
     """The model with a candidate at the size screened, or at less where so much of it is worse than none."""
     tried = model.joined(c.push)
     for factor in (0.3, 0.1):
@@ -294,22 +311,33 @@ def _slipped(fitter: ClothFitter, fit: ClothFit, away: float) -> ClothFit:
     return fit
 
 
-def _polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
+def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
     """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
     last = chosen[-1]
     seen = fitter.residuals(fit.model)  # it was verified on fewer recordings
     fit = replace(fit, residuals=seen, rss=fitter.rss(seen))
     if last.name == "added_mass":
-        fit = best_patch(fitter, fit, scene, _steps(chosen))
+        fit = best_patch(fitter, fit, scene, steps_of(chosen))
     if last.name == "snag":
-        fit = best_catch(fitter, fit, scene, _steps(chosen))
+        fit = best_catch(fitter, fit, scene, steps_of(chosen))
     if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
         fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
     if last.name == "strain_stiffening":  # from which stretch on
         free = (*fit.model.free, ("strain_stiffening", "onset"))
-        bent = fitter.fit(replace(fit.model, free=free), {**_steps(chosen), ("strain_stiffening", "onset"): 0.02}, 4)
+        steps = {**steps_of(chosen), ("strain_stiffening", "onset"): 0.02}
+        bent = fitter.fit(replace(fit.model, free=free), steps, 4)
         fit = replace(bent, model=replace(bent.model, free=fit.model.free))
-    return fitter.fit(fit.model, _steps(chosen), rounds=3)
+    return settled(fitter, fitter.fit(fit.model, steps_of(chosen), rounds=3), chosen)
+
+
+def settled(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate]) -> ClothFit:
+    """The fit gone on with where smaller finite differences help it: beside its best values cloth bends within a step.
+
+    A step is what matters while a size is looked for; near the end its differences point past the best values, and what
+    is left there looks like another effect.
+    """
+    fine = fitter.fit(fit.model, {f: FINER * s for f, s in steps_of(chosen).items()}, rounds=5)
+    return fine if fine.rss < (1.0 - ENOUGH) * fit.rss else fit
 
 
 def _prune(
@@ -321,7 +349,7 @@ def _prune(
         changed = False
         for c in list(chosen):
             rest = [x for x in chosen if x is not c]
-            without = fitter.fit(fit.model.without(c.name), _steps(rest), rounds=2)
+            without = settled(fitter, fitter.fit(fit.model.without(c.name), steps_of(rest), rounds=2), rest)
             if (
                 worth * np.log(without.rss / fit.rss) < NUMBER * len(c.start.free)
                 or without.rss - fit.rss < MATERIAL * fit.rss

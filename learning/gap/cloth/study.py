@@ -12,12 +12,13 @@ import numpy as np
 
 from ....sim.effects.cloth.cloth_registry import CLOTH_EFFECTS
 from ..errors import GapError
-from ..findings import EffectFinding, Gap, Placebo, Value, VerdictName, Where
+from ..findings import EffectFinding, Gap, Placebo, Rival, Value, VerdictName, Where
 from ..measurement import MeasurementSet
 from ..pictures import Curve
 from ..regions import phase_of, scan
 from ..study import Study
 from .candidates import Candidate
+from .equals import Equals, equals
 from .experiment import separating
 from .fitting import ClothFitter, ClothModel, predict, scaled
 from .noise import coherence, load_misfit, neighbours
@@ -31,6 +32,7 @@ STRETCHES = 6  # per recording, resampled for the confidence
 TRIED = "the best of the values tried, not fitted with the others, so it has no interval"
 ALONE = "it rests on one coordinate of one marker, so nothing is known of how sure it is"
 SLOW = 0.8  # [s] for one run
+MORE = "record more of the same motions: the effect in which the two differ is near what these can show"
 UNITS = {"mass": "kg", "elastic_stiffness": "N/m", "damping_stiffness": "N s/m", "bending_stiffness": "N/m"}
 
 
@@ -218,7 +220,7 @@ class ClothStudy(Study):
             size = float(np.sqrt(own) / f.after.floor)
             # the criterion grows with the square of the size, so what would just have paid follows from what was gained
             gained = f.worth * np.log(max(_mean2(without, self), 1e-30) / max(_mean2(f.fit.residuals, self), 1e-30))
-            rivals = f.rivals.get(c.name, ())
+            rivals = self.equals.instead.get(c.name, ()) if self.equals else f.rivals.get(c.name, ())
             finding = EffectFinding(
                 name=c.name,
                 target=c.target,
@@ -238,6 +240,21 @@ class ClothStudy(Study):
         if self.verdict == "unknown" and not self._rejected:
             guess = _shape_of(f.fit.residuals, self.fitted, len(self.scene.markers))
         return self.verdict, tuple(effects), tuple(recalibration), guess
+
+    @cached_property
+    def equals(self) -> Equals | None:
+        """What cannot be told from the named effects; None where none are named for sure."""
+        if self.verdict != "effects":
+            return None
+        return equals(self.sim, self.scene, self.fitted, self.heldout, self.found)
+
+    def rivals(self) -> tuple[Rival, ...]:
+        """See `Study.rivals`."""
+        if self.equals is None:
+            return ()
+        named = tuple((c.name, c.target) for c in self.found.chosen if not c.recalibration)
+        more = ((*named, (c.name, c.target)) for c in self.found.beside)
+        return tuple(Rival(effects=names, experiment=MORE) for names in (*self.equals.sets, *more))
 
     def _kept(self, without: list[np.ndarray], c: Candidate) -> float:
         """Part of resampled stretches in which a candidate keeps paying its price."""

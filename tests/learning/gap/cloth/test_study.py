@@ -46,6 +46,7 @@ def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth
         after=calm,
         rivals={},
         worth=100.0,
+        weights=np.ones(18),
     )
     assert study.verdict == verdict
 
@@ -69,6 +70,7 @@ def test_what_makes_the_held_out_recording_worse_is_never_found(cloth_set, monke
         after=calm,
         rivals={},
         worth=100.0,
+        weights=np.ones(18),
     )
     monkeypatch.setattr(study.sim, "ahead", lambda runs: None)
     monkeypatch.setattr(

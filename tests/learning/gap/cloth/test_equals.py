@@ -1,0 +1,85 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from caretree.learning.gap.cloth.candidates import candidates
+from caretree.learning.gap.cloth.equals import equals
+from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
+from caretree.learning.gap.cloth.noise import coherence, neighbours
+from caretree.learning.gap.cloth.scene import read_scene
+from caretree.learning.gap.cloth.search import ClothSearch, steps_of
+from caretree.learning.gap.cloth.simulate import READING, SIZES
+from caretree.learning.gap.measurement import load_set
+
+NOISE = 1e-3
+ALIKE = {"wind": "tilted_gravity", "x": "towards_x", "y": "towards_y"}  # what does the same here
+UNIT = {"tilted_gravity": 0.03, "offset": 0.003, "delay": 0.01}  # a size that moves the markers by `NOISE`
+
+
+class Straight:
+    """A cloth that moves in proportion to every number of every effect, each number in a pattern of its own."""
+
+    def __init__(self, rows):
+        self.rows = rows
+
+    def pattern(self, effect, parameter):
+        key = [ord(x) for x in ALIKE.get(effect, effect) + ALIKE.get(parameter, parameter)]
+        return NOISE * np.random.default_rng(key).normal(size=(self.rows, 18))
+
+    def run(self, episode, effects=(), physics=None):
+        out = np.zeros((self.rows, 18))
+        for e in effects:
+            for p, x in e.parameters.items():
+                if p in SIZES.get(e.name, ()) or e.name in READING:
+                    out += x / UNIT.get(e.name, 1.0) * self.pattern(e.name, p)
+        for p, x in (physics or {}).items():
+            out += x * self.pattern("physics", p)
+        return out
+
+    def ahead(self, wanted):
+        pass
+
+
+@pytest.fixture
+def exchanged(cloth_set):
+    """What is equal to tilted gravity and a delay of some size, hidden in two recordings, the second held out."""
+    scene, episodes = read_scene(load_set(cloth_set))
+    sim = Straight(len(episodes[0].t))
+
+    def make(delays):
+        told = []
+        for k, (e, delay) in enumerate(zip(episodes, delays, strict=True)):
+            seen = 2.0 * sim.pattern("tilted_gravity", "towards_x") + delay * sim.pattern("delay", "time")
+            seen = seen + NOISE * np.random.default_rng([5, k]).normal(size=seen.shape)
+            told.append(replace(e, markers=seen[:, :15].reshape(len(seen), 5, 3), load=seen[:, 15:]))
+        fitted, heldout = told[:1], told[1:]
+        fitter = ClothFitter(sim, fitted, np.full(18, 1.0 / NOISE))
+        plain = fitter.fit(ClothModel(), {})
+        pool = {c.name: c for c in candidates(scene, fitted, plain.residuals)}
+        chosen = (pool["tilted_gravity"], pool["delay"])
+        fit = fitter.fit(chosen[0].start.joined(chosen[1].start), steps_of(list(chosen)))
+        calm = coherence(fit.residuals, neighbours(scene.vertices[list(scene.markers)]), 5)
+        found = ClothSearch(
+            chosen=chosen,
+            fit=fit,
+            plain=plain,
+            before=calm,
+            after=calm,
+            rivals={},
+            worth=float(plain.residuals[0].size),
+            weights=fitter.weights,
+        )
+        return equals(sim, scene, fitted, heldout, found)
+
+    return make
+
+
+def test_what_does_the_same_is_told_and_nothing_else(exchanged):
+    found = exchanged((2.0, 2.0))
+    assert found.instead == {"tilted_gravity": ("wind",), "delay": ()}
+    assert found.sets == ()
+
+
+@pytest.mark.parametrize(("held_out", "sets"), [(0.0, ((("tilted_gravity", "cloth"),),)), (0.35, ())])
+def test_what_only_the_fitted_recordings_have_may_not_be_there(exchanged, held_out, sets):
+    assert exchanged((0.16, held_out)).sets == sets
