@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.cloth.candidates import Candidate
+from caretree.learning.gap.cloth.equals import Equals
 from caretree.learning.gap.cloth.fitting import ClothFit, ClothModel
 from caretree.learning.gap.cloth.noise import Coherence
 from caretree.learning.gap.cloth.search import ClothSearch
@@ -81,3 +82,31 @@ def test_what_makes_the_held_out_recording_worse_is_never_found(cloth_set, monke
     assert (study.verdict == "recalibration") == believed
     assert bool(study.found.chosen) == believed
     assert study.found.fit.model.physics == ({"elastic_stiffness": 40.0} if believed else {})
+
+
+def test_whole_sets_that_fit_as_well_are_told(cloth_set):
+    study = open_study(load_set(cloth_set))
+    effects = {
+        name: Candidate(name=name, target="cloth", start=ClothModel(), push=ClothModel(), steps={})
+        for name in ("wind", "offset", "delay")
+    }
+    nothing = ClothFit(model=ClothModel(), rss=1.0, residuals=[], half=np.ones(0))
+    calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
+    study.__dict__["found"] = ClothSearch(
+        chosen=(effects["wind"], effects["offset"]),
+        fit=nothing,
+        plain=nothing,
+        before=calm,
+        after=calm,
+        rivals={},
+        worth=100.0,
+        weights=np.ones(18),
+        beside=(effects["delay"],),
+    )
+    study.__dict__["verdict"] = "effects"
+    study.__dict__["equals"] = Equals(instead={}, sets=((("wind", "cloth"),),))
+    told = [{name for name, _ in r.effects} for r in study.rivals()]
+    assert told == [{"wind"}, {"wind", "offset", "delay"}]
+    assert all(r.experiment for r in study.rivals())
+    study.__dict__["equals"] = None  # nothing is sure enough to have equals
+    assert study.rivals() == ()
