@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -68,12 +69,15 @@ class HeldNeckline:
         """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the `way` there, turned anyhow.
 
         The height is that of the near end; the far one is lower by `far_lower`, as long as it is above `level_from`.
+        They are `apart` along the neckline: as far apart across the bed, the one end lower, they stretched it by 0.1 m,
+        and the cloth by a quarter (173).
 
         Raises:
             MotionError: out of reach, or something is in the way.
         """
-        tuning, half = self.tuning, self.apart / 2
+        tuning = self.tuning
         heights = (z, min(z, max(z - tuning.far_lower, tuning.level_from)))
+        half = math.sqrt(max(self.apart**2 - (heights[0] - heights[1]) ** 2, 0.0)) / 2
         goals: dict[Side, np.ndarray] = {}
         for side, sign, height in zip((NEAR_HAND, FAR_HAND), (1.0, -1.0), heights, strict=True):
             pose = hand_now(self.skill, side)

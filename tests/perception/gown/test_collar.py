@@ -1,10 +1,13 @@
 """Corners and middle of the neck binding."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
 from caretree.perception.gown.collar import DEFAULT, collar_middle, corner_candidates, hidden_at, slices_across
 from caretree.perception.gown.gown_facts import GOWN
+from caretree.perception.image.projection import points_in_map
 
 
 def corner_places(scene):
@@ -121,6 +124,18 @@ def test_tape_that_hardly_shows_still_reaches_its_neighbours():
     seen = (points[:, 0] < 0.15) | (points[:, 0] > 0.25)
     _, lengths = slices_across(points[seen], 0.3 * areas[seen], points[seen, 0], DEFAULT)
     assert lengths.sum() == pytest.approx(0.4, abs=0.03)
+
+
+def test_tape_that_is_folded_under_does_not_show(scenes):
+    scene = scenes.lying(1)
+    middle = corner_places(scene).mean(axis=0)
+    frame = scene.frame()
+    whole = collar_middle(frame, middle)
+    points = points_in_map(frame)
+    under = np.abs(points[..., 0] - whole.position_in_map[0]) < 0.08
+    rest = collar_middle(replace(frame, depth=np.where(under, 0.0, frame.depth)), middle)
+    assert rest.confidence == pytest.approx(whole.confidence - 0.10 / GOWN.neckline_length, abs=0.05)
+    assert rest.position_in_map[0] == pytest.approx(whole.position_in_map[0], abs=0.03)
 
 
 def test_no_neckline_far_from_the_person(scenes):

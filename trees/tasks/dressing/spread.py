@@ -51,13 +51,15 @@ NEAT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_h
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    From beside the bed the robot sees that both arms lie, and in the end that they are inside their sleeves.  The gown
-    is put straight from its head, from where both hands reach both shoulders and the whole collar shows.
+    From beside the bed the robot sees that the arm that was dressed last lies, and in the end that both do, inside
+    their sleeves.  The gown is put straight from its head, from where both hands reach both shoulders and the whole
+    collar shows.
     """
     bed = Scope(context, "gown")
     return timed_stage(
         "spread",
-        *(patient(bed, arm_lies(context, side)) for side in SIDES),
+        patient(bed, arm_lies(context, "left")),
+        right_from_head(context, bed),
         Navigate("go round to the head", bed, goal="bed_head"),
         surely_neat(context, bed),
         patient(bed, chest_looks_right(context)),
@@ -90,6 +92,18 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
     )
     later = back_off("leave it for now", arm, DRESSING.back_off_distance)
     return fallback(f"the {side} arm lies, or later", lies, later)
+
+
+def right_from_head(context: Context, bed: Scope) -> Behaviour:
+    """See from the head of the bed, which is next anyhow, that the first sleeve is up its arm; else go beside it.
+
+    The way round the foot of the bed to it takes half a minute, and 5 of 7 first sleeves were up far enough (166 to
+    171).
+    """
+    arm = arm_scope(context, "from head", "right")
+    up = CheckSleeve("up by now", arm, min_reach=DRESSING.armhole_slipped, must_show=True, tuning=FROM_HEAD)
+    seen = sequence("seen up from the head", *go_to_head(arm), LookAtPerson("look", arm), patient(arm, up))
+    return fallback("the right arm, or from beside it", seen, patient(bed, arm_lies(context, "right")))
 
 
 def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
