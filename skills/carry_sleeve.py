@@ -218,7 +218,7 @@ class CarrySleeve(Skill):
         tuning = self.tuning
         inwards = outwards(self.side) * (-1.0 if self.own_side else 1.0)
         for depth, lean in product(tuning.depths, tuning.leans):
-            approach = -np.cos(lean) * UP + np.sin(lean) * inwards
+            approach = -math.cos(lean) * UP + math.sin(lean) * inwards
             closing = sleeve.closing_in_map - (sleeve.closing_in_map @ approach) * approach
             if np.linalg.norm(closing) < tuning.min_across:
                 closing = HEADWARD

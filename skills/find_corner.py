@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -117,7 +118,7 @@ class FindCorner(Skill):
         waypoints = self.world.room.waypoints
         sides = sorted(
             (name for name in ("rail", "rail_back") if name in waypoints),
-            key=lambda name: -np.cos(waypoints[name][2] - yaw),
+            key=lambda name: -math.cos(waypoints[name][2] - yaw),
         )
         tried = self.context.memory.of(Tried, Tried).corners
         last = tried[-1] if tried else None
@@ -197,7 +198,7 @@ class FindCorner(Skill):
     def _stand(self, hook: GraspPoint, yaw: float) -> Generator[None, None, tuple[GraspPoint, Frame]]:
         """Step to where the hook is straight ahead at heading `yaw` [rad]; the hook, and the frame seen from there."""
         tuning = self.tuning
-        goal = np.append(hook.position_in_map[:2] - tuning.distance * np.array((np.cos(yaw), np.sin(yaw))), yaw)
+        goal = np.append(hook.position_in_map[:2] - tuning.distance * np.array((math.cos(yaw), math.sin(yaw))), yaw)
         if np.linalg.norm(goal - self.world.observe().pose_base_in_map) > tuning.tolerance:
             yield from drive_to(self, goal, straight=True)
         frame = self.world.look("head")

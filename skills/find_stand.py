@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -108,7 +109,7 @@ class FindStand(Skill):
         end[:3, 3] = shoulder + np.linalg.norm(held - shoulder) * up
         lifts = [over_arm(posture, lift.grip_coordinate, lift=lift.approach_height), end]
         views = strap_views(self.world.robot, sleeve, self.side, self.pulling, bed)
-        approach = -np.cos(tuning.grasp_tilt) * outwards(self.side) - np.sin(tuning.grasp_tilt) * UP
+        approach = -math.cos(tuning.grasp_tilt) * outwards(self.side) - math.sin(tuning.grasp_tilt) * UP
         strap = strap_position(sleeve) - tuning.grasp_height * approach
         grasps = [hand_pose(strap, approach, turn * sleeve.closing_in_map) for turn in (1.0, -1.0)]
         for pose in lifts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
@@ -262,6 +263,6 @@ def lifted(posture: ArmPosture, side: Side, goal: LiftGoal) -> np.ndarray:
     """
     path = ArmPath.of(posture)
     now = unit(path.point(goal.grip_coordinate) - path.points[0])
-    up = np.arcsin(now[2]) + max(goal.pitch - path.pitch, 0.0)
-    aside = max(float(np.arctan2(now @ outwards(side), now @ -HEADWARD)), goal.spread)
-    return np.cos(up) * (np.sin(aside) * outwards(side) - np.cos(aside) * HEADWARD) + np.sin(up) * UP
+    up = math.asin(now[2]) + max(goal.pitch - path.pitch, 0.0)
+    aside = max(math.atan2(now @ outwards(side), now @ -HEADWARD), goal.spread)
+    return math.cos(up) * (math.sin(aside) * outwards(side) - math.cos(aside) * HEADWARD) + math.sin(up) * UP

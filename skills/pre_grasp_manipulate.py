@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import product
@@ -175,7 +176,7 @@ class PreGraspManipulate(Skill):
 
     def _angle(self, pose: np.ndarray) -> float:
         """The turn about the vertical of a presented hand at a pose (4, 4) in the map [rad]."""
-        angle = np.arctan2(-pose[0, 1], pose[1, 1]) - self.world.observe().pose_base_in_map[2]
+        angle = math.atan2(-pose[0, 1], pose[1, 1]) - self.world.observe().pose_base_in_map[2]
         return float(np.clip((angle + np.pi) % (2 * np.pi) - np.pi, -HOLD_UP.max_turn, HOLD_UP.max_turn))
 
     def _towards(self, hand: Side, views: Views, chosen: PreGrasp) -> PreGrasp:
@@ -189,7 +190,7 @@ class PreGraspManipulate(Skill):
         for pitch, turn in product(tuning.approach_pitches, tuning.approach_angles):
             rotation = planar_pose(np.array((0.0, 0.0, turn if hand == "right" else -turn)))[:3, :3]
             sweep, level = rotation @ chosen.sweep_in_map, rotation @ chosen.approach_in_map
-            approach = np.cos(pitch) * level - np.sin(pitch) * UP
+            approach = math.cos(pitch) * level - math.sin(pitch) * UP
             turned = replace(
                 chosen, approach_in_map=approach, sweep_in_map=sweep, position_in_map=chosen.corner_in_map - sweep
             )

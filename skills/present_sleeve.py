@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 
@@ -243,8 +244,8 @@ class PresentSleeve(Skill):
             f"{self.min_cuff_distance * 100:.0f} cm are asked for",
         )
         aside = float(seen.cuff_from_armhole_in_map @ np.cross(UP, heading))
-        points = np.hypot(aside, beyond) > self.tuning.min_pointing
-        return _Folded(failure, -float(np.arctan2(aside, beyond)) if points else 0.0)
+        points = math.hypot(aside, beyond) > self.tuning.min_pointing
+        return _Folded(failure, -math.atan2(aside, beyond) if points else 0.0)
 
     def _armhole_shows(self) -> bool:
         """Whether either camera that steers a pull sees the armhole."""

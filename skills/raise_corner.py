@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -98,7 +99,7 @@ class RaiseCorner(Skill):
             tries = Tries(MotionError)
             for share in tuning.angle_shares:
                 angle = share * self.angle if rise > 0.0 else 0.0
-                aside = np.cos(angle) * sideways + np.sin(angle) * base[:, 0]
+                aside = math.cos(angle) * sideways + math.sin(angle) * base[:, 0]
                 pose[:3, 3] = hook + level * aside + rise * base[:, 2]
                 with tries:
                     yield from self._carry(pose)

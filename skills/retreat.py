@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -74,7 +75,7 @@ class Retreat(Skill):
             yield from open_gripper(self, side)
         if self.base_distance > 0.0:
             x, y, yaw = self.world.observe().pose_base_in_map
-            goal = np.array((x - self.base_distance * np.cos(yaw), y - self.base_distance * np.sin(yaw), yaw))
+            goal = np.array((x - self.base_distance * math.cos(yaw), y - self.base_distance * math.sin(yaw), yaw))
             yield from drive_to(self, goal, straight=True, speed=tuning.base_speed, retreat=True)
         if ready:
             speed = careful(self, tuning.ready_speed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -254,7 +255,7 @@ class SeatSleeves(Skill):
         self.note(f"takes the seam over the {side} shoulder")
         outward, tries = outwards(side), Tries(MotionError)
         for lean in self.tuning.leans:
-            leaning = replace(seam, approach_in_map=-np.cos(lean) * UP - np.sin(lean) * outward)
+            leaning = replace(seam, approach_in_map=-math.cos(lean) * UP - math.sin(lean) * outward)
             with tries:
                 yield from take_from_above(self, side, leaning, outward, self.tuning.grasp)
                 return

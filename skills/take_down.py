@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -73,7 +74,9 @@ class TakeDown(Skill):
             goals = {}
             for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
                 pose = hand_now(self, side)
-                pose[:3, 3] = hook + reach[side] * (sign * np.cos(angle) * base[:3, 1] + np.sin(angle) * base[:3, 2])
+                pose[:3, 3] = hook + reach[side] * (
+                    sign * math.cos(angle) * base[:3, 1] + math.sin(angle) * base[:3, 2]
+                )
                 goals[side] = pose
             yield from move_hands(self, goals, speed=tuning.speed, free="any", way="either")
             yield from self.wait(tuning.weighing_time)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,5 +63,5 @@ def folded_cloth(frame: Frame, tuning: FoldedClothTuning = DEFAULT) -> GraspPoin
         target="near_hang",
         position_in_map=np.array((x, y, high - tuning.depth)),
         approach_in_map=DOWN.copy(),
-        closing_in_map=np.array((np.cos(short), np.sin(short), 0.0)),
+        closing_in_map=np.array((math.cos(short), math.sin(short), 0.0)),
     )

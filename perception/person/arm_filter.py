@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,7 +91,7 @@ class ArmFilter:
         if step <= 0:
             return
         self.time = time
-        fade = float(np.exp(-step / decay))
+        fade = math.exp(-step / decay)
         travel = decay * (1 - fade)
         transition = np.eye(2 * _JOINTS)
         transition[:_JOINTS, _JOINTS:] = travel * np.eye(_JOINTS)

@@ -9,6 +9,7 @@ Gauss-Newton matrix at the end is the covariance, so an unobserved joint says so
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -144,7 +145,7 @@ def turned(points: np.ndarray, about: np.ndarray, before: np.ndarray, after: np.
     """Points (n, 3) turned about a point (3,) the shortest way from where `before` (3,) lies to where `after` does."""
     start, end = unit(before - about), unit(after - about)
     axis = cross(start, end)
-    turn = turn_matrix(unit(axis) * np.arctan2(np.linalg.norm(axis), start @ end))
+    turn = turn_matrix(unit(axis) * math.atan2(np.linalg.norm(axis), start @ end))
     return about + (points - about) @ turn.T
 
 

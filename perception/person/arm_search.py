@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -138,9 +139,9 @@ def find_arm(
 
 def _posture(shoulder: np.ndarray, side: Side, scale: float, pitch: float, abduction: float, bend: float) -> np.ndarray:
     """Joints (4, 3) of an arm raised by `pitch`, its forearm turned towards the body by `bend` [rad]."""
-    flat, up, sign = np.cos(pitch), np.sin(pitch), side_sign(side)
-    upper = np.array((sign * flat * np.sin(abduction), flat * np.cos(abduction), up))
-    fore = np.array((sign * flat * np.sin(abduction - bend), flat * np.cos(abduction - bend), up))
+    flat, up, sign = math.cos(pitch), math.sin(pitch), side_sign(side)
+    upper = np.array((sign * flat * math.sin(abduction), flat * math.cos(abduction), up))
+    fore = np.array((sign * flat * math.sin(abduction - bend), flat * math.cos(abduction - bend), up))
     lengths = np.array(PERSON.arm_lengths) * scale
     elbow = shoulder + lengths[0] * upper
     wrist = elbow + lengths[1] * fore

@@ -7,6 +7,7 @@ the lengths of the limb, by its last motion, which dies out, and by the gripper 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -249,7 +250,7 @@ class ArmTracker:
             raise PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
         return ArmPosture(
             stamp=self._filter.time,
-            confidence=float(np.exp(-deviation.max() / self._tuning.confident_deviation)),
+            confidence=math.exp(-deviation.max() / self._tuning.confident_deviation),
             side=self.side,
             points_in_map=self._filter.joints,
             deviation=deviation,

@@ -7,6 +7,8 @@ robot.  A gripper's gear does not give: what pushes a finger pushes the hand.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..mechanics.capsules import RobotCapsules
@@ -135,7 +137,7 @@ class Contact:
             for n, hand in enumerate(self._hand):
                 force, point = self._force[hand[self._pushed]], self._point[hand[self._pushed]]
                 now[n] = (*force.sum(axis=0), *np.cross(point, force).sum(axis=0))
-            self._felt += (1.0 - np.exp((self._felt_at - time) / SENSOR_TIME)) * (now - self._felt)
+            self._felt += (1.0 - math.exp((self._felt_at - time) / SENSOR_TIME)) * (now - self._felt)
             self._felt[np.abs(self._felt) < 1e-3] = 0.0
             self._feels = bool(self._felt.any())
         self._felt_at = time

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -38,8 +39,8 @@ class Gown:
     ) -> None:
         turn = np.array(
             (
-                (np.cos(scene.hang_yaw), -np.sin(scene.hang_yaw), 0.0),
-                (np.sin(scene.hang_yaw), np.cos(scene.hang_yaw), 0.0),
+                (math.cos(scene.hang_yaw), -math.sin(scene.hang_yaw), 0.0),
+                (math.sin(scene.hang_yaw), math.cos(scene.hang_yaw), 0.0),
                 (0.0, 0.0, 1.0),
             )
         )

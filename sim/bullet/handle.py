@@ -7,6 +7,7 @@ read in the cloth itself (`Cloth.load`).
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -147,10 +148,10 @@ def roll_pitch_yaw(turn: np.ndarray) -> tuple[float, float, float]:
 
     A hand that comes in level has its x axis upright, where roll and yaw turn about the same axis: roll is then 0.
     """
-    pitch = float(np.arctan2(-turn[2, 0], np.hypot(turn[2, 1], turn[2, 2])))
-    if np.hypot(turn[2, 1], turn[2, 2]) < _UPRIGHT:
-        return 0.0, pitch, float(np.arctan2(-turn[0, 1], turn[1, 1]))
-    return float(np.arctan2(turn[2, 1], turn[2, 2])), pitch, float(np.arctan2(turn[1, 0], turn[0, 0]))
+    pitch = math.atan2(-turn[2, 0], math.hypot(turn[2, 1], turn[2, 2]))
+    if math.hypot(turn[2, 1], turn[2, 2]) < _UPRIGHT:
+        return 0.0, pitch, math.atan2(-turn[0, 1], turn[1, 1])
+    return math.atan2(turn[2, 1], turn[2, 2]), pitch, math.atan2(turn[1, 0], turn[0, 0])
 
 
 def _urdf(fingers: str = "") -> str:

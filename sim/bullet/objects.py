@@ -6,6 +6,7 @@ between its fingers only (an assumption named in docs/assumptions.md).
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
@@ -94,7 +95,7 @@ class RoomObjects:
             self._hooks[item.name] = Hook(self._client, cloth, place, nearest)
 
     def _add_rigid(self, item: Box | MeshObject | UrdfObject) -> None:
-        c, turn = self._client, [0.0, 0.0, np.sin(item.yaw / 2), np.cos(item.yaw / 2)]
+        c, turn = self._client, [0.0, 0.0, math.sin(item.yaw / 2), math.cos(item.yaw / 2)]
         if isinstance(item, UrdfObject):
             body, fixed = self._load_urdf(item, turn), item.fixed
         else:
@@ -212,7 +213,7 @@ class RoomObjects:
                 hook.watch(duration, held.get(cloth.body, ()), cloth.vertices())
         if self._moving:
             now = np.linalg.norm(self._pressing(), axis=1)
-            self.part_force += (1.0 - np.exp(-duration / SENSED)) * (now - self.part_force)
+            self.part_force += (1.0 - math.exp(-duration / SENSED)) * (now - self.part_force)
 
     def _pressing(self) -> np.ndarray:
         """(k, 3) force of rigid objects on each of `PERSON_PARTS` in this step [N]."""

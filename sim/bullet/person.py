@@ -8,6 +8,7 @@ gravity, an arm that nobody holds falls onto bed or trunk.  Sizes, masses and wh
 
 from __future__ import annotations
 
+import math
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -280,7 +281,7 @@ def _along(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, float, list[float]
     """Middle, length and roll-pitch-yaw that turn a capsule along z into the one from a to b."""
     d = b - a
     length = float(np.linalg.norm(d))
-    return (a + b) / 2, length, [0.0, float(np.arccos(d[2] / length)), float(np.arctan2(d[1], d[0]))]
+    return (a + b) / 2, length, [0.0, math.acos(d[2] / length), math.atan2(d[1], d[0])]
 
 
 def _capsule(link: ET.Element, a: Any, b: Any, radius: float) -> None:

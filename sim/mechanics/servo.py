@@ -6,6 +6,7 @@ PyBullet, in a scripted world and in a test.  Call `advance` every `PERIOD` of t
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,7 +101,7 @@ class Servo:
             return sent
         if isinstance(command, BaseVelocity):
             wanted = np.array(command.velocity, float)
-            speed = float(np.hypot(*wanted[:2]))
+            speed = math.hypot(*wanted[:2])
             wanted[:2] *= min(1.0, self._moved.base_velocity[0] / max(speed, 1e-9))
             wanted[2] = np.clip(wanted[2], -self._moved.base_velocity[1], self._moved.base_velocity[1])
             self._base_wanted, self._base_until = wanted, self._time + command.duration
@@ -152,13 +153,13 @@ class Servo:
         if not (wanted.any() or self.twist_base.any()):
             return
         change = wanted - self.twist_base
-        length = float(np.hypot(*change[:2]))
+        length = math.hypot(*change[:2])
         change[:2] *= min(1.0, self._moved.base_acceleration[0] * PERIOD / max(length, 1e-12))
         turn = self._moved.base_acceleration[1] * PERIOD
         change[2] = min(max(change[2], -turn), turn)
         self.twist_base = self.twist_base + change
         yaw = self.pose_base_in_map[2] + 0.5 * self.twist_base[2] * PERIOD
-        c, s = np.cos(yaw), np.sin(yaw)
+        c, s = math.cos(yaw), math.sin(yaw)
         vx, vy, rate = self.twist_base
         self.pose_base_in_map = self.pose_base_in_map + PERIOD * np.array((c * vx - s * vy, s * vx + c * vy, rate))
 

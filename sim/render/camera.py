@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -26,7 +27,7 @@ HEAD_SIZE = CAMERA_VIEWS["head"][0]
 def intrinsics_of(size: tuple[int, int], field_of_view: float = FIELD_OF_VIEW) -> tuple[float, float, float, float]:
     """Pinhole parameters (fx, fy, cx, cy) [px] for square pixels and a horizontal `field_of_view` [rad]."""
     width, height = size
-    focal = width / 2 / np.tan(field_of_view / 2)
+    focal = width / 2 / math.tan(field_of_view / 2)
     return float(focal), float(focal), (width - 1) / 2, (height - 1) / 2
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -175,7 +176,7 @@ class RobotBody:
         q, dq, _, torque = zip(*self._client.getJointStates(self.body, self._joints), strict=True)
         arms = np.array((q, dq, torque))[:, self._arms].reshape(3, 2, -1)
         yaw = q[2]
-        c, s = float(np.cos(yaw)), float(np.sin(yaw))
+        c, s = math.cos(yaw), math.sin(yaw)
         opening, squeeze = np.empty(2), np.empty(2)
         told, limit = self.servo.gripper_opening, self.servo.gripper_force_limit
         for n, one in enumerate((-4, -2)):
@@ -246,7 +247,7 @@ class RobotBody:
     def _targets(self) -> tuple[np.ndarray, np.ndarray]:
         """Motor targets of all joints and their rates, at the middle of the coming control period."""
         servo = self.servo
-        c, s = np.cos(servo.pose_base_in_map[2]), np.sin(servo.pose_base_in_map[2])
+        c, s = math.cos(servo.pose_base_in_map[2]), math.sin(servo.pose_base_in_map[2])
         vx, vy, rate = servo.twist_base
         base_rate = np.array((c * vx - s * vy, s * vx + c * vy, rate))
         position = np.concatenate((servo.pose_base_in_map, servo.positions, self._fingers))

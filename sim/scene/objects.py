@@ -9,6 +9,7 @@ A world that can hold them is `SupportsObjects` (`sim/abilities.py`).
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -233,5 +234,5 @@ def placed(spec: Sheet, vertices: np.ndarray) -> np.ndarray:
         across, up = vertices[:, 0], -vertices[:, 1]
         at = (spec.hung_by[0] - 0.5) * spec.size[0], (0.5 - spec.hung_by[1]) * spec.size[1]
         local = np.column_stack((across - at[0], np.zeros(len(vertices)), up - at[1]))
-    c, s = np.cos(spec.yaw), np.sin(spec.yaw)
+    c, s = math.cos(spec.yaw), math.sin(spec.yaw)
     return local @ np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))).T + spec.position_in_map

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -57,6 +58,6 @@ def _reflected(values: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 
 
 def _turned(command: HandTwist, yaw: float) -> HandTwist:
-    c, s = np.cos(yaw), np.sin(yaw)
+    c, s = math.cos(yaw), math.sin(yaw)
     turn = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
     return replace(command, twist_in_map=(command.twist_in_map.reshape(2, 3) @ turn.T).ravel())

@@ -222,8 +222,8 @@ def strap_views(
     to_strap = tuning.armhole_to_strap * HEADWARD
     camera, side_on = camera_in_hand(robot, hand), np.cross(UP, outwards(side))
     for turn, tilt in product(tuning.turns, tuning.hanging_tilts if hangs else tuning.lying_tilts):
-        towards_robot = np.cos(turn) * outwards(side) + np.sin(turn) * side_on
-        pose = hand_pose(np.zeros(3), -np.cos(tilt) * towards_robot - np.sin(tilt) * UP, to_strap)
+        towards_robot = math.cos(turn) * outwards(side) + math.sin(turn) * side_on
+        pose = hand_pose(np.zeros(3), -math.cos(tilt) * towards_robot - math.sin(tilt) * UP, to_strap)
         if (pose[:3, :3] @ camera[:3, 2]) @ towards_robot > pose[:3, 2] @ towards_robot:
             pose = half_turned(pose)  # the camera's side of the hand towards the robot
         pose[:3, 3] = far.position_in_map + to_strap - pose[:3, :3] @ (camera[:3, 3] + distance * camera[:3, 2])

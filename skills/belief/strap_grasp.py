@@ -229,8 +229,8 @@ def _approaches(strap: SleeveOpening, arm: Side, tuning: StrapGraspTuning) -> li
     flat = strap.approach_in_map * (1.0, 1.0, 0.0)
     heading = unit(flat) if np.linalg.norm(flat) > tuning.min_level and flat @ towards_bed > 0.0 else towards_bed
     side = np.cross(UP, towards_bed)
-    turn = np.clip(np.arctan2(heading @ side, heading @ towards_bed), -tuning.max_turn, tuning.max_turn)
-    heading = np.cos(turn) * towards_bed + np.sin(turn) * side
-    square = float(np.arctan2(-strap.approach_in_map[2], max(float(strap.approach_in_map @ heading), 1e-6)))
+    turn = np.clip(math.atan2(heading @ side, heading @ towards_bed), -tuning.max_turn, tuning.max_turn)
+    heading = math.cos(turn) * towards_bed + math.sin(turn) * side
+    square = float(math.atan2(-strap.approach_in_map[2], max(float(strap.approach_in_map @ heading), 1e-6)))
     tilts = sorted(tuning.tilts, key=lambda tilt: abs(tilt - square))
-    return [np.cos(tilt) * heading - np.sin(tilt) * UP for tilt in tilts]
+    return [math.cos(tilt) * heading - math.sin(tilt) * UP for tilt in tilts]

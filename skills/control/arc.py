@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -63,7 +64,7 @@ class Arc:
         arm = np.asarray(start, float) - self._shoulder
         self.radius = float(np.linalg.norm(arm))
         self._first = arm / self.radius
-        self.angle = float(np.arccos(np.clip(self._first @ goal, -1.0, 1.0)))
+        self.angle = math.acos(np.clip(self._first @ goal, -1.0, 1.0))
         across = np.cross(self._first, goal)
         self.axis = unit(across if np.linalg.norm(across) > 1e-9 else np.cross(self._first, UP))
         self.offset = np.zeros(3)
@@ -82,8 +83,8 @@ class Arc:
     def _directions(self, swung: float) -> tuple[np.ndarray, np.ndarray]:
         """Unit vectors (3,) along the arm and along the swing."""
         onwards = np.cross(self.axis, self._first)
-        arm = np.cos(swung) * self._first + np.sin(swung) * onwards
-        return arm, -np.sin(swung) * self._first + np.cos(swung) * onwards
+        arm = math.cos(swung) * self._first + math.sin(swung) * onwards
+        return arm, -math.sin(swung) * self._first + math.cos(swung) * onwards
 
     def _radius_at(self, swung: float) -> float:
         return self.radius + self._growth * swung

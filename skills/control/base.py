@@ -10,6 +10,7 @@ Loads on the hands still count: the guard stops the base when the cloth pulls to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -121,7 +122,7 @@ def drive_to(
         if straight or any(skill.context.guard.grip(side) != "nothing" for side in SIDES):
             raise
         x, y, yaw = skill.world.observe().pose_base_in_map
-        back = np.array((x - tuning.wide * np.cos(yaw), y - tuning.wide * np.sin(yaw), yaw))
+        back = np.array((x - tuning.wide * math.cos(yaw), y - tuning.wide * math.sin(yaw), yaw))
         yield from drive_to(skill, back, straight=True, speed=speed, retreat=True, tuning=tuning)
         yield from drive()
     yield from skill.wait(tuning.settle_time)

@@ -6,6 +6,7 @@ and with 45 N above it.  A hand that gives way soon enough to the one swings aga
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -73,6 +74,6 @@ class GiveWay:
                 self._speed = max(tuning.back * self._speed, tuning.least)
                 self._pulls.clear()
             else:
-                self._speed = min(self._speed * float(np.exp(tuning.growth * step)), tuning.most)
+                self._speed = min(self._speed * math.exp(tuning.growth * step), tuning.most)
             self._pulls.append(np.array(pull, float))
         return self._speed * pull

@@ -6,6 +6,7 @@ yield from pan_head(self, 0.0)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -95,7 +96,7 @@ def _bearing(skill: Skill, point_in_map: np.ndarray) -> float:
     seen = skill.world.observe()
     x, y, yaw = seen.pose_base_in_map
     neck = planar_pose(seen.pose_base_in_map)[:3, :3] @ skill.world.robot.neck_in_base + (x, y, 0.0)
-    wanted = np.arctan2(point_in_map[1] - neck[1], point_in_map[0] - neck[0]) - yaw
+    wanted = math.atan2(point_in_map[1] - neck[1], point_in_map[0] - neck[0]) - yaw
     return float((wanted + np.pi) % (2 * np.pi) - np.pi)
 
 

@@ -119,7 +119,7 @@ def plan_turn(
 def turned_by(robot: RobotModel, side: Side, q: np.ndarray, *, tuning: HoldUpTuning = HOLD_UP) -> float | None:
     """By how much the hand of an arm (n,) [rad] is turned [rad], or None when it is not held up."""
     pose = kinematics_of(robot).pose_hand_in_base(side, q)
-    angle = float(np.arctan2(-pose[0, 1], pose[1, 1]))
+    angle = math.atan2(-pose[0, 1], pose[1, 1])
     if abs(angle) > tuning.max_turn + tuning.turn_tolerance:
         return None
     angle = float(np.clip(angle, -tuning.max_turn, tuning.max_turn))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -134,12 +135,12 @@ def resting_place(
     shoulder = path.points[0]
     wrist, held = path.points[2] - shoulder, path.point(coordinate) - shoulder
     room = 0.5 * (bed[1, 0] - bed[0, 0]) - tuning.edge - (shoulder - bed.mean(axis=0)) @ outwards(side)
-    widest = np.arcsin(np.clip(room / np.linalg.norm(wrist), 0.0, 1.0))
-    wide, heading = (float(np.arctan2(arm @ outwards(side), arm @ -HEADWARD)) for arm in (wrist, held))
+    widest = math.asin(np.clip(room / np.linalg.norm(wrist), 0.0, 1.0))
+    wide, heading = (math.atan2(arm @ outwards(side), arm @ -HEADWARD) for arm in (wrist, held))
     heading -= max(wide - float(widest), 0.0)
     reach = float(np.linalg.norm(held))
     rise = float(np.clip(bed[1, 2] + tuning.rest_height - shoulder[2], -0.9 * reach, 0.9 * reach))
-    level = np.sin(heading) * outwards(side) - np.cos(heading) * HEADWARD
+    level = math.sin(heading) * outwards(side) - math.cos(heading) * HEADWARD
     return shoulder + np.sqrt(reach**2 - rise**2) * level + rise * UP
 
 

@@ -147,7 +147,7 @@ def grasp_poses(
     across = np.cross(approach, closing)
     tries = Tries(Unreachable)
     for roll in tuning.rolls:
-        turned = np.cos(roll) * closing + np.sin(roll) * across
+        turned = math.cos(roll) * closing + math.sin(roll) * across
         before = hand_pose(position - standoff * approach, approach, turned)
         inside = hand_pose(position + depth * approach, approach, turned)
         with tries:

@@ -143,13 +143,13 @@ class ArmPath:
     @property
     def bend(self) -> float:
         """Angle of the elbow, 0 for a straight arm [rad]."""
-        return float(np.arccos(np.clip(self._directions[0] @ self._directions[1], -1.0, 1.0)))
+        return math.acos(np.clip(self._directions[0] @ self._directions[1], -1.0, 1.0))
 
     @property
     def pitch(self) -> float:
         """Angle of the whole arm above the horizontal, shoulder to fingertip [rad]."""
         whole = self.points[3] - self.points[0]
-        return float(np.arcsin(whole[2] / np.linalg.norm(whole)))
+        return math.asin(whole[2] / np.linalg.norm(whole))
 
 
 def _segment(coordinate: float) -> int:

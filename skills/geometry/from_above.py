@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...perception.image.cloud import unit
@@ -19,5 +21,5 @@ def from_above(approach: np.ndarray, outward: np.ndarray, max_tilt: float) -> np
     lean = approach + UP * max(-float(approach @ UP), 0.0)  # the horizontal part
     if lean @ outward > 0.0:
         lean = lean - (lean @ outward) * outward
-    angle = min(float(np.arctan2(np.linalg.norm(lean), max(-float(approach[2]), 1e-6))), max_tilt)
-    return -np.cos(angle) * UP + np.sin(angle) * (unit(lean) if np.linalg.norm(lean) > 1e-6 else np.zeros(3))
+    angle = min(float(math.atan2(np.linalg.norm(lean), max(-float(approach[2]), 1e-6))), max_tilt)
+    return -math.cos(angle) * UP + math.sin(angle) * (unit(lean) if np.linalg.norm(lean) > 1e-6 else np.zeros(3))

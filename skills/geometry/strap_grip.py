@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,14 +63,14 @@ def presenting(
             fingertips' side, so that the sleeve falls outwards, ahead of the hand that comes through it.
     """
     heading = unit(np.asarray(along_in_map, float) * (1.0, 1.0, 0.0))
-    approach = -np.cos(lean) * UP - np.sin(lean) * heading
-    across = -np.cos(lean) * heading + np.sin(lean) * UP
+    approach = -math.cos(lean) * UP - math.sin(lean) * heading
+    across = -math.cos(lean) * heading + math.sin(lean) * UP
     # x and y of the hand turn about its approach so that the strap's `across_in_hand` comes to lie along `across`
     beside = np.cross(approach, across)
-    turn = np.arctan2(grip.across_in_hand[1], grip.across_in_hand[0])
+    turn = math.atan2(grip.across_in_hand[1], grip.across_in_hand[0])
     pose = np.eye(4)
-    pose[:3, 0] = np.cos(turn) * across - np.sin(turn) * beside
-    pose[:3, 1] = np.sin(turn) * across + np.cos(turn) * beside
+    pose[:3, 0] = math.cos(turn) * across - math.sin(turn) * beside
+    pose[:3, 1] = math.sin(turn) * across + math.cos(turn) * beside
     pose[:3, 2] = approach
     pose[:3, 3] = position_in_map
     return pose

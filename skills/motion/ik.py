@@ -6,6 +6,7 @@ where they approach.  `free` names the hand axis about which the solver may turn
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -250,7 +251,7 @@ def _error(pose: pin.SE3, target: pin.SE3, free: FreeAxis) -> np.ndarray:
         product, cosine = cross(axis, wanted), float(wanted[k])
         sine = length(product)
         if sine > 1e-9:
-            error[3:] = product / sine * np.arctan2(sine, cosine)
+            error[3:] = product / sine * math.atan2(sine, cosine)
         elif cosine < 0.0:  # exactly opposite: turn about any other axis
             error[3] = np.pi
     return error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -236,7 +237,7 @@ def _subdivide(points: np.ndarray, spacing: float) -> np.ndarray:
 
 def _line_points(start: np.ndarray, goal: np.ndarray, tuning: ReachTuning) -> int:
     """Steps of a straight line between two poses (4, 4)."""
-    angle = np.arccos(np.clip((np.trace(start[:3, :3].T @ goal[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
+    angle = math.acos(np.clip((np.trace(start[:3, :3].T @ goal[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
     distance = np.linalg.norm(goal[:3, 3] - start[:3, 3])
     return max(1, int(np.ceil(max(distance / tuning.line_step, angle / tuning.line_turn))))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 
@@ -92,7 +93,7 @@ class TakeEdge(Skill):
         tuning, tries = self.tuning, Tries(MotionError)
         for inset in tuning.insets:
             for lean in tuning.leans:
-                approach = -np.cos(lean) * UP - np.sin(lean) * outwards(self.side)
+                approach = -math.cos(lean) * UP - math.sin(lean) * outwards(self.side)
                 place = edge + (0.0, inset, 0.0)
                 with tries:
                     yield from reach_in(

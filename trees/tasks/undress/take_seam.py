@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
@@ -86,7 +87,7 @@ class TakeSeam(Skill):
         """Leaning towards the robot as far as the arm reaches it that way."""
         outward, tries = outwards(self.side), Tries(MotionError)
         for lean in self.tuning.leans:
-            leaning = replace(seam, approach_in_map=-np.cos(lean) * UP - np.sin(lean) * outward)
+            leaning = replace(seam, approach_in_map=-math.cos(lean) * UP - math.sin(lean) * outward)
             with tries:
                 yield from take_from_above(self, self.hand, leaning, outward, self.tuning.grasp)
                 return
