@@ -220,7 +220,7 @@ class ClothStudy(Study):
             size = float(np.sqrt(own) / f.after.floor)
             # the criterion grows with the square of the size, so what would just have paid follows from what was gained
             gained = f.worth * np.log(max(_mean2(without, self), 1e-30) / max(_mean2(f.fit.residuals, self), 1e-30))
-            rivals = self.equals.instead.get(c.name, ()) if self.equals else f.rivals.get(c.name, ())
+            rivals = self._instead(c)
             finding = EffectFinding(
                 name=c.name,
                 target=c.target,
@@ -240,6 +240,11 @@ class ClothStudy(Study):
         if self.verdict == "unknown" and not self._rejected:
             guess = _shape_of(f.fit.residuals, self.fitted, len(self.scene.markers))
         return self.verdict, tuple(effects), tuple(recalibration), guess
+
+    def _instead(self, c: Candidate) -> tuple[str, ...]:
+        """What could stand in for a candidate; where nothing is named for sure, what fitted alike in its round."""
+        alike = self.found.rivals if self.equals is None else self.equals.instead
+        return alike.get(c.name, ())
 
     @cached_property
     def equals(self) -> Equals | None:

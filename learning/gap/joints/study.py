@@ -25,13 +25,12 @@ from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
 from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, makes_worse, unexplained
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
+from .payloads.solid import with_solid_body
 from .placebo import placebos
 from .rigid import RigidModel
-from .rivals import beside, determined, parting, rivals
+from .rivals import Unsearched, beside, determined, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
 from .search import Search
-from .solid import with_solid_body
-from .unsearched import Unsearched
 from .workflow import Named, explained, name_effects
 
 SHARED_OUT = "beside another effect that fits as well, any part of it may be that one's"

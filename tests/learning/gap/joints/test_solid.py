@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import yaml
-from caretree.learning.gap.joints.solid import with_solid_body
+from caretree.learning.gap.joints.payloads.solid import with_solid_body
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 

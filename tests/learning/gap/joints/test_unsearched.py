@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from caretree.learning.gap.joints.rivals import rivals
-from caretree.learning.gap.joints.unsearched import Unsearched
+from caretree.learning.gap.joints.rivals import Unsearched, rivals
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 

@@ -13,13 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....sim.effects.effect import Parameter
-from .alternatives import SAME
-from .arm_model import ArmModel
-from .block import Block
-from .gram import assemble
-from .log import JointLog
-from .search import Search, Set
+from .....sim.effects.effect import Parameter
+from ..alternatives import SAME
+from ..arm_model import ArmModel
+from ..block import Block
+from ..gram import assemble
+from ..log import JointLog
+from ..search import Search, Set
 
 BODIES = frozenset({"payload", "wrong_tool"})
 INERTIA = ("ixx", "ixy", "iyy", "ixz", "iyz", "izz")
