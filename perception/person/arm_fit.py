@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...sim.mechanics.turns import turn_matrix
 from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross
 from ..image.cloud import unit
@@ -143,10 +142,12 @@ def turned_about_shoulder(joints: np.ndarray, arm_coordinate: float, point: np.n
 
 def turned(points: np.ndarray, about: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
     """Points (n, 3) turned about a point (3,) the shortest way from where `before` (3,) lies to where `after` does."""
+    from scipy.spatial.transform import Rotation
+
     start, end = unit(before - about), unit(after - about)
     axis = cross(start, end)
-    turn = turn_matrix(unit(axis) * math.atan2(np.linalg.norm(axis), start @ end))
-    return about + (points - about) @ turn.T
+    turn = Rotation.from_rotvec(unit(axis) * math.atan2(np.linalg.norm(axis), start @ end))
+    return about + turn.apply(points - about)
 
 
 def nearest_on_chain(points: np.ndarray, joints: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, ...]:

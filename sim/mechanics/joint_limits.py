@@ -74,22 +74,11 @@ class JointLimits:
 
 
 def smooth_slopes(times: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Speeds (k, m) at the points of a path (k, m), without overshoot and at rest at both ends [rad/s].
+    """Speeds (k, m) at the points of a path (k, m), without overshoot and at rest at both ends [rad/s]."""
+    from scipy.interpolate import PchipInterpolator
 
-    Raises:
-        ValueError: times that do not increase, or points that are not finite.
-    """
     slopes = np.zeros_like(positions)
-    steps = np.diff(times)[:, None]
-    if not ((steps > 0.0).all() and np.isfinite(positions).all()):
-        raise ValueError("a path has finite points, each later than the one before")
-    mean = np.diff(positions, axis=0) / steps
-    before, after = mean[:-1], mean[1:]
-    on = np.sign(before) * np.sign(after) > 0.0  # else it turns round there, or stands
-    weights = 2 * steps[1:] + steps[:-1], steps[1:] + 2 * steps[:-1]  # scipy's `PchipInterpolator`, to the last bit
-    with np.errstate(divide="ignore", invalid="ignore"):
-        harmonic = 1.0 / ((weights[0] / before + weights[1] / after) / (weights[0] + weights[1]))
-    slopes[1:-1][on] = harmonic[on]
+    slopes[1:-1] = PchipInterpolator(times, positions).c[2, 1:]  # the spline in powers of the time since a point
     return slopes
 
 

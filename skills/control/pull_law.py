@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...perception.image.cloud import unit
-from ...sim.mechanics.turns import turn_vector
 from ...sim.quantity import Quantities, quantity
 from ..geometry.arm_path import ArmPath
 
@@ -70,5 +69,7 @@ class PullLaw(Quantities):
 
     def turn(self, wanted: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Angular velocity (3,) from one orientation (4, 4) to another [rad/s]."""
-        rate = self.turning * turn_vector(wanted[:3, :3] @ pose[:3, :3].T)
+        from scipy.spatial.transform import Rotation
+
+        rate = self.turning * Rotation.from_matrix(wanted[:3, :3] @ pose[:3, :3].T).as_rotvec()
         return rate * min(1.0, self.turn_speed / max(float(np.linalg.norm(rate)), 1e-9))

@@ -58,10 +58,12 @@ def plan_path(room: RoomMap, start: np.ndarray, goal: np.ndarray, *, tuning: Pat
     Raises:
         PathBlocked: the goal is not free, or walled off, or the start is nowhere near free space.
     """
+    from scipy.ndimage import distance_transform_edt
+
     start, goal = np.asarray(start, float)[:2], np.asarray(goal, float)[:2]
     if not is_free(room, goal):
         raise PathBlocked(f"the base cannot stand at {np.round(goal, 2).tolist()} m: the map has an obstacle there")
-    clearance = np.sqrt(_squares_to_obstacle(room.free)) * room.resolution
+    clearance = np.asarray(distance_transform_edt(np.pad(room.free, 1)))[1:-1, 1:-1] * room.resolution
     cost = 1.0 + tuning.comfort_cost * np.clip(1.0 - clearance / tuning.comfort, 0.0, 1.0)
     cells = _astar(room.free, cost, _nearest_free(room, start, tuning.snap), _cell(room, goal))
     if cells is None:
@@ -96,31 +98,6 @@ def _nearest_free(room: RoomMap, position: np.ndarray, snap: float) -> tuple[int
         raise PathBlocked(f"the base at {np.round(position, 2).tolist()} m is over {snap} m from any free space")
     row, column = cells[int(distance.argmin())]
     return int(row), int(column)
-
-
-@njit()
-def _squares_to_obstacle(free: np.ndarray) -> np.ndarray:
-    """Square of the distance, in cells, from each cell to the nearest that is not free; none beyond the map is."""
-    rows, columns = free.shape
-    along = np.zeros((rows, columns + 2), np.int64)  # distance within its column, and a column beyond at both sides
-    for c in range(columns):
-        for r in range(rows):
-            along[r, c + 1] = along[r - 1, c + 1] + 1 if free[r, c] and r > 0 else (1 if free[r, c] else 0)
-        for r in range(rows - 1, -1, -1):
-            below = along[r + 1, c + 1] if r + 1 < rows else 0
-            along[r, c + 1] = min(along[r, c + 1], below + 1)
-    squares = np.empty(free.shape, np.int64)
-    for r in range(rows):
-        for c in range(1, columns + 1):
-            nearest = along[r, c] * along[r, c]
-            aside = 1
-            while aside * aside < nearest:
-                for other in (c - aside, c + aside):
-                    if 0 <= other <= columns + 1:
-                        nearest = min(nearest, aside * aside + along[r, other] * along[r, other])
-                aside += 1
-            squares[r, c - 1] = nearest
-    return squares
 
 
 def _astar(

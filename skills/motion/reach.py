@@ -11,7 +11,6 @@ import numpy as np
 
 from ...sim.mechanics.collision import CollisionChecker
 from ...sim.mechanics.kinematics import Kinematics
-from ...sim.mechanics.turns import turn_matrix, turn_vector
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked, Unreachable
@@ -244,9 +243,12 @@ def _line_points(start: np.ndarray, goal: np.ndarray, tuning: ReachTuning) -> in
 
 def _line(start: np.ndarray, goal: np.ndarray, shares: np.ndarray) -> Iterator[np.ndarray]:
     """Poses (4, 4) after shares (k,) of a straight line between two poses, turning evenly."""
-    turn = turn_vector(goal[:3, :3] @ start[:3, :3].T)
-    for share in shares:
+    from scipy.spatial.transform import Rotation
+
+    turn = Rotation.from_matrix(goal[:3, :3] @ start[:3, :3].T).as_rotvec()
+    turns = Rotation.from_rotvec(shares[:, None] * turn).as_matrix()
+    for share, turned in zip(shares, turns, strict=True):
         pose = np.eye(4)
-        pose[:3, :3] = turn_matrix(share * turn) @ start[:3, :3]
+        pose[:3, :3] = turned @ start[:3, :3]
         pose[:3, 3] = (1.0 - share) * start[:3, 3] + share * goal[:3, 3]
         yield pose

@@ -6,7 +6,7 @@ from caretree.sim.mechanics.joint_limits import JointLimits, fastest_rates, smoo
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES, JointTrajectory
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+from scipy.interpolate import CubicHermiteSpline
 
 
 def test_they_are_those_of_the_arms_and_the_head():
@@ -44,23 +44,6 @@ def test_the_order_of_a_trajectory_s_joints_is_its_own():
 def test_slopes_never_overshoot():
     times, positions = np.arange(4.0), np.array(((0.0,), (1.0,), (1.0,), (2.0,)))
     assert np.array_equal(smooth_slopes(times, positions)[:, 0], np.zeros(4))
-
-
-@pytest.mark.parametrize(("times", "end"), [((0.0, 0.0), 1.0), ((0.0, 1.0), np.nan)])
-def test_what_is_no_path_has_no_slopes(times, end):
-    with pytest.raises(ValueError, match="each later"):
-        smooth_slopes(np.array(times), np.array(((0.0,), (end,))))
-
-
-@pytest.mark.parametrize("points", [2, 3, 30])
-def test_slopes_are_scipys_to_the_last_bit(points):
-    rng = np.random.default_rng(points)
-    times, positions = np.cumsum(rng.uniform(0.05, 1.0, points)), rng.normal(size=(points, 4))
-    positions[:, 0] = 1.0
-    positions[:, 1] = np.sort(positions[:, 1])
-    positions[-2:, 2] = positions[-1, 2]
-    slopes = PchipInterpolator(times, positions).derivative()(times)
-    np.testing.assert_array_equal(smooth_slopes(times, positions)[1:-1], slopes[1:-1])
 
 
 @pytest.mark.parametrize("points", [2, 3, 30])

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from caretree.sim.world import RoomMap
 from caretree.skills.motion.errors import PathBlocked
-from caretree.skills.motion.path import _squares_to_obstacle, is_free, path_length, plan_path
-from scipy.ndimage import distance_transform_edt
+from caretree.skills.motion.path import is_free, path_length, plan_path
 
 BED = np.array(((-0.45, -1.0, 0.0), (0.45, 1.0, 0.6)))
 
@@ -58,12 +57,3 @@ def test_impossible_goals_are_told_in_one_sentence(start, goal, message):
 def test_walled_off_means_no_way():
     with pytest.raises(PathBlocked, match="no free way"):
         plan_path(room(wall=True), np.array((1.2, 0.0)), np.array((-1.2, 0.0)))
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99, 1.0])
-def test_distances_to_obstacles_are_scipys(share):
-    rng = np.random.default_rng(7)
-    for shape in ((1, 1), (1, 9), (30, 1), (40, 61)):
-        free = rng.random(shape) < share
-        expected = distance_transform_edt(np.pad(free, 1))[1:-1, 1:-1]
-        np.testing.assert_array_equal(np.sqrt(_squares_to_obstacle(free)), expected)
