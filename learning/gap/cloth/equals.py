@@ -28,6 +28,7 @@ HOPELESS = 5.0  # screened so many times farther off than equals may be, a hypot
 SEARCHED = 3.0  # so many times farther off, its place or its instant is looked for
 SOUGHT = frozenset({"added_mass", "snag", "grip_slip", "strain_stiffening"})  # of which screening fixes something
 MOST = 4
+MOST_BESIDE = 3
 
 Names = tuple[tuple[str, str], ...]  # effects and their targets
 
@@ -38,7 +39,7 @@ class Equals:
 
     Attributes:
         instead: per chosen name, others that could stand in for it, best first.
-        sets: whole sets with fewer effects.
+        sets: whole sets with fewer effects, and with one more.
     """
 
     instead: dict[str, tuple[str, ...]]
@@ -72,6 +73,8 @@ def equals(
             if tried.open(fit, member):
                 alike.append((tried.worse(fit), c.name))
         instead[member.name] = tuple(name for _, name in sorted(alike)[:MOST])
+    named = tuple((c.name, c.target) for c in found.chosen if not c.recalibration)
+    sets += [(*named, (c.name, c.target)) for c in near.beside()]
     return Equals(instead=instead, sets=tuple(sets))
 
 
@@ -113,6 +116,20 @@ class _Columns:
             if sized is not None and off < min(HOPELESS * SAME, best.get(c.name, (np.inf,))[0]):
                 best[c.name] = (off, sized)
         yield from sorted(best.values(), key=lambda pair: pair[0])
+
+    def beside(self) -> list[Candidate]:
+        """What gains more beside the final set, at first order, than noise would over all names tried; best first."""
+        named = self._fitter.flat(self._seen(self._found.fit.model))
+        own = np.zeros((len(named), 0)) if self._own is None else self._own
+        base, best, names = self._off(named, own), dict[str, tuple[float, Candidate]](), {c.name for c in self._pool}
+        for c, columns in zip(self._pool, self._theirs, strict=True):
+            if columns is None or c.recalibration or clash(c.name, {x.name for x in self._found.chosen}):
+                continue
+            gained = base - self._off(named, np.concatenate([own, columns], axis=1))
+            gained -= float(chi2.isf(LEVEL / len(names), len(c.start.free)))
+            if gained > best.get(c.name, (0.0,))[0]:
+                best[c.name] = (gained, c)
+        return [c for _, c in sorted(best.values(), key=lambda pair: -pair[0])][:MOST_BESIDE]
 
     def _seen(self, model: ClothModel) -> list[np.ndarray]:
         return self._fitter.residuals(model)

@@ -28,7 +28,6 @@ NUMBER = 10.0  # what a fitted number has to keep gaining to stay
 SPACING = 0.1  # between the instants a slip is screened at, over a recording's length
 SAME = 12.0  # criterion within which two explanations fit alike
 FINER = 0.1  # finite differences once a fit stands still, over those before
-MOST_BESIDE = 3  # effects told that may act beside the chosen ones
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +51,6 @@ class ClothSearch:
         rivals: per chosen candidate, other names that fitted as well.
         worth: independent samples.
         weights: (columns,) one over the noise of each column.
-        beside: what gains more beside the chosen ones than noise would, and yet does not pay its price.
     """
 
     chosen: tuple[Candidate, ...]
@@ -63,7 +61,6 @@ class ClothSearch:
     rivals: dict[str, tuple[str, ...]]
     worth: float
     weights: np.ndarray
-    beside: tuple[Candidate, ...] = ()
 
 
 def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]) -> ClothSearch:
@@ -103,7 +100,6 @@ class _Rounds:
         self._worth = self._rows / memory(self._plain.residuals)
         self._fit, self._chosen = self._start, list[Candidate]()
         self._rivals: dict[str, tuple[str, ...]] = {}
-        self._beside: tuple[Candidate, ...] = ()
 
     @property
     def more(self) -> bool:
@@ -131,7 +127,6 @@ class _Rounds:
         explained = self._start.rss * count / self._rows - top.fit.rss
         now = self._score(part, self._fit.model, count, len(pool))
         if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
-            self._beside = tuple(t.added for t in scored if self._gains(part, t))[:MOST_BESIDE]
             return False
         polished = polish(self._fitter, top.fit, [*self._chosen, top.added], self._scene)
         after = self._coherence(polished)
@@ -155,7 +150,6 @@ class _Rounds:
             rivals=self._rivals,
             worth=self._worth,
             weights=self._weights,
-            beside=self._beside,
         )
 
     def _coherence(self, fit: ClothFit) -> Coherence:
@@ -193,11 +187,6 @@ class _Rounds:
             self._say(f"  {k + 1}/{VERIFIED} {c.name}: {part_left:.3f} of the residual left")
             verified.append((c, joined))
         return verified
-
-    def _gains(self, part: ClothFit, tried: Tried) -> bool:
-        """Whether a hypothesis that does not pay its price gains more than noise alone would."""
-        gained = self._worth * np.log(part.rss / tried.fit.rss)
-        return not tried.added.recalibration and gained > chi2.isf(ALPHA, len(tried.added.start.free))
 
     def _score(self, fit: ClothFit, model: ClothModel, count: int, tried: int) -> float:
         """The criterion, smaller is better: misfit over `count` samples, and the price of a model among `tried`."""

@@ -257,9 +257,7 @@ class ClothStudy(Study):
         """See `Study.rivals`."""
         if self.equals is None:
             return ()
-        named = tuple((c.name, c.target) for c in self.found.chosen if not c.recalibration)
-        more = ((*named, (c.name, c.target)) for c in self.found.beside)
-        return tuple(Rival(effects=names, experiment=MORE) for names in (*self.equals.sets, *more))
+        return tuple(Rival(effects=names, experiment=MORE) for names in self.equals.sets)
 
     def _kept(self, without: list[np.ndarray], c: Candidate) -> float:
         """Part of resampled stretches in which a candidate keeps paying its price."""

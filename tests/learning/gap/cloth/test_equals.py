@@ -46,10 +46,11 @@ def exchanged(cloth_set):
     scene, episodes = read_scene(load_set(cloth_set))
     sim = Straight(len(episodes[0].t))
 
-    def make(delays):
+    def make(delays, strange=0.0):
         told = []
         for k, (e, delay) in enumerate(zip(episodes, delays, strict=True)):
             seen = 2.0 * sim.pattern("tilted_gravity", "towards_x") + delay * sim.pattern("delay", "time")
+            seen = seen + strange * sim.pattern("air_drag", "coefficient")
             seen = seen + NOISE * np.random.default_rng([5, k]).normal(size=seen.shape)
             told.append(replace(e, markers=seen[:, :15].reshape(len(seen), 5, 3), load=seen[:, 15:]))
         fitted, heldout = told[:1], told[1:]
@@ -83,3 +84,8 @@ def test_what_does_the_same_is_told_and_nothing_else(exchanged):
 @pytest.mark.parametrize(("held_out", "sets"), [(0.0, ((("tilted_gravity", "cloth"),),)), (0.35, ())])
 def test_what_only_the_fitted_recordings_have_may_not_be_there(exchanged, held_out, sets):
     assert exchanged((0.16, held_out)).sets == sets
+
+
+@pytest.mark.parametrize(("strange", "beside"), [(0.3, [{"tilted_gravity", "delay", "air_drag"}]), (0.0, [])])
+def test_what_gains_more_beside_the_named_ones_than_noise_is_told(exchanged, strange, beside):
+    assert [{name for name, _ in s} for s in exchanged((2.0, 2.0), strange).sets] == beside

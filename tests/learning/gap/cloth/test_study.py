@@ -88,7 +88,7 @@ def test_whole_sets_that_fit_as_well_are_told(cloth_set):
     study = open_study(load_set(cloth_set))
     effects = {
         name: Candidate(name=name, target="cloth", start=ClothModel(), push=ClothModel(), steps={})
-        for name in ("wind", "offset", "delay")
+        for name in ("wind", "offset")
     }
     nothing = ClothFit(model=ClothModel(), rss=1.0, residuals=[], half=np.ones(0))
     calm = Coherence(shared=0.0, floor=1e-4, p_value=0.5)
@@ -101,10 +101,9 @@ def test_whole_sets_that_fit_as_well_are_told(cloth_set):
         rivals={},
         worth=100.0,
         weights=np.ones(18),
-        beside=(effects["delay"],),
     )
-    study.__dict__["verdict"] = "effects"
-    study.__dict__["equals"] = Equals(instead={}, sets=((("wind", "cloth"),),))
+    study.__dict__["verdict"], wind = "effects", (("wind", "cloth"),)
+    study.__dict__["equals"] = Equals(instead={}, sets=(wind, (*wind, *((n, "cloth") for n in ("offset", "delay")))))
     told = [{name for name, _ in r.effects} for r in study.rivals()]
     assert told == [{"wind"}, {"wind", "offset", "delay"}]
     assert all(r.experiment for r in study.rivals())
