@@ -153,7 +153,7 @@ def test_a_hand_that_something_holds_back_presses_with_what_the_motors_may_do_an
     )
     rig.robot.command(HandTwist(side="right", twist_in_map=np.array((0.0, 0.0, -0.3, 0, 0, 0)), duration=1.0))
     rig.run(1.0)
-    force = np.linalg.norm(p.getConstraintState(fixed))
+    force = np.linalg.norm(rig.client.getConstraintState(fixed))
     rig.client.removeConstraint(fixed)
     lead = np.abs(rig.robot.servo.positions[:-1].reshape(2, -1)[n] - rig.robot.read().arm_positions[n]).max()
     rig.run(0.5)
