@@ -31,7 +31,7 @@ def armhole(x):
     return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
-def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None):
+def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None, across=None):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart.
 
     The gown pulls both towards the near side by `uneven` [N], and against the way that they went last.
@@ -50,6 +50,8 @@ def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None):
         x = {side: float(hand_now(skill, side)[0, 3]) for side in SIDES}
         if way_down is not None:
             way_down.append([hand_now(skill, side)[1:3, 3] for side in SIDES])
+        if across is not None:
+            across.append(x["left"] - x["right"])
         pull = 1.0 if x["left"] - x["right"] > taut_until + 0.005 else 0.1
         places.append((x["left"], x["right"]))
         way = sum(places[-1]) - sum(places[-2]) if len(places) > 1 else 0.0
@@ -110,3 +112,12 @@ def test_the_far_end_hangs_lower_until_the_gown_is_almost_down():
     assert np.max(lower[near > 1.2]) == pytest.approx(0.45, abs=0.02)
     assert np.all(np.abs(lower[near < 0.74]) < 0.02)
     assert np.min(lower) > -0.02
+
+
+def test_the_neckline_is_never_held_farther_apart_than_it_is_long():
+    way_down, across = [], []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down, across=across)
+    apart = np.hypot(np.array(across), np.diff(np.array(way_down)[:, :, 1], axis=1)[:, 0])
+    low = np.array(way_down)[:, :, 1].min(axis=1) < 0.9  # [m]: the far end hangs lower by then
+    assert np.max(apart[low]) < WIDTH + 0.02
+    assert np.min(np.array(across)[low]) < 0.75, "nearer across the bed meanwhile"

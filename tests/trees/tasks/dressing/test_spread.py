@@ -95,13 +95,19 @@ class WornGown(ScriptedSenses):
         return replace(seen, confidence=self.shown, position_in_map=near_in_map + (*off, 0.13))
 
 
-def rehearsed(reach, off=(0.0, 0.0), **gown):
+def rehearsed(reach, off=(0.0, 0.0), *, on_progress=None, **gown):
     """How the stage ends, and what was done to the gown in turn; `reach` of both armholes, or (2,)."""
     task = load_task("dressing")
     world, _ = task.scripted(1)
     prepare_stage(world, task, "spread")
     senses = WornGown(world, np.broadcast_to(reach, 2), off, **gown)
-    result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=senses.drawn)
+
+    def told(progress):
+        senses.drawn(progress)
+        if on_progress is not None:
+            on_progress(progress)
+
+    result = run(task, world, seed=1, senses=senses, params=task.parameters("spread"), on_progress=told)
     for stand in senses.stands:
         assert stand[:2] == pytest.approx(stance_at_head()[:2], abs=0.05), "drawn from the bed's head"
     return result.outcome, senses.done
@@ -137,6 +143,14 @@ def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach,
 )
 def test_a_sleeve_that_has_slipped_down_the_arm_is_pulled_up_before_the_gown_is_put_straight(reach, done):
     assert rehearsed(reach, pulled=0.70) == ("success", done)
+
+
+@pytest.mark.parametrize(("right", "gone"), [(0.45, False), (0.35, True)])
+def test_the_first_sleeve_is_gone_to_only_where_it_is_not_seen_up_from_the_head_of_the_bed(right, gone):
+    leaves = []
+    rehearsed((0.85, right), on_progress=lambda progress: leaves.append(progress.name))
+    assert "left sleeve/go round to its side" in leaves
+    assert ("right sleeve/go round to its side" in leaves) == gone
 
 
 @pytest.mark.parametrize("side", SIDES)
