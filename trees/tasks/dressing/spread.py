@@ -97,7 +97,7 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 def right_from_head(context: Context, bed: Scope) -> Behaviour:
     """See from the head of the bed, which is next anyhow, that the first sleeve is up its arm; else go beside it.
 
-    The way round the foot of the bed to it takes half a minute, and 5 of 7 first sleeves were up far enough (166 to
+    The way round the foot of the bed to it takes half a minute, and 4 of 6 first sleeves were up far enough (166 to
     171).
     """
     arm = arm_scope(context, "from head", "right")
