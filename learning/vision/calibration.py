@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
-from .dataset import CELL, SIZE
+from .dataset import CELL, SIZE, image_of
 from .labels import ABSENT, JOINTS, KEY_POINTS, SHOWN
 from .network import SeeingNetwork
 
@@ -70,7 +70,7 @@ def _seen(
     network.eval()
     for i in range(len(data["surface"])):
         row = {key: array[i] for key, array in data.items()}
-        image = np.concatenate([row["rgb"], row["depth"][None] * 1e-3, row["level"][None] * 1e-3]).astype(np.float32)
+        image = image_of(row)
         assert image.shape[1:] == SIZE[::-1]
         with torch.no_grad():
             surface, _, heat, _ = network(torch.from_numpy(image)[None])

@@ -28,6 +28,8 @@ def _rate(text: str) -> float:
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
+    from .states import FRAMES, KINDS
+
     top = CommandParser(prog="caretree learn vision")
     sub = top.add_subparsers(dest="command", required=True)
     states = sub.add_parser("states", help="states of the room to take pictures of")
@@ -37,6 +39,12 @@ def parser() -> argparse.ArgumentParser:
     )
     states.add_argument(
         "--run", type=Path, action="append", default=[], metavar="DIR", help="a recorded run; may be repeated"
+    )
+    states.add_argument(
+        "--frames", type=whole_number, default=FRAMES, metavar="N", help=f"of each recorded run (default {FRAMES})"
+    )
+    states.add_argument(
+        "--kinds", nargs="+", choices=KINDS, default=KINDS, metavar="KIND", help=f"to prepare: {', '.join(KINDS)}"
     )
     states.add_argument("--no-held-out", action="store_true", help="leave out the cuts that only tests see")
     data = sub.add_parser("data", help="labelled pictures of states, to train on")
@@ -77,7 +85,8 @@ def main(argv: list[str], seers: Callable[[Path | None], Mapping[str, Any]] | No
         from .states import make_states
 
         gowns = () if options.no_held_out else tuple(HELD_OUT_GOWNS)
-        print(make_states(options.folder, options.seeds, options.run, gowns, _say))
+        more = {"kinds": options.kinds, "frames": options.frames}
+        print(make_states(options.folder, options.seeds, options.run, gowns, _say, **more))
     elif options.command == "data":
         from .dataset import DatasetSpec, make_dataset
         from .states import read_states

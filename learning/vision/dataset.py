@@ -9,7 +9,7 @@ import hashlib
 import io
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,17 +17,19 @@ from typing import Any
 import numpy as np
 
 from ...sim.errors import CaretreeError
+from ...sim.scene.scene import room_map
 from ..shards import each_shard, replace_file, shard_name
 from .pictures import PARTS, Picture, chosen_states, draw_picture
 from .states import RoomState
 
-FORMAT = "caretree-seeing-1"
+FORMAT = "caretree-seeing-2"  # 1 did not tell where over the bed a pixel is
 INDEX = "dataset.json"
 SHARD = 50  # pictures
 SIZE = (256, 192)  # (width, height) of what the network sees [px]
 CELL = 4  # of the maps of places and key points [px]
 SHEET_UNIT = 1e-4  # of a place on the sheet, as it is kept [m]
 NO_PLACE = -32768
+BED_MARGIN = 0.6  # beyond the bed's outline, within which a pixel is told where over the bed it is [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +59,11 @@ class DatasetSpec:
 
 
 def seen(
-    rgb: np.ndarray, depth: np.ndarray, pose_camera_in_map: np.ndarray, intrinsics: tuple[float, ...]
+    rgb: np.ndarray,
+    depth: np.ndarray,
+    pose_camera_in_map: np.ndarray,
+    intrinsics: tuple[float, ...],
+    bed_in_map: np.ndarray | None,
 ) -> np.ndarray:
     """What the network is given of a picture.
 
@@ -66,10 +72,12 @@ def seen(
         depth: (H, W) [m], 0 where there is none.
         pose_camera_in_map: (4, 4), optical frame.
         intrinsics: (fx, fy, cx, cy) [px].
+        bed_in_map: (2, 3) its lower and upper corner [m]; None where none is known.
 
     Returns:
-        (5, 192, 256) float32: red, green, blue (0-255), depth [m], height over the floor [m]; the last two are 0 where
-        there is no depth.
+        (8, 192, 256) float32: red, green, blue (0-255), depth [m], height over the floor [m], across and along the bed
+        from its middle [m], and 1 where these are told, which is over the bed and `BED_MARGIN` around it.  All but the
+        colours are 0 where there is no depth.
     """
     import cv2
 
@@ -79,16 +87,26 @@ def seen(
     rows = ((np.arange(height) + 0.5) * depth.shape[0] / height).astype(int)
     columns = ((np.arange(width) + 0.5) * depth.shape[1] / width).astype(int)
     z = depth[np.ix_(rows, columns)]
-    up = pose_camera_in_map[2, :3]
-    level = (columns - cx) / fx * up[0] + ((rows - cy) / fy * up[1])[:, None] + up[2]
-    level = np.where(z > 0, z * level + pose_camera_in_map[2, 3], 0.0)
-    return np.concatenate([small.transpose(2, 0, 1), z[None], level[None]]).astype(np.float32)
+    x, y, level = (
+        z * ((columns - cx) / fx * axis[0] + ((rows - cy) / fy * axis[1])[:, None] + axis[2]) + axis[3]
+        for axis in pose_camera_in_map[:3]
+    )
+    over = np.zeros((3, height, width))
+    if bed_in_map is not None:
+        low, high = bed_in_map[:, :2]
+        across, along = x - (low[0] + high[0]) / 2, y - (low[1] + high[1]) / 2
+        half = (high - low) / 2 + BED_MARGIN
+        told = (z > 0) & (np.abs(across) < half[0]) & (np.abs(along) < half[1])
+        over = np.stack([across, along, np.ones_like(z)]) * told
+    return np.concatenate([small.transpose(2, 0, 1), z[None], np.where(z > 0, level, 0.0)[None], over]).astype(
+        np.float32
+    )
 
 
 def example(picture: Picture) -> dict[str, np.ndarray]:
-    """One picture as the training keeps it: `image`, `surface`, `sheet`, `points`, `seen`."""
+    """One picture as the training keeps it: what is `seen`, `surface`, `sheet`, `points` and how they are seen."""
     frame, labels = picture.frame, picture.labels
-    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics)
+    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics, room_map().bed)
     width, height = SIZE
     at = [((np.arange(n) + 0.5) * frame.depth.shape[k] / n).astype(int) for k, n in enumerate((height, width))]
     places = labels.sheet[np.ix_(at[0][CELL // 2 :: CELL], at[1][CELL // 2 :: CELL])]
@@ -98,11 +116,19 @@ def example(picture: Picture) -> dict[str, np.ndarray]:
         "rgb": image[:3].astype(np.uint8),
         "depth": np.round(image[3] * 1e3).clip(0, 65535).astype(np.uint16),
         "level": np.round(image[4] * 1e3).clip(-32768, 32767).astype(np.int16),
+        "over": np.where(image[7] > 0, np.round(image[5:7] * 1e3), NO_PLACE).astype(np.int16),
         "surface": labels.surface[np.ix_(*at)],
         "sheet": kept.astype(np.int16).transpose(2, 0, 1),
         "points": ((labels.points + (0.5, 0.5, 0.0)) * scale - (0.5, 0.5, 0.0)).astype(np.float32),
         "seen": labels.seen,
     }
+
+
+def image_of(row: Mapping[str, np.ndarray]) -> np.ndarray:
+    """(8, 192, 256) float32 of `seen`, from one row of what `load_dataset` gives."""
+    told = row["over"][:1] != NO_PLACE
+    metres = [row["depth"][None], row["level"][None], row["over"] * told]
+    return np.concatenate([row["rgb"], *(each * np.float32(1e-3) for each in metres), told]).astype(np.float32)
 
 
 def make_dataset(

@@ -17,7 +17,7 @@ from .labels import KEY_POINTS, SURFACES
 from .network import OUTPUTS, SeeingNetwork
 from .sheet_nodes import SHEET_NODES
 
-FORMAT = "caretree-seeing-2"
+FORMAT = "caretree-seeing-3"
 HALF = "half_"  # before the name of weights that the file keeps in half precision
 
 
@@ -45,7 +45,7 @@ def export(network: SeeingNetwork, path: str | Path, record: dict[str, object], 
             weights.copy_(weights.half().float())
     buffer = io.BytesIO()
     torch.onnx.export(
-        network, (torch.zeros(1, 5, SIZE[1], SIZE[0]),),
+        network, (torch.zeros(1, 8, SIZE[1], SIZE[0]),),
         buffer,  # pyright: ignore[reportArgumentType] - the exporter without dynamo writes to a buffer too
         dynamo=False, input_names=["image"],
         output_names=list(OUTPUTS),

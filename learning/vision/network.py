@@ -36,7 +36,7 @@ class Residual(nn.Module):
 
 
 class SeeingNetwork(nn.Module):
-    """What `dataset.seen` gives, (n, 5, 192, 256), to four maps.
+    """What `dataset.seen` gives, (n, 8, 192, 256), to four maps.
 
     Returns `surface` (n, 7, 192, 256) scores of `SURFACES`; at every fourth pixel `sheet` (n, S, 48, 64) scores of
     `SHEET_NODES`, one axis after the other, `heat` (n, K, 48, 64) scores of a key point's being here, beside 0 for its
@@ -45,7 +45,7 @@ class SeeingNetwork(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        self.stem = nn.Conv2d(6, WIDTHS[0], 4, 2, 1)
+        self.stem = nn.Conv2d(9, WIDTHS[0], 4, 2, 1)
         self.down = nn.ModuleList(
             nn.Sequential(nn.Conv2d(a, b, 3, 2, 1), nn.ReLU(), *(Residual(b) for _ in range(blocks)))
             for (a, b), blocks in zip(itertools.pairwise(WIDTHS), BLOCKS, strict=True)
@@ -73,7 +73,7 @@ class SeeingNetwork(nn.Module):
         depth, level = image[:, 3:4], image[:, 4:5]
         there = torch.clamp(depth * 10.0, 0.0, 1.0)  # 0 where there is no depth
         near = there / torch.clamp(depth, min=0.25) - 1.0
-        x = torch.cat([colour, near, there * (level - 0.7), there], 1)
+        x = torch.cat([colour, near, there * (level - 0.7), there, image[:, 5:]], 1)
         x = functional.relu(self.stem(x))
         kept = [x]
         for step in self.down:

@@ -7,7 +7,7 @@ import torch  # pyright: ignore[reportMissingImports] - in the extra `learn`
 from torch.nn import functional  # pyright: ignore[reportMissingImports] - in the extra `learn`
 
 from ..physics.networks.training import Objective
-from .dataset import CELL, NO_PLACE, SHEET_UNIT, SIZE
+from .dataset import CELL, NO_PLACE, SHEET_UNIT, SIZE, image_of
 from .labels import HIDDEN, JOINTS, KEY_POINTS, SHOWN
 from .network import SeeingNetwork
 from .sheet_nodes import SHEET_NODES, node_weights
@@ -15,6 +15,7 @@ from .sheet_nodes import SHEET_NODES, node_weights
 BATCH = 8
 SPREAD = 0.8  # of a key point's peak [cells]
 UNDER = 0.25  # the most that covers an arm which is wanted behind cloth; what is farther behind asks nothing [m]
+NO_BED = 0.15  # of the pictures, which are shown as if no bed were known
 _RARE = torch.tensor([1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0])  # weight of each surface: bindings are narrow
 _MIRRORED = [KEY_POINTS.index(_other) for _other in (
     name.replace("left", "?").replace("right", "left").replace("?", "right") for name in KEY_POINTS
@@ -43,15 +44,16 @@ class Seeing(Objective):
 
     def _one(self, index: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
         row = {key: array[index] for key, array in self._data.items()}
-        rgb = row["rgb"].astype(np.float32) * rng.uniform(0.7, 1.25) * rng.uniform(0.9, 1.1, (3, 1, 1))
-        image = np.concatenate([
-            np.clip(rgb, 0, 255), row["depth"][None] * np.float32(1e-3), row["level"][None] * np.float32(1e-3)
-        ]).astype(np.float32)  # fmt: skip
+        image = image_of(row)
+        image[:3] = np.clip(image[:3] * rng.uniform(0.7, 1.25) * rng.uniform(0.9, 1.1, (3, 1, 1)), 0, 255)
+        if rng.random() < NO_BED:
+            image[5:] = 0.0
         sheet = np.where(row["sheet"] == NO_PLACE, np.nan, row["sheet"] * np.float32(SHEET_UNIT)).astype(np.float32)
         surface, points, seen = row["surface"].astype(np.int64), row["points"].copy(), row["seen"]
         if rng.random() < 0.5:  # the gown and the body are their own mirror images, left for right
             image, surface, sheet = image[:, :, ::-1].copy(), surface[:, ::-1].copy(), sheet[:, :, ::-1].copy()
             sheet[0] *= -1
+            image[5] *= -1
             points[:, 0] = SIZE[0] - 1 - points[:, 0]
             points, seen = points[_MIRRORED], seen[_MIRRORED]
         heat, asked = _heat(points, seen, image[3])

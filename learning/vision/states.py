@@ -195,6 +195,9 @@ def make_states(
     runs: Sequence[Path] = (),
     gowns: Sequence[str] = (),
     say: Callable[[str], None] = lambda text: None,
+    *,
+    kinds: Sequence[str] = KINDS,
+    frames: int = FRAMES,
 ) -> Path:
     """Make what is missing of a folder of states; a file that is there is kept.
 
@@ -205,23 +208,26 @@ def make_states(
         runs: folders of recorded runs.
         gowns: cuts of which each is prepared in every state, with the first seeds for tests.
         say: takes lines of progress.
+        kinds: of `KINDS`, those to be prepared.
+        frames: taken from each recorded run.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     jobs: list[tuple[str, Callable[[], list[RoomState]]]] = []
     seeds = list(seeds)
+    wanted = {state: every for state, (kind, every) in PREPARED.items() if kind in kinds}
     for k, seed in enumerate(seeds):
-        for state, (_, every) in PREPARED.items():
+        for state, every in wanted.items():
             test = seed % TEST_SEEDS == TEST_SEEDS - 1
             if k % every == 0 or test:
                 jobs.append((f"{seed:04d}_{state}", lambda s=seed, at=state: [prepared(s, at)]))
     for gown, seed in ((g, s) for g in gowns for s in seeds if s % TEST_SEEDS == TEST_SEEDS - 1):
-        for state in InitialState:
+        for state in wanted:
             name = f"{seed:04d}_{gown}_{state}"
             jobs.append((name, lambda s=seed, at=state, g=gown: [prepared(s, at, g)]))
     for run in runs:
         name = f"run_{hashlib.sha256((run / 'run.json').read_bytes()).hexdigest()[:8]}"
-        jobs.append((name, lambda at=run: recorded(at)))
+        jobs.append((name, lambda at=run: recorded(at, frames)))
     for k, (name, make) in enumerate(jobs):
         path = folder / f"state_{name}.npz"
         if not path.exists():

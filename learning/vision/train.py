@@ -96,12 +96,20 @@ def _begin_with(network: SeeingNetwork, start: Path) -> str:
         state = torch.load(path, weights_only=True)
         weights, done, data = state["network"], state["done"], state["identity"]["data"]
     own = network.state_dict()
+    weights = {name: _widened(w, own[name]) if name in own else w for name, w in weights.items()}
     fitting = {name: w for name, w in weights.items() if name in own and own[name].shape == w.shape}
     if not fitting:
         raise CaretreeError(f"{path}: none of its weights fits the network")
     network.load_state_dict(own | fitting)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
     return f"{len(fitting)} of {len(own)} weights of {digest}, step {done} of a training with data {data}"
+
+
+def _widened(weights: torch.Tensor, wanted: torch.Tensor) -> torch.Tensor:
+    """Weights of a layer that was told less, which makes nothing of the inputs that have come since."""
+    if weights.ndim != 4 or weights.shape[1] >= wanted.shape[1] or weights.shape[::2] != wanted.shape[::2]:
+        return weights
+    return torch.cat([weights, torch.zeros_like(wanted[:, weights.shape[1] :])], 1)
 
 
 def _read_onnx(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:

@@ -34,18 +34,26 @@ class LearnedSight:
 
     Args:
         network: that sees; the packaged one if omitted.
+        bed_in_map: (2, 3) its lower and upper corner, where one is known [m].
         tuning: numbers.
     """
 
-    def __init__(self, network: SeeingNetwork | None = None, *, tuning: LearnedTuning = DEFAULT) -> None:
+    def __init__(
+        self,
+        network: SeeingNetwork | None = None,
+        *,
+        bed_in_map: np.ndarray | None = None,
+        tuning: LearnedTuning = DEFAULT,
+    ) -> None:
         self._network = network or packaged_network()
+        self._bed = bed_in_map
         self._tuning = tuning
         self._last: tuple[Frame, Sight] | None = None
 
     def sight(self, frame: Frame) -> Sight:
         """All that is seen; asked twice for one frame, the network runs once."""
         if self._last is None or self._last[0] is not frame:
-            self._last = (frame, self._network.see(frame))
+            self._last = (frame, self._network.see(frame, self._bed))
         return self._last[1]
 
     def gown_side(self, frame: Frame) -> GownSide:

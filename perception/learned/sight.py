@@ -17,7 +17,9 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame
 from ..image.surfaces import GOWN_SURFACES, Surface
 
-FORMAT = "caretree-seeing-2"
+FORMAT = "caretree-seeing-3"
+BEFORE = "caretree-seeing-2"  # was not told where over the bed a pixel is
+BED_MARGIN = 0.6  # beyond the bed's outline, within which a pixel is told where over the bed it is [m]
 PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"
 _OUTPUTS = ("surface", "sheet", "heat", "offset")
 _SOLID = (*GOWN_SURFACES, Surface.SKIN)  # what a key point can lie on
@@ -86,11 +88,12 @@ class SeeingNetwork:
         import cv2
 
         about = {name: json.loads(text) for name, text in read_properties(path).items()}
-        if about.get("format") != FORMAT:
+        if about.get("format") not in (FORMAT, BEFORE):
             raise CaretreeError(f"{path}: this is no seeing network in format {FORMAT}")
         if about["surfaces"] != [surface.name.lower() for surface in Surface]:
             raise CaretreeError(f"{path}: it sees {', '.join(about['surfaces'])}, which this version does not know")
         self.record: Mapping[str, Any] = about["record"]
+        self._knows_bed: bool = about["format"] == FORMAT
         self._size: tuple[int, int] = (about["size"][0], about["size"][1])
         self._names: list[str] = about["key_points"]
         self._sheet_nodes = [np.asarray(axis, np.float32) for axis in about["sheet_nodes"]]
@@ -99,11 +102,16 @@ class SeeingNetwork:
         self._net = cv2.dnn.readNetFromONNX(str(path))
         self._tuning = tuning
 
-    def see(self, frame: Frame) -> Sight:
-        """What one frame shows."""
+    def see(self, frame: Frame, bed_in_map: np.ndarray | None = None) -> Sight:
+        """What one frame shows.
+
+        Args:
+            frame: of any camera.
+            bed_in_map: (2, 3) its lower and upper corner, where one is known [m].
+        """
         import cv2
 
-        image = self.image_of(frame)
+        image = self.image_of(frame, bed_in_map)
         self._net.setInput(image[None])
         surface, sheet, heat, offset = (map_[0] for map_ in self._net.forward(_OUTPUTS))
         scores = surface / self._temperature
@@ -111,11 +119,13 @@ class SeeingNetwork:
         chance /= chance.sum(axis=0)
         labels = chance.argmax(axis=0).astype(np.uint8)
         full = frame.depth.shape[::-1]
+        # borders fall between the network's pixels: what is likely is blended, and not what was decided
+        wide = cv2.resize(np.ascontiguousarray(chance.transpose(1, 2, 0)), full, interpolation=cv2.INTER_LINEAR)
         places = places_on_sheet(sheet, self._sheet_nodes)
         solid = np.isin(labels, _SOLID) & (image[3] > 0)
         return Sight(
-            surfaces=cv2.resize(labels, full, interpolation=cv2.INTER_NEAREST),
-            confidence=cv2.resize(chance.max(axis=0), full, interpolation=cv2.INTER_LINEAR),
+            surfaces=wide.argmax(axis=2).astype(np.uint8),
+            confidence=wide.max(axis=2),
             sheet=cv2.resize(np.ascontiguousarray(places), full, interpolation=cv2.INTER_LINEAR),
             key_points={
                 name: self._key_point(
@@ -125,8 +135,16 @@ class SeeingNetwork:
             },
         )
 
-    def image_of(self, frame: Frame) -> np.ndarray:
-        """(5, h, w) float32 that the network is given: red, green, blue, depth [m] and height over the floor [m]."""
+    def image_of(self, frame: Frame, bed_in_map: np.ndarray | None = None) -> np.ndarray:
+        """(8, h, w) float32 that the network is given, or the first five of it to one that knows no bed.
+
+        Red, green, blue, depth [m], height over the floor [m], across and along the bed from its middle [m], and 1
+        where these two are told: over the bed and a margin around it.
+
+        Args:
+            frame: of any camera.
+            bed_in_map: (2, 3) its lower and upper corner, where one is known [m].
+        """
         import cv2
 
         width, height = self._size
@@ -135,10 +153,14 @@ class SeeingNetwork:
         rows = ((np.arange(height) + 0.5) * frame.depth.shape[0] / height).astype(int)
         columns = ((np.arange(width) + 0.5) * frame.depth.shape[1] / width).astype(int)
         z = frame.depth[np.ix_(rows, columns)]
-        up = frame.pose_camera_in_map[2, :3]
-        level = (columns - cx) / fx * up[0] + ((rows - cy) / fy * up[1])[:, None] + up[2]
-        level = np.where(z > 0, z * level + frame.pose_camera_in_map[2, 3], 0.0)
-        return np.concatenate([small.transpose(2, 0, 1), z[None], level[None]]).astype(np.float32)
+        x, y, level = (
+            z * ((columns - cx) / fx * axis[0] + ((rows - cy) / fy * axis[1])[:, None] + axis[2]) + axis[3]
+            for axis in frame.pose_camera_in_map[:3]
+        )
+        told = [small.transpose(2, 0, 1), z[None], np.where(z > 0, level, 0.0)[None]]
+        if self._knows_bed:
+            told.append(_over_bed(x, y, z > 0, bed_in_map))
+        return np.concatenate(told).astype(np.float32)
 
     def _key_point(
         self,
@@ -172,6 +194,16 @@ class SeeingNetwork:
         return KeyPoint(
             confidence=float(1.0 / (1.0 + np.exp(-(scale * score + shift)))), position_in_map=place, pixel=pixel
         )
+
+
+def _over_bed(x: np.ndarray, y: np.ndarray, there: np.ndarray, bed_in_map: np.ndarray | None) -> np.ndarray:
+    """(3, h, w) across and along the bed from its middle [m], and 1 where they are told; else 0."""
+    if bed_in_map is None:
+        return np.zeros((3, *there.shape))
+    low, high = bed_in_map[:, :2]
+    across, along = x - (low[0] + high[0]) / 2, y - (low[1] + high[1]) / 2
+    half = (high - low) / 2 + BED_MARGIN
+    return np.stack([across, along, np.ones_like(x)]) * (there & (np.abs(across) < half[0]) & (np.abs(along) < half[1]))
 
 
 def places_on_sheet(scores: np.ndarray, nodes: Sequence[np.ndarray]) -> np.ndarray:

@@ -25,7 +25,7 @@ class LearnedSeer:
     """
 
     def __init__(self, network: Path | None = None) -> None:
-        self._sight = LearnedSight(SeeingNetwork(network) if network else packaged_network())
+        self._sight = LearnedSight(SeeingNetwork(network) if network else packaged_network(), bed_in_map=_room().bed)
 
     def surfaces(self, frame: Frame) -> np.ndarray:
         """(H, W)."""

@@ -1,4 +1,8 @@
-"""Which eyes a run has: rules on colours, or the same rules on what the network sees; and who chooses pre-grasps."""
+"""Which eyes a run has: rules on colours, or the same rules on what the network sees; and who chooses pre-grasps.
+
+Of a gown on its hook the network answers itself which side shows and where the corners are (`HungGown`); the rules
+that ask more of it are shown its surfaces in the colours of the tapes.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from ...perception.estimates import PreGrasp
+from ...perception.estimates import GownSide, GraspPoint, PreGrasp
+from ...perception.learned.hung_gown import HungGown
+from ...perception.learned.learned_sight import LearnedSight
 from ...perception.learned.pre_grasp_policy import Chooser, chosen_pre_grasp, packaged_policy
-from ...perception.learned.repainted import repainted
+from ...perception.learned.repainted import gown_repainted, repainted
 from ...perception.learned.sight import packaged_network
 from ...perception.senses import Senses
 from ...sim.errors import CaretreeError
-from ...sim.world import Frame
+from ...sim.world import Frame, Side
 from ...skills.core.context import Context
 
 CLASSICAL, LEARNED = "classical", "learned"
 PERCEPTIONS = (CLASSICAL, LEARNED)
 KEPT = 4  # repainted pictures: as many cameras may be asked of in one tick, several times each
+# Asked of a gown alone.  `hang_point` is asked of towels too, which the network takes for gowns, or for none.
+OF_THE_GOWN = ("hook", "layers", "pre_grasp")
 
 
 def see_with(context: Context, perception: str, *, scripted: bool = False) -> None:
@@ -33,7 +41,8 @@ def see_with(context: Context, perception: str, *, scripted: bool = False) -> No
         CaretreeError: there is no such perception, or nothing for a network to look at.
     """
     if _learned("perception", perception, scripted):
-        context.wrap_senses(seen_by_network)
+        sight = LearnedSight(bed_in_map=context.world.room.bed)
+        context.wrap_senses(lambda senses: seen_by_network(senses, sight))
 
 
 def grasp_with(context: Context, pregrasp: str, *, scripted: bool = False) -> None:
@@ -87,26 +96,54 @@ def chosen_by_policy(
     )
 
 
-def seen_by_network(
-    senses: Senses, surfaces_in: Callable[[Frame], np.ndarray] = lambda frame: packaged_network().see(frame).surfaces
-) -> Senses:
-    """Senses that answer as `senses` do of the repainted pictures.
+def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
+    """Senses that answer as `senses` do of the repainted pictures, but for sides and corners of a gown on its hook.
 
     Args:
         senses: that read colours.
-        surfaces_in: gives the (H, W) `Surface` of each pixel of a frame; the packaged network if omitted.
+        sight: what the network sees.
     """
+    skin = _kept(lambda frame: repainted(frame, sight.sight(frame).surfaces))
+    gown = _kept(lambda frame: gown_repainted(frame, sight.sight(frame).surfaces))
+    asked: dict[str, Any] = {
+        name: _passed_on(senses, name, gown if name in OF_THE_GOWN else skin) for name in Senses.__abstractmethods__
+    }
+    hung = HungGown(sight)
+
+    def side(self: object, frame: Frame) -> GownSide:
+        return hung.side(frame)
+
+    def shown_corner(self: object, frame: Frame, *, hook_in_map: np.ndarray, side: Side | None = None) -> GraspPoint:
+        return hung.shown_corner(frame, hook_in_map, side)
+
+    def hung_corner(
+        self: object,
+        frame: Frame,
+        *,
+        side: Side,
+        hook_in_map: np.ndarray,
+        other_length: float | None = None,
+        near_in_map: np.ndarray | None = None,
+    ) -> GraspPoint:
+        return hung.corner(frame, side, hook_in_map, near_in_map, beside_matters=other_length is None)
+
+    asked |= {"gown_side": side, "hung_side": side, "shown_corner": shown_corner, "hung_corner": hung_corner}
+    return _senses_of("SensesOfNetwork", asked)
+
+
+def _kept(paint: Callable[[Frame], Frame]) -> Callable[[Frame], Frame]:
+    """The same for a frame that is painted again: the last few are kept."""
     painted: list[tuple[Frame, Frame]] = []
 
-    def paint(frame: Frame) -> Frame:
+    def again(frame: Frame) -> Frame:
         for before, after in painted:
             if before is frame:
                 return after
-        painted.append((frame, repainted(frame, surfaces_in(frame))))
+        painted.append((frame, paint(frame)))
         del painted[:-KEPT]
         return painted[-1][1]
 
-    return _senses_of("SensesOfNetwork", {name: _passed_on(senses, name, paint) for name in Senses.__abstractmethods__})
+    return again
 
 
 def _passed_on(

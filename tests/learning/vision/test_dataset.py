@@ -5,9 +5,20 @@ import sys
 
 import numpy as np
 import pytest
-from caretree.learning.vision.dataset import INDEX, DatasetSpec, example, load_dataset, make_dataset, read_index, seen
+from caretree.learning.vision.dataset import (
+    BED_MARGIN,
+    INDEX,
+    DatasetSpec,
+    example,
+    image_of,
+    load_dataset,
+    make_dataset,
+    read_index,
+    seen,
+)
 from caretree.learning.vision.pictures import draw_picture
 from caretree.sim.errors import CaretreeError
+from caretree.sim.scene.scene import room_map
 
 from ...fake_ray import FakeRay
 from .still_room import still_state
@@ -72,10 +83,24 @@ def test_what_cannot_be_made_is_refused(wrong):
 def test_height_over_the_floor_is_that_of_the_map(states):
     picture = draw_picture(states, "train", 3, 0, kind="laid", camera="head")
     frame = picture.frame
-    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics)
+    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics, None)
     floor = (image[3] > 0) & (np.abs(image[4]) < 0.03)
     assert floor.mean() > 0.05
     assert image[4][image[3] > 0].min() > -0.2
+
+
+def test_where_over_the_bed_a_pixel_is_is_told_over_it_alone(states):
+    picture = draw_picture(states, "train", 3, 0, kind="laid", camera="head")
+    frame, bed = picture.frame, room_map().bed
+    image = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics, bed)
+    told = image[7] > 0
+    assert 0.1 < told.mean() < 1.0
+    assert not image[5:7, ~told].any()
+    assert np.abs(image[5]).max() < bed[1, 0] + BED_MARGIN
+    kept = image_of(example(picture))
+    assert np.allclose(kept[3:], image[3:], atol=1e-3)
+    none = seen(frame.rgb, frame.depth, frame.pose_camera_in_map, frame.intrinsics, None)
+    assert not none[5:].any()
 
 
 def test_points_move_with_the_picture_s_size(states):

@@ -37,7 +37,7 @@ def test_opencv_gives_what_torch_gives(tmp_path):
     torch.manual_seed(1)
     network = SeeingNetwork().eval()
     path = export(network, tmp_path / "n.onnx", {"seed": 1}, {"temperature": 1.5})
-    image = np.random.default_rng(0).uniform(0, 2, (1, 5, 192, 256)).astype(np.float32)
+    image = np.random.default_rng(0).uniform(0, 2, (1, 8, 192, 256)).astype(np.float32)
     with torch.no_grad():
         wanted = network(torch.from_numpy(image))
     net = cv2.dnn.readNetFromONNX(str(path))
@@ -163,6 +163,19 @@ def test_a_training_begins_with_what_fits_of_another(folder, tmp_path):
     _begin_with(network, first)
     trained = torch.load(tmp_path / "first" / "checkpoint.pt", weights_only=True)["network"]
     assert all(torch.allclose(w, trained[name], rtol=1e-3, atol=1e-4) for name, w in network.state_dict().items())
+
+
+def test_a_training_begins_with_a_network_that_was_told_less(tmp_path):
+    old, new = SeeingNetwork(), SeeingNetwork()
+    weights = old.state_dict()
+    weights["stem.weight"] = weights["stem.weight"][:, :6]
+    (tmp_path / "old").mkdir()
+    state = {"network": weights, "done": 5, "identity": {"data": "d"}}
+    torch.save(state, tmp_path / "old" / "checkpoint.pt")
+    assert _begin_with(new, tmp_path / "old").startswith(f"{len(weights)} of {len(weights)} weights")
+    stem = new.state_dict()["stem.weight"]
+    assert torch.equal(stem[:, :6], weights["stem.weight"])
+    assert not stem[:, 6:].any()
 
 
 def test_a_training_cannot_begin_with_nothing(tmp_path):

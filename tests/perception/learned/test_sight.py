@@ -1,5 +1,6 @@
 """The packaged network, run by OpenCV alone, and how its maps are read."""
 
+import re
 import subprocess
 import sys
 
@@ -72,8 +73,11 @@ def test_what_it_sees_has_the_frame_s_size(network):
 
 
 def test_it_is_given_what_it_was_trained_on(network):
-    shot = frame()
-    assert np.array_equal(network.image_of(shot), seen(shot.rgb, shot.depth, shot.pose_camera_in_map, shot.intrinsics))
+    shot, bed = frame(), np.array(((-0.3, -0.5, 0.0), (0.3, 0.5, 0.5)))
+    for knows, told in ((True, bed), (True, None), (False, bed)):
+        network._knows_bed = knows
+        wanted = seen(shot.rgb, shot.depth, shot.pose_camera_in_map, shot.intrinsics, told)
+        assert np.array_equal(network.image_of(shot, told), wanted if knows else wanted[:5])
 
 
 def test_a_peak_becomes_a_place_in_the_map(planted):
@@ -98,7 +102,7 @@ def test_a_place_on_the_sheet_is_the_mean_of_the_best_node_and_its_neighbours(pl
 
 
 def test_another_format_is_refused_in_one_sentence(tmp_path):
-    changed = PACKAGED.read_bytes().replace(FORMAT.encode(), FORMAT[:-1].encode() + b"1")
+    changed = re.sub(FORMAT[:-1].encode() + b"[0-9]", FORMAT[:-1].encode() + b"1", PACKAGED.read_bytes())
     other = tmp_path / "seeing.onnx"
     other.write_bytes(changed)
     with pytest.raises(CaretreeError, match=f"no seeing network in format {FORMAT}"):

@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 from caretree.perception.classical import ClassicalSenses
+from caretree.perception.errors import PerceptionFailure
 from caretree.perception.image.surfaces import Surface
+from caretree.perception.learned.learned_sight import LearnedSight
+from caretree.perception.learned.sight import KeyPoint, Sight
 from caretree.sim.errors import CaretreeError
 from caretree.sim.world import Frame, RoomMap
 from caretree.trees.cli import main
@@ -28,7 +31,7 @@ def test_the_rules_look_at_the_picture_itself(context):
 
 def test_the_network_is_put_before_the_rules(context, monkeypatch):
     wrapped = []
-    monkeypatch.setattr(perceptions, "seen_by_network", lambda senses: wrapped.append(senses) or senses)
+    monkeypatch.setattr(perceptions, "seen_by_network", lambda senses, sight: wrapped.append(senses) or senses)
     see_with(context, "learned")
     assert wrapped == [context.senses]
 
@@ -58,21 +61,50 @@ def frame():
 
 
 def test_senses_are_asked_of_the_repainted_picture_which_is_seen_once():
-    asked = []
-
-    def network(seen):
-        asked.append(seen)
-        return np.full((16, 16), Surface.SKIN, np.uint8)
-
     bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
     room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
     black, senses = frame(), ClassicalSenses(room, 0)
     hand = np.array([(0.0, y, 1.0) for y in (0.0, 0.01, 0.02, 0.03)])
-    through = seen_by_network(senses, network)
+    network = Network(np.full((16, 16), Surface.SKIN, np.uint8))
+    through = seen_by_network(senses, LearnedSight(network, bed_in_map=bed))
     assert senses.skin_cover(black, points_in_map=hand).share == 1.0
     assert through.skin_cover(black, points_in_map=hand).share == 0.0
     assert through.skin_cover(black, points_in_map=hand).share == 0.0
-    assert asked == [black]
+    assert [(seen is black, told is bed) for seen, told in network.asked] == [(True, True)]
+
+
+def test_a_gown_s_hook_is_found_whatever_its_colour_and_its_side_by_its_area():
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    black, senses = frame(), ClassicalSenses(room, 0)
+    seen = np.full((16, 16), Surface.INSIDE, np.uint8)
+    seen[:, :6] = Surface.COLLAR
+    through = seen_by_network(senses, LearnedSight(Network(seen)))
+    with pytest.raises(PerceptionFailure):
+        senses.hook(black)
+    assert through.hook(black).target == "near_hang"
+    assert not through.hung_side(black).outside
+    assert not through.gown_side(black).outside
+    hook = np.zeros(3)
+    with pytest.raises(PerceptionFailure, match="corner"):
+        through.shown_corner(black, hook_in_map=hook)
+    with pytest.raises(PerceptionFailure, match="left corner"):
+        through.hung_corner(black, side="left", hook_in_map=hook)
+
+
+class Network:
+    """Sees the same surfaces everywhere, and no key point."""
+
+    def __init__(self, surfaces):
+        self.surfaces = surfaces
+        self.asked = []
+
+    def see(self, frame, bed_in_map):
+        self.asked.append((frame, bed_in_map))
+        nothing = KeyPoint(confidence=0.0, position_in_map=None, pixel=np.zeros(2))
+        points = dict.fromkeys(("corner_left", "corner_right"), nothing)
+        ones = np.ones((16, 16), np.float32)
+        return Sight(surfaces=self.surfaces, confidence=ones, sheet=np.stack([ones] * 3, 2), key_points=points)
 
 
 def test_the_policy_chooses_the_pre_grasp_and_nothing_else():
