@@ -26,13 +26,40 @@ class CollarSeen(Quantities):
         "from beside both shoulders: 0.012, 0.030 and 0.011 m on average; the mean of the three is off by 0.013 m then "
         "(root mean square), at worst by 0.030 m",
     )
+    lasts: float = quantity(60.0, "s", "for which a close look tells", "choice: nobody touches what it saw")
 
 
 COLLAR_SEEN = CollarSeen()
+_LASTS = COLLAR_SEEN.lasts
+
+
+@dataclass
+class CloseLook:
+    """The last close look at the collar, until a hand comes down to the gown.
+
+    Attributes:
+        seen: where its middle lies; None where it may lie elsewhere by now.
+    """
+
+    seen: GraspPoint | None = None
+
+    @staticmethod
+    def of(skill: Skill) -> CloseLook:
+        """The run's."""
+        return skill.context.memory.of(CloseLook, CloseLook)
+
+
+def close_look(skill: Skill, max_age: float = _LASTS) -> GraspPoint | None:
+    """Where the neckline's middle was seen closely within `max_age` [s], if no hand came down to the gown since."""
+    seen = CloseLook.of(skill).seen
+    return seen if seen is not None and skill.now() - seen.stamp < max_age else None
 
 
 def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] = (0.0, 0.0)) -> GraspPoint:
     """Where the middle of the neckline lies, or the cloth `away` from it [m].
+
+    Where it was looked at closely, and nothing was taken hold of since, that tells, and the head's camera only what
+    cloth there is.
 
     Args:
         skill: that looks.
@@ -44,7 +71,15 @@ def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] =
         SensorLost: the camera is dead.
         SkillFailure: its picture is stale.
     """
-    return skill.context.senses.collar_middle(skill.world.look("head"), near_in_map=middle, away=away)
+    known = close_look(skill)
+    if known is not None and not any(away):
+        return known
+    frame = skill.world.look("head")
+    if known is not None:
+        from_head = skill.context.senses.collar_middle(frame, near_in_map=middle, away=(0.0, 0.0))
+        x, y = (known.position_in_map - from_head.position_in_map)[:2] + away
+        away = float(x), float(y)
+    return skill.context.senses.collar_middle(frame, near_in_map=middle, away=away)
 
 
 def between_shoulders(skill: Skill) -> np.ndarray:

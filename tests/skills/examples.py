@@ -41,6 +41,7 @@ from caretree.trees.tasks.dressing.check_over_hand import CheckOverHand
 from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.dressing.let_gown_go import LetGownGo
+from caretree.trees.tasks.dressing.look_at_collar import LookAtCollar
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
 from caretree.trees.tasks.undress.draw_off import DrawOff
 from caretree.trees.tasks.undress.take_seam import TakeSeam
@@ -80,6 +81,7 @@ EXAMPLES = {
     GraspSleeve: lambda context: GraspSleeve("grasp sleeve", context, side="right", hand="right"),
     LayGown: lambda context: LayGown("lay gown", context, width=0.8),
     LetGownGo: lambda context: LetGownGo("let gown go", context),
+    LookAtCollar: lambda context: LookAtCollar("look at collar", context),
     LayOnHand: lambda context: LayOnHand("lay on hand", context, side="right", hand="right"),
     LaySleeve: lambda context: LaySleeve("lay sleeve", context, side="right", hand="right"),
     LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),

@@ -34,6 +34,7 @@ from .draw_over import DrawOver as DrawOver
 from .dress import dress
 from .lay import holds_gown, is_down, lay
 from .let_gown_go import LetGownGo as LetGownGo
+from .look_at_collar import LookAtCollar as LookAtCollar
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down

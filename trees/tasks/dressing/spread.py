@@ -27,6 +27,7 @@ from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, p
 from .check_collar import CheckCollar, CheckCollarTuning
 from .check_face import CheckFace
 from .draw_over import DrawOver
+from .look_at_collar import LookAtCollar
 from .patience import patient
 from .tuning import DRESSING
 
@@ -36,16 +37,15 @@ UNSEEN = (Reason.ARM_LOST, Reason.NOTHING_SEEN)
 HOWEVER_LITTLE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0)
 BOTH_ALIKE = CheckSleeveTuning(before_counts=0.5)  # one is right where the other one is off by 0.1 (156)
 
+TOLD = {"min_told": DRESSING.collar_told, "min_told_from_head": DRESSING.collar_told_from_head}
 MIDDLE = CheckCollarTuning(
-    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward
-)
-WHOLE = CheckCollarTuning(min_shown=DRESSING.collar_whole, max_aside=DRESSING.collar_aside_on_average)
-ON_AVERAGE = CheckCollarTuning(
-    min_shown=DRESSING.collar_shown_on_average, min_looks=2, max_aside=DRESSING.collar_aside_on_average
+    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward, **TOLD
 )
 ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies: laid by a guess, it came from 0.02 to 0.15 m aside (101).
-NEAT = CheckCollarTuning(min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD)
+NEAT = CheckCollarTuning(
+    min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD, **TOLD
+)
 
 
 def spread(context: Context) -> Stage:
@@ -124,7 +124,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
             drawn_alone(anew, side),
             RecoverBy(f"{anew.prefix}until the face is free", face, covered, attempts=2),
             straight(anew),
-            CheckCollar("about the middle", anew, tuning=MIDDLE),
+            *closely(anew, "about the middle", MIDDLE),
         )
         return patient(anew, drawn)
 
@@ -146,11 +146,9 @@ def seen_from_head(bed: Scope, side: Side) -> Key:
 
 
 def surely_neat(context: Context, bed: Scope) -> Behaviour:
-    """Worn neatly, as seen from the head of the bed, both sleeves up and the collar in the middle for other looks too.
+    """Worn neatly, as seen from the head of the bed, and both sleeves up as seen from beside it.
 
-    A collar that looks from beside saw 0.06 and 0.07 m aside, where it was, ended a run that had all the time it needed
-    (191): it is laid in the middle once more, however it looks from the head, and all of it is seen anew.  So is one of
-    which too little shows from there.
+    A collar that one of them took along is laid in the middle once more, and all of it is seen anew.
     """
 
     def laid_once_more() -> Behaviour:
@@ -158,7 +156,7 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
         return sequence("lay the collar once more", *go_to_head(anew), laid_in_the_middle(anew))
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
-    both = sequence("neat", patient(bed, neaten(context, bed)), patient(bed, surely_middle(context, bed)), *up)
+    both = sequence("neat", patient(bed, neaten(context, bed)), *up)
     unsure = {Reason.COLLAR_ASIDE: laid_once_more, Reason.NOTHING_SEEN: laid_once_more}
     return RecoverBy("until it is surely neat", both, unsure, attempts=DRESSING.surely_neat_attempts)
 
@@ -173,11 +171,11 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     up and after, cost half a minute each time (257 to 260).
     """
     sleeves = [shown(context, f"{side} armhole", side, seen_from_head(bed, side)) for side in SIDES]
-    middle = CheckCollar("the collar lies in the middle", bed, tuning=MIDDLE)
+    middle = closely(bed, "the collar lies in the middle", MIDDLE)
     flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
     face_free = CheckFace("the face is free", bed)
-    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, *sleeves, middle, flat_now)
+    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, *sleeves, *middle, flat_now)
 
     def set_right() -> Behaviour:
         return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
@@ -213,25 +211,9 @@ def looked_again(context: Context, bed: Scope) -> Behaviour:
     return sequence("both arms again", *beside, *go_to_head(again), straight(again))
 
 
-def surely_middle(context: Context, bed: Scope) -> Behaviour:
-    """See the whole collar in the middle; else that it is there on an average of three looks.
-
-    From the head of the bed and from beside each shoulder: one look misses the collar's middle by up to 0.06 m where
-    most of it shows, three on average by 0.03 m.  Seen at 0.05, 0.10 and 0.03 m, one was claimed as two of the three
-    said so, and lay 0.08 m aside (0).  Seen at 0.02, 0.05 and 0.00 m, a fifth of it bunched behind a shoulder, it lay
-    0.09 m aside (165): looks that show too little do not count.
-    """
-    seen = [bed.key(f"seen_from_{where}") for where in ("head", *SIDES)]
-    left, right = (Scope(bed, f"from the {side}") for side in SIDES)
-    three = sequence(
-        "from three places",
-        CheckCollar("its middle from the head", bed, decide=False, looks=seen[0], tuning=ON_AVERAGE),
-        *go_beside(arm_scope(context, "left of the collar", "left"), "left"),
-        CheckCollar("its middle", left, decide=False, before=seen[0], looks=seen[1], tuning=ON_AVERAGE),
-        *go_beside(arm_scope(context, "right of the collar", "right"), "right"),
-        CheckCollar("its middle", right, before=seen[1], looks=seen[2], tuning=ON_AVERAGE),
-    )
-    return fallback("surely in the middle", CheckCollar("all of it shows", bed, tuning=WHOLE), three)
+def closely(gown: Scope, name: str, tuning: CheckCollarTuning) -> list[Behaviour]:
+    """Look at the collar with both hands' cameras, and judge it by that."""
+    return [LookAtCollar(f"{name}?", gown), CheckCollar(name, gown, tuning=tuning)]
 
 
 def over(bed: Scope) -> Behaviour:
@@ -252,7 +234,8 @@ def seated(bed: Scope) -> Behaviour:
 
 def laid_in_the_middle(gown: Scope) -> Behaviour:
     """Take the collar and lay it in the middle."""
-    return sequence(f"{gown.prefix}by its collar", Spread("spread", gown), back_off("clear the view", gown))
+    look, lay = LookAtCollar("where is it", gown), Spread("spread", gown)
+    return sequence(f"{gown.prefix}by its collar", look, lay, back_off("clear the view", gown))
 
 
 def straight(gown: Scope) -> Behaviour:
@@ -263,11 +246,11 @@ def straight(gown: Scope) -> Behaviour:
     """
 
     def straighten() -> Behaviour:
-        by_now = CheckCollar("straight by now", gown, tuning=NEAT)
+        by_now = sequence(f"{gown.prefix}by now", *closely(gown, "straight by now", NEAT))
         rest = fallback(f"{gown.prefix}straight", by_now, laid_in_the_middle(gown))
         return sequence(f"{gown.prefix}lay it straight", over(gown), rest)
 
-    lies = CheckCollar("lies straight", gown, tuning=NEAT)
+    lies = sequence(f"{gown.prefix}lies", *closely(gown, "lies straight", NEAT))
     laid = RecoverBy(f"{gown.prefix}until it is straight", lies, {Reason.COLLAR_ASIDE: straighten}, attempts=3)
     return fallback(f"{gown.prefix}as straight as may be", laid, back_off("leave it", gown))
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import GraspPoint
-from caretree.skills.belief.shoulders import COLLAR_SEEN
-from caretree.skills.core.ports import Key
+from caretree.skills.belief.shoulders import COLLAR_SEEN, CloseLook
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_collar import CheckCollar, CheckCollarTuning
@@ -54,36 +53,23 @@ def test_a_collar_off_its_place_or_unseen_is_no_success(seen, reason):
 
 
 @pytest.mark.parametrize(
-    ("before", "seen", "reason"),
+    ("shown", "closely", "reason"),
     [
-        ((0.03, 0.09), collar(0.0), None),
-        ((0.03, 0.09), collar(0.06), Reason.COLLAR_ASIDE),
-        ((-0.03, -0.09), collar(-0.06), Reason.COLLAR_ASIDE),
-        ((0.09,), collar(-0.03), None),
-        ((0.0, 0.0), collar(0.0, headward=0.12), Reason.COLLAR_ASIDE),
-        ((0.0, 0.0), PerceptionFailure(Problem.NOTHING_SEEN, "neck binding"), None),
-        ((0.0,), PerceptionFailure(Problem.NOTHING_SEEN, "neck binding"), Reason.NOTHING_SEEN),
-        ((), collar(0.0), Reason.NOTHING_SEEN),
+        (0.96, False, None),
+        (0.9, False, Reason.COLLAR_ASIDE),
+        (0.9, True, None),
+        (0.8, True, Reason.COLLAR_ASIDE),
+        (0.6, True, Reason.NOTHING_SEEN),
+        (0.6, False, Reason.NOTHING_SEEN),
     ],
 )
-def test_seen_from_several_places_it_counts_on_average(before, seen, reason):
-    tuning = CheckCollarTuning(min_looks=2, max_aside=0.045)
+def test_of_a_collar_that_is_looked_at_from_the_head_more_has_to_show_than_closely(shown, closely, reason):
+    seen = replace(collar(0.0), confidence=shown)
+    tuning = CheckCollarTuning(min_shown=0.7, min_told=0.88, min_told_from_head=0.95)
     run = LeafBench(
-        lambda context: CheckCollar("lies well", context, before=before, tuning=tuning),
+        lambda context: CheckCollar("lies well", context, tuning=tuning),
         beside_bed(collar_middle=seen, arm=lambda frame, side, **_: lying_posture(side)),
     )
+    if closely:
+        CloseLook.of(run.skill).seen = seen
     assert run.ended(seconds=1.0) == reason
-
-
-@pytest.mark.parametrize(("shown", "looks"), [(0.9, (0.02, 0.12)), (0.6, (0.02,))])
-def test_a_look_that_does_not_decide_adds_to_those_before_where_enough_shows(shown, looks):
-    run = LeafBench(
-        lambda context: CheckCollar(
-            "look", context, before=(0.02,), decide=False, tuning=CheckCollarTuning(min_shown=0.7), looks=Key("looks")
-        ),
-        beside_bed(
-            collar_middle=replace(collar(0.12), confidence=shown), arm=lambda frame, side, **_: lying_posture(side)
-        ),
-    )
-    assert run.ended(seconds=1.0) is None
-    assert run.context.board.get("looks") == pytest.approx(looks)

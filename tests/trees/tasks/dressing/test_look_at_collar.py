@@ -1,0 +1,90 @@
+"""Both hands' cameras look at the collar, low from the head of the bed."""
+
+import numpy as np
+import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import GraspPoint
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
+from caretree.sim.world import SIDES
+from caretree.skills.belief.shoulders import CloseLook, close_look
+from caretree.skills.geometry.stances import stance_at_head
+from caretree.skills.scripted.scripted_person import lying_posture
+from caretree.trees.tasks.dressing.look_at_collar import LookAtCollar
+
+from ....skills.bench import LeafBench, beside_bed
+
+PLACES = {"left_hand": (0.02, 0.9), "right_hand": (0.06, 0.7)}  # x of the collar [m] and how much of it shows
+
+
+def bench(places, looks=None):
+    """A bench on which each camera sees the collar where `places` says, or not at all."""
+
+    def seen(frame, near_in_map, away):
+        if looks is not None:
+            looks.append((frame.camera, run.world.observe().arm_positions))
+        if frame.camera not in places:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding")
+        x, shown = places[frame.camera]
+        return GraspPoint(
+            stamp=frame.stamp,
+            confidence=shown,
+            target="collar_middle",
+            position_in_map=np.array((x, -0.5, 0.8)),
+            approach_in_map=np.array((0.0, 0.0, -1.0)),
+            closing_in_map=np.array((0.0, 1.0, 0.0)),
+        )
+
+    arm = {"arm": lambda frame, side, **_: lying_posture(side)}
+    run = LeafBench(
+        lambda context: LookAtCollar("look", context), beside_bed(stand=stance_at_head(), collar_middle=seen, **arm)
+    )
+    return run
+
+
+def eye(camera, arms):
+    """Where a camera was from the middle between the shoulders (3,) with such arms [m]."""
+    middle = np.mean([lying_posture(side).points_in_map[0] for side in SIDES], axis=0)
+    return kinematics_of(BAXTER).pose_camera_in_map(camera, stance_at_head(), arms, 0.0)[:3, 3] - middle
+
+
+def test_the_mean_of_what_both_hands_see_from_low_on_either_side_of_the_head_is_known():
+    looks = []
+    run = bench(PLACES, looks)
+    assert run.ended(seconds=60.0) is None
+    known = close_look(run.skill)
+    assert known is not None
+    assert known.position_in_map[0] == pytest.approx(0.04)
+    assert known.confidence == pytest.approx(0.8)
+    assert [camera for camera, _ in looks] == ["left_hand", "right_hand"]
+    for (camera, hands), side in zip(looks, (-1.0, 1.0), strict=True):
+        x, y, z = eye(camera, hands)
+        assert 0.3 < side * x < 0.6
+        assert -0.6 < y < -0.3, "headward"
+        assert 0.15 < z < 0.45
+    assert run.world.observe().arm_positions == pytest.approx(run.world.robot.ready, abs=0.02)
+
+
+def test_one_hand_that_sees_it_is_enough():
+    run = bench({"right_hand": PLACES["right_hand"]})
+    assert run.ended(seconds=60.0) is None
+    assert close_look(run.skill).position_in_map[0] == pytest.approx(0.06)
+
+
+def test_where_no_hand_sees_it_nothing_is_known_closely():
+    run = bench({})
+    assert run.ended(seconds=60.0) is None
+    assert close_look(run.skill) is None
+
+
+def test_what_was_just_looked_at_is_not_looked_at_again():
+    looks = []
+    run = bench(PLACES, looks)
+    assert run.ended(seconds=60.0) is None
+    known = close_look(run.skill)
+    run.skill.initialise()
+    again = bench(PLACES, looks)
+    CloseLook.of(again.skill).seen = known
+    before = len(looks)
+    assert again.ended(seconds=1.0) is None
+    assert len(looks) == before
