@@ -46,6 +46,7 @@ def parser() -> argparse.ArgumentParser:
     states.add_argument(
         "--kinds", nargs="+", choices=KINDS, default=KINDS, metavar="KIND", help=f"to prepare: {', '.join(KINDS)}"
     )
+    states.add_argument("--hang", action="store_true", help="also gowns on their hooks as they come to hang, 12 s each")
     states.add_argument("--no-held-out", action="store_true", help="leave out the cuts that only tests see")
     data = sub.add_parser("data", help="labelled pictures of states, to train on")
     data.add_argument("folder", metavar="DIR", help="made when it is not there")
@@ -85,7 +86,7 @@ def main(argv: list[str], seers: Callable[[Path | None], Mapping[str, Any]] | No
         from .states import make_states
 
         gowns = () if options.no_held_out else tuple(HELD_OUT_GOWNS)
-        more = {"kinds": options.kinds, "frames": options.frames}
+        more = {"kinds": options.kinds, "frames": options.frames, "hang": options.hang}
         print(make_states(options.folder, options.seeds, options.run, gowns, _say, **more))
     elif options.command == "data":
         from .dataset import DatasetSpec, make_dataset

@@ -30,7 +30,9 @@ _FROM = {  # where the base stands for a look at each kind of state
     "laid": ("bed_right", "bed_left", "lay"),
     "worn": ("bed_left", "bed_right"),
 }
-_AWAY = np.array((60.0, 0.0, 0.0))  # where the robot of meshes stands: the one in the picture is of capsules
+_AWAY = np.array((60.0, 0.0, 0.0))  # where the robot of meshes stands while the one in the picture is of capsules
+_OWN_ARMS = 0.6  # of the head's pictures for training, which show the robot's own arms, of meshes, as it sees them
+_ARM_SPREAD = (0.05, 0.6)  # of the joints from the ready posture, in half of these and in the others [rad]
 _MOST_ROBOT = 0.35  # of a picture, beyond which the robot is left out
 _HAND_DISTANCE = (0.28, 0.85)  # of a hand's camera from what it looks at [m]
 
@@ -119,10 +121,12 @@ def draw_picture(
     appearance = draw_look(look, rng, held_out=part == "heldout", skin=skin, light=light)
     camera = camera or ("head" if rng.random() < 0.5 else "left_hand")
     size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
-    pose = _head_pose(state, rng) if camera == "head" else _hand_pose(state, rng)
-    room = _room(state, appearance, robot=rng.random() < 0.8, gown=gown)
+    pose, base = _head_pose(state, rng) if camera == "head" else (_hand_pose(state, rng), None)
+    robot = rng.random() < 0.8
+    own = _own_arms(base, rng) if part == "train" and base is not None and rng.random() < _OWN_ARMS else None
+    room = _room(state, appearance, robot=robot and own is None, gown=gown, own=own)
     drawn = room.renderer.render(pose, size, lens)
-    robots = [number for name, number in room.renderer.ids.items() if name.startswith("object_")]
+    robots = [number for name, number in room.renderer.ids.items() if name.startswith(("object_", "robot_"))]
     if np.isin(drawn.ids, robots).mean() > _MOST_ROBOT:
         room = _room(state, appearance, robot=False, gown=gown)
         drawn = room.renderer.render(pose, size, lens)
@@ -134,8 +138,20 @@ def draw_picture(
     return Picture(frame=frame, labels=labels, state=state, look=look)
 
 
-def _room(state: RoomState, appearance: Appearance, *, robot: bool, gown: bool) -> Backdrop:
-    """The room of a state, ready to draw."""
+def _own_arms(base: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """The base (3,) that a picture is taken from, and postures (2, 7) of the arms before it [rad]."""
+    return base, BAXTER.ready + rng.normal(0.0, float(rng.choice(_ARM_SPREAD)), BAXTER.ready.shape)
+
+
+def _room(
+    state: RoomState,
+    appearance: Appearance,
+    *,
+    robot: bool,
+    gown: bool,
+    own: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Backdrop:
+    """The room of a state, ready to draw; with the state's `robot` of capsules, or with its `own` base and arms."""
     scene = state.scene
     person = _Still(
         trunk_capsules(scene.person, BED_TOP, scene.bed_xy), np.tile(scene.person.arm_radii, (2, 1)), state.arms
@@ -148,21 +164,21 @@ def _room(state: RoomState, appearance: Appearance, *, robot: bool, gown: bool) 
             mesh = capsule_mesh(np.zeros(3), np.array((0.0, 0.0, length)), float(capsule[6]))
             room.add(f"link{k}", *mesh, appearance.colours["robot" if k % 2 else "robot_grey"])
             room.renderer.set_pose(f"object_link{k}", along(capsule[:3], capsule[3:6]))
-    room.update(state.vertices, state.arms, kinematics.configuration(_AWAY, np.zeros((2, 7))))
+    room.update(state.vertices, state.arms, kinematics.configuration(*(own or (_AWAY, np.zeros((2, 7))))))
     if not gown:
         room.renderer.remove_cloth()
     return room
 
 
-def _head_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:
-    """The head's camera where the robot may stand, a bit off, turned a bit aside."""
+def _head_pose(state: RoomState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """The head's camera (4, 4) where the robot may stand, a bit off, turned a bit aside; and the base (3,) below it."""
     places = room_map().waypoints
     x, y, yaw = places[str(rng.choice(_FROM[state.kind]))]
     if state.kind == "held":  # wherever the gown is, it is before the robot
         x, y = state.vertices[:, :2].mean(axis=0) - rng.uniform(0.5, 0.8) * np.array((np.cos(yaw), np.sin(yaw)))
     base = np.array((x, y, yaw)) + rng.uniform(-1, 1, 3) * (0.25, 0.25, 0.25)
     pose = kinematics_of(BAXTER).pose_camera_in_map("head", base, np.zeros((2, 7)), float(rng.uniform(-0.5, 0.5)))
-    return pose @ _rolled(rng.normal(0.0, 0.03))
+    return pose @ _rolled(rng.normal(0.0, 0.03)), base
 
 
 def _hand_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:

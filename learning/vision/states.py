@@ -34,6 +34,7 @@ PREPARED = {
 }
 TEST_SEEDS = 5  # every fifth seed of the room is for tests: 104, 109, 114 ...
 FRAMES = 60  # taken from a recorded run
+HANGING = (1.5, 3.0, 4.5, 6.0, 8.0, 10.0, 12.0)  # when a gown on its hook is looked at, which a robot reaches in 6 [s]
 HUNG_HIGH = 0.02  # of a gown that hangs on its hook, its highest vertex is this near to the hook's height at least [m]
 LIES_LOW = 0.35  # above the mattress, below which the middle of a gown lies [m]
 
@@ -104,6 +105,39 @@ def prepared(seed: int, state: InitialState, gown: str | None = None) -> RoomSta
         )
     finally:
         world.close()
+
+
+def hanging(seed: int, instants: Sequence[float] = HANGING) -> list[RoomState]:
+    """The gown on its hook as it comes to hang while nobody touches it: it rolls up, its corners before it.
+
+    Args:
+        seed: of the room.
+        instants: when it is looked at [s]; a second costs about one.
+    """
+    from ...sim.bullet.world import BulletWorld
+    from ...sim.waiting import wait
+
+    world = BulletWorld(seed=seed)
+    states = []
+    try:
+        for instant in instants:
+            wait(world.clock, instant)
+            frame = world.truth_frame()
+            states.append(
+                RoomState(
+                    kind="hung",
+                    seed=seed,
+                    gown=world.scene.gown.name,
+                    person=world.scene.person.name,
+                    vertices=frame.vertices.astype(np.float32),
+                    arms=frame.arms.astype(np.float32),
+                    capsules=frame.robot_capsules.astype(np.float32),
+                    source=f"hanging for {instant} s",
+                )
+            )
+    finally:
+        world.close()
+    return states
 
 
 def recorded(folder: Path, frames: int = FRAMES) -> list[RoomState]:
@@ -198,6 +232,7 @@ def make_states(
     *,
     kinds: Sequence[str] = KINDS,
     frames: int = FRAMES,
+    hang: bool = False,
 ) -> Path:
     """Make what is missing of a folder of states; a file that is there is kept.
 
@@ -210,6 +245,7 @@ def make_states(
         say: takes lines of progress.
         kinds: of `KINDS`, those to be prepared.
         frames: taken from each recorded run.
+        hang: whether gowns on their hooks are also looked at as they come to hang; in rooms for tests they are not.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -221,6 +257,8 @@ def make_states(
             test = seed % TEST_SEEDS == TEST_SEEDS - 1
             if k % every == 0 or test:
                 jobs.append((f"{seed:04d}_{state}", lambda s=seed, at=state: [prepared(s, at)]))
+    for seed in (s for s in seeds if hang and s % TEST_SEEDS != TEST_SEEDS - 1):
+        jobs.append((f"{seed:04d}_hanging", lambda s=seed: hanging(s)))
     for gown, seed in ((g, s) for g in gowns for s in seeds if s % TEST_SEEDS == TEST_SEEDS - 1):
         for state in wanted:
             name = f"{seed:04d}_{gown}_{state}"

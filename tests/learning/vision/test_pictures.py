@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from caretree.learning.vision import pictures
 from caretree.learning.vision.labels import OTHER
+from caretree.learning.vision.pictures import _room as room
 from caretree.learning.vision.pictures import chosen_states, draw_picture
 
 from .still_room import still_state
@@ -35,6 +37,20 @@ def test_a_picture_shows_what_its_labels_say(states):
         shares.append((picture.labels.surface != OTHER).mean())
         assert (picture.frame.depth[picture.labels.surface != OTHER] > 0).mean() > 0.5
     assert np.mean(shares) > 0.1
+
+
+def test_the_robot_s_own_arms_show_in_some_of_the_head_s_pictures_for_training(states, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(pictures, "_room", lambda *given, own=None, **more: drawn.append(own) or room(*given, **more))
+    for number in range(8):
+        draw_picture(states, "train", 1, number, kind="hung", camera="head")
+    assert 0 < sum(own is not None for own in drawn) < len(drawn)
+    base, postures = next(own for own in drawn if own is not None)
+    assert (base.shape, postures.shape) == ((3,), (2, 7))
+    drawn.clear()
+    draw_picture(states, "train", 1, 0, kind="hung", camera="left_hand")
+    draw_picture(states, "test", 1, 0, kind="hung", camera="head")
+    assert not any(own is not None for own in drawn)
 
 
 def test_every_fifth_seed_is_for_tests(states):

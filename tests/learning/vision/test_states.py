@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from caretree.learning.vision import states as module
-from caretree.learning.vision.states import _bytes, make_states, read_states, recorded
+from caretree.learning.vision.states import _bytes, hanging, make_states, read_states, recorded
 from caretree.sim.errors import CaretreeError
+from caretree.sim.scene.initial_state import InitialState
 
 from .still_room import still_state
 
@@ -20,6 +21,23 @@ def test_what_is_made_is_read_again_and_not_made_twice(tmp_path, monkeypatch):
     found, digest = read_states(tmp_path)
     assert np.array_equal(found[0].vertices, still_state().vertices)
     assert digest == read_states(tmp_path)[1]
+
+
+def test_only_what_is_asked_for_is_prepared_and_hung_gowns_come_to_hang(tmp_path, monkeypatch):
+    prepared, hung = [], []
+    monkeypatch.setattr(module, "prepared", lambda seed, state, gown=None: prepared.append(state) or still_state())
+    monkeypatch.setattr(module, "hanging", lambda seed: hung.append(seed) or [still_state("hung", seed)] * 2)
+    make_states(tmp_path, range(113, 115), kinds=("hung",), hang=True)
+    assert prepared == [InitialState.GOWN_ON_HOOK] * 2
+    assert hung == [113]  # room 114 is for tests
+    assert len(read_states(tmp_path)[0]) == 2 + 2
+
+
+def test_a_gown_rolls_up_as_it_comes_to_hang():
+    before, after = hanging(110, (0.0, 1.5))
+    assert (before.kind, after.kind, after.seed) == ("hung", "hung", 110)
+    assert np.ptp(after.vertices[:, 0]) < np.ptp(before.vertices[:, 0])
+    assert np.abs(after.vertices - before.vertices).max() > 0.1
 
 
 def test_same_state_same_bytes():
