@@ -1,8 +1,8 @@
 """Pictures repainted in the colours that the rules read, and senses that look at those."""
 
 import numpy as np
-from caretree.perception.image.surfaces import Surface, surfaces
-from caretree.perception.learned.repainted import repainted
+from caretree.perception.image.surfaces import GOWN_SURFACES, Surface, surfaces
+from caretree.perception.learned.repainted import gown_repainted, repainted
 from caretree.sim.world import Frame, RoomMap
 
 BED = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
@@ -35,3 +35,13 @@ def test_the_colours_of_a_gown_stay():
     navy = np.full((16, 16, 3), (20, 30, 90))
     shown = repainted(frame(navy), np.full((16, 16), Surface.OUTSIDE, np.uint8)).rgb
     assert (shown == navy).all()
+
+
+def test_a_gown_that_is_seen_gets_the_colours_of_the_rules_and_nothing_else_has_them():
+    bands = np.repeat(np.array(GOWN_SURFACES, np.uint8), 5)[:, None] * np.ones(25, np.uint8)  # five rows each
+    seen = np.where(np.arange(25) < 15, bands, Surface.OTHER).astype(np.uint8)
+    for picture in (np.full((25, 25, 3), (20, 30, 90)), np.full((25, 25, 3), (250, 250, 250))):  # navy, white
+        told = surfaces(gown_repainted(frame(picture), seen).rgb)
+        for k, surface in enumerate(GOWN_SURFACES):
+            assert (told[5 * k + 1 : 5 * k + 4, :13] == surface).all()
+        assert not np.isin(told[:, 17:], GOWN_SURFACES).any()
