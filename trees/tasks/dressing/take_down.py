@@ -53,7 +53,7 @@ def take_down(context: Context) -> Stage:
         fallback(
             "take it",
             Retry("the other end first", patient(rail, by_both_ends), attempts=DRESSING.rail_attempts),
-            by_whatever_both_hold(rail),
+            Retry("whatever both hold", by_whatever_both_hold(rail), attempts=DRESSING.rail_attempts),
             from_one_hand(context),
         ),
         seconds=DRESSING.take_down_timeout,
