@@ -1,10 +1,14 @@
 """Whether an arm is inside its sleeve, as far as it shows."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, WornSleeve
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.stances import outwards
 from caretree.skills.scripted.scripted_person import lying_posture
 from py_trees.common import Status
 
@@ -85,3 +89,34 @@ def test_an_upper_arm_that_shows_bare_is_in_no_sleeve_whatever_hides_its_binding
     assert (skill.status, skill.failure.reason) == (Status.FAILURE, Reason.SLEEVE_MISSED)
     assert ran(HIDDEN, covered=0.5).status == Status.SUCCESS
     assert ran(HIDDEN, covered=PerceptionFailure(Problem.OUT_OF_REACH, "arm")).status == Status.SUCCESS
+
+
+@pytest.mark.parametrize(("covered", "status"), [(1.0, Status.SUCCESS), (0.6, Status.SUCCESS), (0.33, Status.FAILURE)])
+def test_a_sleeve_that_lies_along_its_arm_leaves_the_outer_side_bare(covered, status):
+    skill = ran(worn(), covered=covered)
+    assert skill.status == status
+    assert skill.failure is None or skill.failure.reason == Reason.SLEEVE_MISSED
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_outer_side_is_looked_at_between_the_bindings_away_from_the_body(side):
+    asked = []
+
+    def cover(frame, points_in_map):
+        asked.append(points_in_map)
+        return Cover(stamp=0.0, confidence=1.0, share=1.0)
+
+    posture = lying_posture(side)
+    seen = replace(worn(), side=side)
+    run = LeafBench(
+        lambda context: CheckSleeve("inside", context, side=side),
+        beside_bed(worn_sleeve=seen, arm=lambda frame, side, **_: lying_posture(side), skin_cover=cover),
+    )
+    run.ended(seconds=1.0)
+    shoulder, elbow = posture.points_in_map[:2]
+    upper = elbow - shoulder
+    along = (asked[-1] - shoulder) @ upper / (upper @ upper)
+    assert 0.2 < along.min() < along.max() < 0.5
+    off = asked[-1] - shoulder - along[:, None] * upper
+    assert np.linalg.norm(off, axis=1) == pytest.approx(0.035)
+    assert np.all(off @ outwards(side) > 0.02)
