@@ -69,6 +69,7 @@ def parser() -> argparse.ArgumentParser:
     test = sub.add_parser("evaluate", help="table of what is seen, beside the classical perception")
     test.add_argument("states", metavar="STATES", help="folder of `states`")
     test.add_argument("--network", type=Path, metavar="FILE", help="instead of the one in the package")
+    test.add_argument("--before", type=Path, metavar="FILE", help="another one, to be told beside it")
     test.add_argument("--pictures", type=whole_number, default=40, metavar="N", help="of each sort (default 40)")
     test.add_argument("--seed", type=seed, default=150, metavar="N", help="default 150")
     test.add_argument("--out", type=Path, metavar="FILE", help="also write the table, Markdown, and beside it JSON")
@@ -132,7 +133,11 @@ def _evaluate(options: argparse.Namespace, seers: Callable[[Path | None], Mappin
     if seers is None:
         raise CaretreeError("who sees is given by `caretree learn vision evaluate`; this was called without")
     states, digest = read_states(options.states)
-    tallies = evaluate(states, seers(options.network), pictures=options.pictures, seed=options.seed, say=_say)
+    who = dict(seers(options.network))
+    if options.before:
+        first = next(iter(who))
+        who = {first: who.pop(first), "before": seers(options.before)[first], **who}
+    tallies = evaluate(states, who, pictures=options.pictures, seed=options.seed, say=_say)
     found = rows(tallies)
     about = f"{options.pictures} pictures of each sort, seed {options.seed}, states {digest}"
     text = table(found, about)

@@ -29,6 +29,23 @@ def test_the_evaluation_is_given_both_ways_of_seeing(monkeypatch, tmp_path):
     assert list(given[0]) == ["learned", "classical"]
 
 
+def test_another_network_is_told_beside_the_first(monkeypatch, tmp_path):
+    told, from_ = [], []
+    monkeypatch.setattr("caretree.learning.vision.states.read_states", lambda folder: ([], "s"))
+    monkeypatch.setattr(
+        "caretree.learning.vision.evaluate.evaluate", lambda states, who, **more: told.append(list(who)) or {}
+    )
+    monkeypatch.setattr("caretree.learning.vision.table.rows", lambda tallies: [])
+
+    def seers(network):
+        from_.append(network)
+        return {"learned": None, "classical": None}
+
+    cli.main(["evaluate", str(tmp_path), "--network", "new", "--before", "old"], seers)
+    assert told == [["learned", "before", "classical"]]
+    assert [path.name for path in from_] == ["new", "old"]
+
+
 def test_the_classical_way_sees_nothing_in_an_empty_picture():
     pose = np.eye(4)
     pose[2, 3] = 2.0
