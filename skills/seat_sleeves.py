@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -13,6 +14,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import GraspPoint
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Frame, Side
+from .belief.face import FACE, cover_of, face_points
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
 from .control.carry import Carry
@@ -118,6 +120,13 @@ class SeatSleevesTuning(Quantities):
     brought_higher: float = quantity(
         0.03, "1", "of the upper arm, by which a draw raises an armhole that is drawn again", "choice: half of an error"
     )
+    chin_covered: float = quantity(
+        0.5,
+        "1",
+        "share of the chin that does not show skin, from which seams are laid down where they are",
+        "measured: 0 in draws whose collar came 0.13 m headward (176, 177), 1 half a second before the one of 178 was "
+        "over the mouth",
+    )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
@@ -214,11 +223,37 @@ class SeatSleeves(Skill):
             place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
             over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
             laid[side] = place + tuning.laid_at * UP
-        yield from carry_each(self, over, tuning.carry, tuning.apart)
-        yield from carry_each(self, laid, tuning.carry, tuning.apart)
+        yield from self._draw(over, laid, np.mean(shoulders, axis=0))
         # at once, so that neither side gives way to the other
         yield from together(*(let_cloth_go(self, side) for side in held))
         yield from withdraw(self, held, tuning.withdrawal)
+
+    def _draw(
+        self, over: Mapping[Side, np.ndarray], laid: Mapping[Side, np.ndarray], middle: np.ndarray
+    ) -> Iterator[None]:
+        """Carry seams over the shoulders and lay them down, no farther headward than the chin shows.
+
+        Both lift the collar between them: over mouth and nose, it lay there until it was laid straight (178, 267).
+        """
+        tuning = self.tuning
+        yield from look_towards(self, middle)
+        for goals in (over, laid):
+            for _ in carry_each(self, goals, tuning.carry, tuning.apart):
+                if self._chin_covered(middle):
+                    self.note("the collar has come to the chin")
+                    yield from carry_each(self, self._straight_down(laid), tuning.carry, tuning.apart)
+                    return
+                yield
+
+    def _straight_down(self, laid: Mapping[Side, np.ndarray]) -> dict[Side, np.ndarray]:
+        """As low as the places (3,) where they are `laid`, below where the hands are [m]."""
+        return {side: np.append(hand_now(self, side)[:2, 3], place[2]) for side, place in laid.items()}
+
+    def _chin_covered(self, middle: np.ndarray) -> bool:
+        """Whether cloth is about to come over mouth and nose; a face that does not show now was looked at before."""
+        with suppress(PerceptionFailure):
+            return cover_of(self, face_points(self, middle, FACE.chin)).share > self.tuning.chin_covered
+        return False
 
     def _reach(self, frame: Frame, side: Side) -> float:
         """How far up the upper arm an armhole is seen; one that does not show is low: somebody asked for this skill."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import Estimate, GraspPoint, WornSleeve
+from caretree.perception.estimates import Cover, Estimate, GraspPoint, WornSleeve
 from caretree.sim.world import SIDES
 from caretree.skills.control.hands import gap_between_arms
 from caretree.skills.core.reasons import Reason
@@ -21,7 +21,7 @@ LEANS = SeatSleevesTuning().leans  # [rad]
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tick=lambda bench: None):
+def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tick=lambda bench: None, chin=lambda: 0.0):
     reaches = dict.fromkeys(SIDES, 0.3) if reach is None else reach
 
     def worn(frame, side, arm_in_map):
@@ -50,6 +50,7 @@ def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tic
             shoulder_seam=seam,
             worn_sleeve=worn,
             gripped_cloth=cloth,
+            skin_cover=lambda frame, points_in_map: Cover(stamp=0.0, confidence=0.9, share=chin()),
             arm=lambda frame, side, **_: lying_posture(side),
         ),
         each_tick=each_tick,
@@ -81,6 +82,22 @@ def test_both_are_taken_outside_the_shoulders_drawn_over_them_and_laid_down_behi
         assert off[-1] @ HEADWARD > 0.10, "behind the shoulder"
         assert BED + 0.02 < way[-1, 2] < shoulder[2], "just above the mattress"
         assert run.way(side)[-1, 2] - way[-1, 2] > 0.08, "drawn back"
+
+
+def test_seams_that_take_the_collar_to_the_chin_are_laid_down_where_they_are():
+    looks = []
+
+    def chin():
+        looks.append(None)
+        return float(len(looks) > 8)
+
+    run = bench(chin=chin)
+    assert run.ended() is None
+    assert len(looks) == 9, "once it is covered, the seams go down"
+    for side in SIDES:
+        off = last_held(run, side) - SHOULDERS[side]
+        assert off @ HEADWARD < 0.12, "0.14 m where the chin stays free"
+        assert off[2] < 0.03
 
 
 @pytest.mark.parametrize("lean", [0.0, 0.45])  # of the hands, outwards [rad]
