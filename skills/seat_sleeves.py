@@ -123,9 +123,15 @@ class SeatSleevesTuning(Quantities):
     chin_covered: float = quantity(
         0.5,
         "1",
-        "share of the chin that does not show skin, from which seams are laid down where they are",
+        "share of the chin that does not show skin, from which seams are carried no farther",
         "measured: 0 in draws whose collar came 0.13 m headward (176, 177), 1 half a second before the one of 178 was "
         "over the mouth",
+    )
+    back: float = quantity(
+        0.08,
+        "m",
+        "footward, by which seams are carried back then",
+        "measured: let down where they were, they drew the collar on by 0.06 m, over the mouth (178)",
     )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
@@ -240,14 +246,21 @@ class SeatSleeves(Skill):
         for goals in (over, laid):
             for _ in carry_each(self, goals, tuning.carry, tuning.apart):
                 if self._chin_covered(middle):
-                    self.note("the collar has come to the chin")
-                    yield from carry_each(self, self._straight_down(laid), tuning.carry, tuning.apart)
+                    yield from self._draw_back(laid)
                     return
                 yield
 
-    def _straight_down(self, laid: Mapping[Side, np.ndarray]) -> dict[Side, np.ndarray]:
-        """As low as the places (3,) where they are `laid`, below where the hands are [m]."""
-        return {side: np.append(hand_now(self, side)[:2, 3], place[2]) for side, place in laid.items()}
+    def _draw_back(self, laid: Mapping[Side, np.ndarray]) -> Iterator[None]:
+        """Carry the seams a little footward, and lay them down there, as low as where they were to be `laid` (3,) [m].
+
+        Let down where they are, behind the shoulders, they draw the collar on by 0.06 m.
+        """
+        tuning = self.tuning
+        self.note("the collar has come to the chin")
+        back: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] - tuning.back * HEADWARD for side in laid}
+        yield from carry_each(self, back, tuning.carry, tuning.apart)
+        down: dict[Side, np.ndarray] = {side: np.append(back[side][:2], place[2]) for side, place in laid.items()}
+        yield from carry_each(self, down, tuning.carry, tuning.apart)
 
     def _chin_covered(self, middle: np.ndarray) -> bool:
         """Whether cloth is about to come over mouth and nose; a face that does not show now was looked at before."""

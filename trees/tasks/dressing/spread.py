@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -46,6 +47,8 @@ ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 NEAT = CheckCollarTuning(
     min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD, **TOLD
 )
+# Over the face it does not stay, however little of it shows (178).
+OFF_FACE = replace(NEAT, min_shown=0.0)
 
 
 def spread(context: Context) -> Stage:
@@ -117,7 +120,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
     def once_more() -> Behaviour:
         anew = Scope(context, f"{side} alone")
         face = CheckFace("the face is free", anew)
-        covered = {Reason.FACE_COVERED: lambda: straight(Scope(anew, "face"))}
+        covered = {Reason.FACE_COVERED: lambda: straight(Scope(anew, "face"), OFF_FACE)}
         drawn = sequence(
             f"{side} sleeve once more",
             *go_to_head(anew),
@@ -181,7 +184,7 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
         return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
 
     set_right_by: dict[Reason, Callable[[], Behaviour]] = {
-        Reason.FACE_COVERED: lambda: straight(Scope(bed, "off the face")),
+        Reason.FACE_COVERED: lambda: straight(Scope(bed, "off the face"), OFF_FACE),
         Reason.WRONG_SIDE: lambda: unfolded(context, bed),
         **dict.fromkeys(LOW, set_right),
         Reason.COLLAR_ASIDE: lambda: straight(Scope(bed, "collar")),
@@ -238,7 +241,7 @@ def laid_in_the_middle(gown: Scope) -> Behaviour:
     return sequence(f"{gown.prefix}by its collar", look, lay, back_off("clear the view", gown))
 
 
-def straight(gown: Scope) -> Behaviour:
+def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:
     """Draw a collar that lies aside over with the front, then lay it straight; where it gets no nearer, it may do.
 
     Laid in the middle alone, a collar that both sleeves had drawn 0.12 m aside went back to 0.08 m; with the front it
@@ -246,11 +249,11 @@ def straight(gown: Scope) -> Behaviour:
     """
 
     def straighten() -> Behaviour:
-        by_now = sequence(f"{gown.prefix}by now", *closely(gown, "straight by now", NEAT))
+        by_now = sequence(f"{gown.prefix}by now", *closely(gown, "straight by now", neat))
         rest = fallback(f"{gown.prefix}straight", by_now, laid_in_the_middle(gown))
         return sequence(f"{gown.prefix}lay it straight", over(gown), rest)
 
-    lies = sequence(f"{gown.prefix}lies", *closely(gown, "lies straight", NEAT))
+    lies = sequence(f"{gown.prefix}lies", *closely(gown, "lies straight", neat))
     laid = RecoverBy(f"{gown.prefix}until it is straight", lies, {Reason.COLLAR_ASIDE: straighten}, attempts=3)
     return fallback(f"{gown.prefix}as straight as may be", laid, back_off("leave it", gown))
 

@@ -166,6 +166,10 @@ def test_a_collar_over_the_face_is_laid_straight_before_a_sleeve_is_drawn_up():
     assert rehearsed(0.65, (0.0, -0.18)) == ("success", ["spread", "seat"])
 
 
+def test_a_collar_over_the_face_is_laid_straight_however_little_of_it_shows():
+    assert rehearsed(0.85, (0.0, -0.18), shown=0.5)[1][:1] == ["spread"]
+
+
 def test_with_a_collar_that_stays_over_the_face_nothing_is_claimed_and_no_sleeve_drawn():
     outcome, done = rehearsed(0.65, (0.0, -0.18), stays=True)
     assert outcome == "safe_stop"
