@@ -53,7 +53,6 @@ def take_down(context: Context) -> Stage:
         fallback(
             "take it",
             Retry("the other end first", patient(rail, by_both_ends), attempts=DRESSING.rail_attempts),
-            Retry("whatever both hold", by_whatever_both_hold(rail), attempts=DRESSING.rail_attempts),
             from_one_hand(context),
         ),
         seconds=DRESSING.take_down_timeout,
@@ -70,23 +69,8 @@ def other_side(rail: Scope) -> Behaviour:
     return sequence("the other side of the rail", Retreat("let go of it", again), there)
 
 
-def by_whatever_both_hold(rail: Scope) -> Behaviour:
-    """Both ends once more, however far from the hook: strips that hang in folds are longer than they look.
-
-    Both hands held the true ends, 0.62 m of neckline between them by the straight way past the hook, and let them go
-    (175).  Stretching it, which is next, tells whether they are ends.
-    """
-    last = Scope(rail, "any", keys=("corner", "sleeve", "other_sleeve", "hand", "other_hand", "length", "other_length"))
-    free = fallback("free hands again", Condition("nothing is held now", hands_open), Retreat("let go", last))
-    ends = take_ends(last, lengths_count=False)
-    return sequence("by whatever both hold", free, ends, TakeDown("lift it off", last))
-
-
-def take_ends(rail: Scope, *, lengths_count: bool = True) -> Behaviour:
-    """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one.
-
-    They are as far from the hook, together, as a neckline is long, where their `lengths_count`.
-    """
+def take_ends(rail: Scope) -> Behaviour:
+    """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one."""
     aside = Scope(rail, keys=("held_length",))
     lengths = rail.key("length"), rail.key("other_length")
 
@@ -94,11 +78,8 @@ def take_ends(rail: Scope, *, lengths_count: bool = True) -> Behaviour:
         other = {"hand": rail["other_hand"], "sleeve": rail["other_sleeve"], "corner": None, "length": lengths[1]}
         return TakeCorner(name, aside, **other, **ports)
 
-    told = Condition(
-        "both ends of the neckline", both_ends, Reason.GRASP_MISSED, length=lengths[0], other_length=lengths[1]
-    )
     return sequence(
-        f"{rail.prefix}take both ends",
+        "take both ends",
         FindCorner("look for a corner", rail),
         TakeCorner(
             "take a corner", rail, length=lengths[0], opening=DRESSING.corner_opening, depth=DRESSING.corner_depth
@@ -106,7 +87,7 @@ def take_ends(rail: Scope, *, lengths_count: bool = True) -> Behaviour:
         RaiseCorner("draw it aside", aside),
         FlipSideCheck("outside still to the front", rail, min_confidence=DRESSING.inside_confidence),
         fallback(
-            f"{rail.prefix}the other corner",
+            "the other corner",
             take_other(
                 "take the other corner", min_confidence=DRESSING.seen_confidence, opening=DRESSING.other_opening
             ),
@@ -117,13 +98,15 @@ def take_ends(rail: Scope, *, lengths_count: bool = True) -> Behaviour:
                 opening=DRESSING.other_opening,
             ),
             sequence(
-                f"{rail.prefix}from farther round",
+                "from farther round",
                 # weighed once, it may have stopped below the hook, where the hook carries less of the rest by now (173)
                 RaiseCorner("draw it farther round", aside, angle=DRESSING.farther_round, max_load=float("inf")),
                 take_other("take it from farther round"),
             ),
         ),
-        *([told] if lengths_count else []),
+        Condition(
+            "both ends of the neckline", both_ends, Reason.GRASP_MISSED, length=lengths[0], other_length=lengths[1]
+        ),
     )
 
 

@@ -65,10 +65,9 @@ class DressingTuning(Quantities):
         "choice: less, and one of them was not held by its end",
     )
     rail_attempts: int = quantity(
-        2,
+        4,
         "1",
-        "at both ends of a hung gown, and then at whatever both hands come to hold, before it is taken off its hook "
-        "with one hand",
+        "at both ends of a hung gown, the first one included, before it is taken off its hook with one hand",
         "choice: each takes 20 to 60 s; from one hand an end was taken for another 2 times of 3 (127, 146, 190)",
     )
     farther_round: float = quantity(

@@ -5,7 +5,6 @@ from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
 from caretree.skills.raise_corner import RaiseCorner
 from caretree.skills.take_corner import TakeCorner
-from caretree.skills.take_down import TakeDown
 from caretree.skills.unhook import Unhook
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
@@ -78,31 +77,3 @@ def test_a_corner_is_weighed_once_before_it_is_drawn_farther_round(monkeypatch):
     Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
     assert weighed["rail/draw it aside"] < 3.0  # [N]: a gown weighs 4 to 4.8 N
     assert weighed["rail/draw it farther round"] == float("inf")
-
-
-def test_ends_that_both_hands_hold_are_lifted_off_in_the_end_however_near_to_the_hook(monkeypatch):
-    taken = []
-
-    def takes(self):
-        taken.append(self.name)
-        self.length = 0.3  # [m]: both together are 0.6 m, less than a neckline
-        yield
-
-    def lifted(self):
-        taken.append(self.name)
-        self.load = 4.0  # [N]
-        yield
-
-    def draws(self):
-        self.held_length = 0.3  # [m]
-        yield
-
-    monkeypatch.setattr(RaiseCorner, "steps", draws)
-    monkeypatch.setattr(TakeCorner, "steps", takes)
-    monkeypatch.setattr(TakeDown, "steps", lifted)
-    task = load_task("dressing")
-    world, senses = task.scripted(1)
-    run = Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)})
-    assert run.run().outcome == "success"
-    pair = ["take a corner", "take the other corner"]
-    assert taken == [f"rail/{name}" for name in pair * 2] + ["rail/any/" + name for name in (*pair, "lift it off")]
