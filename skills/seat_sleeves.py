@@ -133,6 +133,12 @@ class SeatSleevesTuning(Quantities):
         "footward, by which seams are carried back then",
         "measured: let down where they were, they drew the collar on by 0.06 m, over the mouth (178)",
     )
+    on_shoulder: float = quantity(
+        0.14,
+        "m",
+        "above where they are laid behind the shoulders, to which they are let down then",
+        "measured: as low as there, hands met the shoulders with 36 and 47 N (178)",
+    )
     laid_at: float = quantity(
         -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
     )
@@ -251,7 +257,7 @@ class SeatSleeves(Skill):
                 yield
 
     def _draw_back(self, laid: Mapping[Side, np.ndarray]) -> Iterator[None]:
-        """Carry the seams a little footward, and lay them down there, as low as where they were to be `laid` (3,) [m].
+        """Carry the seams a little footward, and lay them down there, over the shoulders behind which they were `laid`.
 
         Let down where they are, behind the shoulders, they draw the collar on by 0.06 m.
         """
@@ -259,7 +265,9 @@ class SeatSleeves(Skill):
         self.note("the collar has come to the chin")
         back: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] - tuning.back * HEADWARD for side in laid}
         yield from carry_each(self, back, tuning.carry, tuning.apart)
-        down: dict[Side, np.ndarray] = {side: np.append(back[side][:2], place[2]) for side, place in laid.items()}
+        down: dict[Side, np.ndarray] = {
+            side: np.append(back[side][:2], place[2] + tuning.on_shoulder) for side, place in laid.items()
+        }
         yield from carry_each(self, down, tuning.carry, tuning.apart)
 
     def _chin_covered(self, middle: np.ndarray) -> bool:

@@ -107,6 +107,16 @@ def test_a_collar_that_lies_well_is_left_alone(aside):
     assert run.sent == 0
 
 
+def test_a_collar_of_which_too_little_shows_is_laid_anew_however_near_it_looks():
+    run = bench(collar=dataclasses.replace(collar_at(0.02, -0.53), confidence=0.75))
+    assert run.ended() is None
+    hands = [hand for hand in ("left", "right") if len(carried(run, hand))]
+    assert len(hands) == 1
+    way = carried(run, hands[0])
+    assert way[:, 0].min() < way[0, 0] - 0.04, "past its place, to the other side"
+    assert way[-1, 0] == pytest.approx(way[0, 0] - 0.01, abs=0.015)
+
+
 def test_a_collar_that_was_taken_low_at_the_flank_is_laid_down_above_the_chest():
     low = dataclasses.replace(collar_at(0.18, -0.53), position_in_map=np.array((0.18, -0.53, 0.79)))
     run = bench(collar=low)
