@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -46,8 +45,8 @@ class LookAtCollar(Skill):
     """Sees with the hands' cameras where the middle of the neckline lies; what was seen since it was touched, is known.
 
     The head's camera looks down on a collar that hangs down the throat, and takes it for folded under.  The hands look
-    along the chest, from either side of the head, and the mean of both counts.  Where no hand gets there, or none sees
-    it, the head's looks have to do.  The robot stands at the head of the bed; the hands end in the ready posture.
+    along the chest, from either side of the head, and the mean of both counts.  Where not both get there and see it,
+    looks from the head have to do.  The robot stands at the head of the bed; the hands end in the ready posture.
     """
 
     tuning = Input(LookAtCollarTuning, default=LookAtCollarTuning(), doc="numbers of this skill")
@@ -59,12 +58,12 @@ class LookAtCollar(Skill):
         if close_look(self, self.tuning.max_age) is not None:
             yield
             return
-        sides = yield from self._go(middle)
+        there = yield from self._go(middle)
         yield from self.wait(self.tuning.settle_time)
-        seen = self._looks(sides, middle)
+        seen = self._looks(middle) if there else []
         yield from move_arms(self, self.world.robot.ready, speed=careful(self, self.tuning.speed))
-        if not seen:
-            self.note("no hand sees the collar")
+        if len(seen) < len(SIDES):
+            self.note("not both hands see the collar")
             return
         places = [each.position_in_map for each in seen]
         shown = float(np.mean([each.confidence for each in seen]))
@@ -73,15 +72,14 @@ class LookAtCollar(Skill):
         told = (f"{off_middle(place, middle)[0] * 100:.0f} cm aside" for place in places)
         self.note(f"{shown:.0%} of the collar shows, {', '.join(told)}")
 
-    def _go(self, middle: np.ndarray) -> Generator[None, None, Sequence[Side]]:
-        """Bring both hands to the first places that they get to, else one of them; says which are there."""
-        together = [SIDES, *((side,) for side in SIDES)]
-        for sides, eye in product(together, self.tuning.eyes):
+    def _go(self, middle: np.ndarray) -> Generator[None, None, bool]:
+        """Bring both hands to the first places that they get to, if there are any."""
+        for eye in self.tuning.eyes:
             with suppress(MotionError):
-                views = {side: self._view(side, middle, eye) for side in sides}
+                views: dict[Side, np.ndarray] = {side: self._view(side, middle, eye) for side in SIDES}
                 yield from move_hands(self, views, speed=careful(self, self.tuning.speed), way="any")
-                return sides
-        return ()
+                return True
+        return False
 
     def _view(self, side: Side, middle: np.ndarray, eye: tuple[float, float, float]) -> np.ndarray:
         """Pose (4, 4) of a hand whose camera is at `eye` from the middle between the shoulders (3,) [m]."""
@@ -89,10 +87,10 @@ class LookAtCollar(Skill):
         place = middle + aside * outwards(side) + headward * HEADWARD + up * UP
         return view_of(self.world.robot, side, middle + self.tuning.above * UP, place)
 
-    def _looks(self, sides: Sequence[Side], middle: np.ndarray) -> list[GraspPoint]:
-        """What each of the hands sees of it."""
+    def _looks(self, middle: np.ndarray) -> list[GraspPoint]:
+        """What each of the hands sees of it, if it does."""
         looks: list[GraspPoint] = []
-        for side in sides:
+        for side in SIDES:
             with suppress(PerceptionFailure):
                 frame = self.world.look(f"{side}_hand")
                 looks.append(self.context.senses.collar_middle(frame, near_in_map=middle, away=(0.0, 0.0)))

@@ -216,7 +216,13 @@ def looked_again(context: Context, bed: Scope) -> Behaviour:
 
 def closely(gown: Scope, name: str, tuning: CheckCollarTuning) -> list[Behaviour]:
     """Look at the collar with both hands' cameras, and judge it by that."""
-    return [LookAtCollar(f"{name}?", gown), CheckCollar(name, gown, tuning=tuning)]
+    return [look_closely(gown, name), CheckCollar(name, gown, tuning=tuning)]
+
+
+def look_closely(gown: Scope, name: str) -> Behaviour:
+    """Look with both hands' cameras; where they are in each other's way, or something is, the head's camera tells."""
+    as_it_is = back_off(f"back: {name}", gown)
+    return fallback(f"{gown.prefix}look: {name}", LookAtCollar(f"{name}?", gown), as_it_is)
 
 
 def over(bed: Scope) -> Behaviour:
@@ -237,8 +243,8 @@ def seated(bed: Scope) -> Behaviour:
 
 def laid_in_the_middle(gown: Scope) -> Behaviour:
     """Take the collar and lay it in the middle."""
-    look, lay = LookAtCollar("where is it", gown), Spread("spread", gown)
-    return sequence(f"{gown.prefix}by its collar", look, lay, back_off("clear the view", gown))
+    lay = (Spread("spread", gown), back_off("clear the view", gown))
+    return sequence(f"{gown.prefix}by its collar", look_closely(gown, "where is it"), *lay)
 
 
 def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:

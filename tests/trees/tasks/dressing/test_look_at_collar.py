@@ -65,14 +65,9 @@ def test_the_mean_of_what_both_hands_see_from_low_on_either_side_of_the_head_is_
     assert run.world.observe().arm_positions == pytest.approx(run.world.robot.ready, abs=0.02)
 
 
-def test_one_hand_that_sees_it_is_enough():
-    run = bench({"right_hand": PLACES["right_hand"]})
-    assert run.ended(seconds=60.0) is None
-    assert close_look(run.skill).position_in_map[0] == pytest.approx(0.06)
-
-
-def test_where_no_hand_sees_it_nothing_is_known_closely():
-    run = bench({})
+@pytest.mark.parametrize("places", [{}, {"right_hand": PLACES["right_hand"]}])
+def test_where_not_both_hands_see_it_nothing_is_known_closely(places):
+    run = bench(places)
     assert run.ended(seconds=60.0) is None
     assert close_look(run.skill) is None
 
