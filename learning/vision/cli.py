@@ -66,6 +66,7 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument(
         "--rate", type=_rate, default=2e-3, metavar="X", help="of learning, at the start (default 0.002)"
     )
+    train.add_argument("--mean-with", type=Path, metavar="PATH", help="write the mean of these weights and the trained")
     test = sub.add_parser("evaluate", help="table of what is seen, beside the classical perception")
     test.add_argument("states", metavar="STATES", help="folder of `states`")
     test.add_argument("--network", type=Path, metavar="FILE", help="instead of the one in the package")
@@ -121,6 +122,7 @@ def _train(options: argparse.Namespace) -> None:
         start=options.start,
         apart=options.apart,
         learning_rate=options.rate,
+        mean_with=options.mean_with,
     )
     print(path)
 

@@ -34,6 +34,7 @@ def train(
     start: Path | None = None,
     apart: Path | None = None,
     learning_rate: float = RATE,
+    mean_with: Path | None = None,
 ) -> Path:
     """Train, or go on with a training.
 
@@ -47,6 +48,8 @@ def train(
         apart: folder of a dataset to calibrate on, best of rooms that no training picture shows: in rooms that it
             knows the network is right more often.  None keeps every twelfth picture of `folders` from the training.
         learning_rate: at the start.
+        mean_with: another training or ONNX file; the mean of its weights and the trained ones is calibrated and
+            written: trained on from there with other data, each is better at other pictures.
 
     Returns:
         The ONNX file.
@@ -75,6 +78,12 @@ def train(
         about["start"] = _begin_with(network, start)
     budget = Budget(steps=steps, learning_rate=learning_rate, save_every=min(100, steps))
     record = fit(objective, budget, seed=seed, folder=out, about=about, say=say)
+    if mean_with is not None:
+        other = SeeingNetwork()
+        record["mean_with"] = _begin_with(other, mean_with)
+        with torch.no_grad():
+            for weights, others in zip(network.parameters(), other.parameters(), strict=True):
+                weights.lerp_(others, 0.5)
     say(f"calibrating on {len(kept['surface'])} pictures that were not trained on")
     made = time.strftime("%Y-%m-%d", time.gmtime())
     return export(network, out / "seeing.onnx", {**record, "made": made}, calibrate(network, kept))

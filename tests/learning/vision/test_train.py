@@ -178,6 +178,18 @@ def test_a_training_begins_with_a_network_that_was_told_less(tmp_path):
     assert not stem[:, 6:].any()
 
 
+def test_the_mean_of_a_training_and_what_it_began_with_is_written(folder, tmp_path):
+    first = train([folder], tmp_path / "first", steps=1, seed=3, say=lambda _: None)
+    mean = train([folder], tmp_path / "then", steps=1, seed=4, say=lambda _: None, start=first, mean_with=first)
+    before, after, written = SeeingNetwork(), SeeingNetwork(), SeeingNetwork()
+    _begin_with(before, first)
+    _begin_with(after, tmp_path / "then")  # the checkpoint keeps what was trained
+    _begin_with(written, mean)
+    for one, other, both in zip(before.parameters(), after.parameters(), written.parameters(), strict=True):
+        assert torch.allclose((one + other) / 2, both, rtol=2e-3, atol=1e-4)
+    assert "mean_with" in json.loads(read_properties(mean)["record"])
+
+
 def test_a_training_cannot_begin_with_nothing(tmp_path):
     with pytest.raises(CaretreeError, match="no training to begin with"):
         _begin_with(SeeingNetwork(), tmp_path)

@@ -28,7 +28,7 @@ def sight(confidence=0.9, place=(1.0, 0.0, 0.5), surface=Surface.OUTSIDE):
 
 def sees(*sights):
     given = iter(sights)
-    return LearnedSight(SimpleNamespace(see=lambda frame: next(given)))
+    return LearnedSight(SimpleNamespace(see=lambda frame, bed_in_map: next(given)))
 
 
 def test_key_points_become_grasps():
