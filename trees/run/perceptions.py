@@ -1,7 +1,7 @@
 """Which eyes a run has: rules on colours, or the same rules on what the network sees; and who chooses pre-grasps.
 
-Of a gown on its hook the network answers itself which side shows and where the corners are (`HungGown`); the rules
-that ask more of it are shown its surfaces in the colours of the tapes.
+Of a gown on its hook that shows no tapes, the network answers itself which side shows and where the corners are
+(`HungGown`); the rules that ask more of it are shown its surfaces in the colours of the tapes.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ...perception.estimates import GownSide, GraspPoint, PreGrasp
+from ...perception.estimates import GraspPoint, PreGrasp
+from ...perception.image.garment import tapes_show
 from ...perception.learned.hung_gown import HungGown
 from ...perception.learned.learned_sight import LearnedSight
 from ...perception.learned.pre_grasp_policy import Chooser, chosen_pre_grasp, packaged_policy
@@ -97,7 +98,7 @@ def chosen_by_policy(
 
 
 def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
-    """Senses that answer as `senses` do of the repainted pictures, but for sides and corners of a gown on its hook.
+    """Senses that answer as `senses` do of the repainted pictures, but for sides and corners of a gown without tapes.
 
     Args:
         senses: that read colours.
@@ -105,19 +106,29 @@ def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
     """
     skin = _kept(lambda frame: repainted(frame, sight.sight(frame).surfaces))
     gown = _kept(lambda frame: gown_repainted(frame, sight.sight(frame).surfaces))
+
+    def in_colour(frame: Frame) -> Frame:
+        """Tapes tell more than what the network takes for them."""
+        return skin(frame) if tapes_show(frame) else gown(frame)
+
     asked: dict[str, Any] = {
-        name: _passed_on(senses, name, gown if name in OF_THE_GOWN else skin) for name in Senses.__abstractmethods__
+        name: _passed_on(senses, name, in_colour if name in OF_THE_GOWN else skin)
+        for name in Senses.__abstractmethods__
     }
     hung = HungGown(sight)
 
-    def side(self: object, frame: Frame) -> GownSide:
-        return hung.side(frame)
+    def of_network(name: str, answer: Callable[..., object]) -> Callable[..., object]:
+        by_rules = asked[name]
 
-    def shown_corner(self: object, frame: Frame, *, hook_in_map: np.ndarray, side: Side | None = None) -> GraspPoint:
+        def ask(self: object, frame: Frame, **options: Any) -> object:
+            return by_rules(self, frame, **options) if tapes_show(frame) else answer(frame, **options)
+
+        return ask
+
+    def shown_corner(frame: Frame, *, hook_in_map: np.ndarray, side: Side | None = None) -> GraspPoint:
         return hung.shown_corner(frame, hook_in_map, side)
 
     def hung_corner(
-        self: object,
         frame: Frame,
         *,
         side: Side,
@@ -127,7 +138,8 @@ def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
     ) -> GraspPoint:
         return hung.corner(frame, side, hook_in_map, near_in_map, beside_matters=other_length is None)
 
-    asked |= {"gown_side": side, "hung_side": side, "shown_corner": shown_corner, "hung_corner": hung_corner}
+    answers = {"gown_side": hung.side, "hung_side": hung.side, "shown_corner": shown_corner, "hung_corner": hung_corner}
+    asked |= {name: of_network(name, answer) for name, answer in answers.items()}
     return _senses_of("SensesOfNetwork", asked)
 
 

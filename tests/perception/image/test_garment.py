@@ -1,9 +1,11 @@
 """Labels and side of the gown against what the renderer drew."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.image.garment import gown_labels, gown_side
+from caretree.perception.image.garment import gown_labels, gown_side, tapes_show
 from caretree.perception.image.surfaces import Surface
 from caretree.sim.render.camera import CLOTH_ID, HEAD_SIZE, camera_intrinsics
 
@@ -25,14 +27,21 @@ def test_side(scenes, seed, outside):
     assert side.stamp == 3.0
 
 
+def test_a_gown_has_tapes_where_their_colours_show(scenes, black):
+    frame = scenes.on_rail(0).frame(0)
+    assert tapes_show(frame)
+    blue = frame.rgb.copy()
+    blue[np.isin(gown_labels(frame), (Surface.ARMHOLE, Surface.CUFF))] = (120, 160, 215)
+    assert not tapes_show(replace(frame, rgb=blue))
+    assert not tapes_show(black)
+
+
 def test_no_gown_and_no_depth(scenes, black):
     with pytest.raises(PerceptionFailure) as nothing:
         gown_labels(scenes.person(0).frame())
     assert nothing.value.kind == "nothing_seen"
     with pytest.raises(PerceptionFailure):
         gown_side(black)
-    from dataclasses import replace
-
     blind = scenes.stretched(0, outside=True).frame()
     with pytest.raises(PerceptionFailure) as no_depth:
         gown_labels(replace(blind, depth=np.zeros_like(blind.depth)))

@@ -92,6 +92,20 @@ def test_a_gown_s_hook_is_found_whatever_its_colour_and_its_side_by_its_area():
         through.hung_corner(black, side="left", hook_in_map=hook)
 
 
+def test_of_a_gown_with_tapes_the_rules_tell_sides_and_corners(monkeypatch):
+    class Rules(ClassicalSenses):
+        def hung_side(self, frame):
+            return "by its colours"
+
+    monkeypatch.setattr(perceptions, "tapes_show", lambda frame: True)
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    through = seen_by_network(Rules(room, 0), LearnedSight(Network(np.full((16, 16), Surface.INSIDE, np.uint8))))
+    assert through.hung_side(frame()) == "by its colours"
+    with pytest.raises(PerceptionFailure, match="gown"):
+        through.hook(frame())
+
+
 class Network:
     """Sees the same surfaces everywhere, and no key point."""
 
