@@ -57,7 +57,7 @@ MISSES = (
 
 # Seen from the head of the bed, cuffs of arms inside them show 17 to 58 % of the way round (101, 103); whether an arm
 # is inside is looked at from beside it.  Skin of the shoulder shows there beside the neckline of 3 dressed people of 8.
-FROM_HEAD = CheckSleeveTuning(min_share_round=0.1, min_covered=0.0)
+FROM_HEAD = CheckSleeveTuning(min_share_round=0.1, min_covered=0.0, min_outer_covered=0.0)
 
 
 def arm_scope(context: Context, name: str, side: Side) -> Scope:

@@ -35,7 +35,7 @@ from .tuning import DRESSING
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 UNSEEN = (Reason.ARM_LOST, Reason.NOTHING_SEEN)
 # From the head of the bed a worn cuff showed 8 % of the way round its arm ten times in turn (290): asked from beside.
-HOWEVER_LITTLE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0)
+HOWEVER_LITTLE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0, min_outer_covered=0.0)
 BOTH_ALIKE = CheckSleeveTuning(before_counts=0.5)  # one is right where the other one is off by 0.1 (156)
 
 TOLD = {"min_told": DRESSING.collar_told, "min_told_from_head": DRESSING.collar_told_from_head}
