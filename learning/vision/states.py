@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from ...sim.errors import CaretreeError
 from ...sim.evaluate.crossings import arm_line, crossing
 from ...sim.scene.initial_state import InitialState
 from ...sim.scene.scene import BED_TOP, RAIL_HEIGHT, Scene, draw_scene
+
+if TYPE_CHECKING:
+    from ...sim.bullet.world import BulletWorld
 
 KINDS = ("hung", "held", "laid", "worn")
 # What each state of the room shows, and for every how many rooms it is made.
@@ -92,17 +95,7 @@ def prepared(seed: int, state: InitialState, gown: str | None = None) -> RoomSta
     world = BulletWorld(seed=seed, gown=gown)
     try:
         world.set_initial_state(state)
-        frame = world.truth_frame()
-        return RoomState(
-            kind=PREPARED[state][0],
-            seed=seed,
-            gown=world.scene.gown.name,
-            person=world.scene.person.name,
-            vertices=frame.vertices.astype(np.float32),
-            arms=frame.arms.astype(np.float32),
-            capsules=frame.robot_capsules.astype(np.float32),
-            source=f"prepared {state}",
-        )
+        return _state_of(world, PREPARED[state][0], seed, f"prepared {state}")
     finally:
         world.close()
 
@@ -122,22 +115,25 @@ def hanging(seed: int, instants: Sequence[float] = HANGING) -> list[RoomState]:
     try:
         for instant in instants:
             wait(world.clock, instant)
-            frame = world.truth_frame()
-            states.append(
-                RoomState(
-                    kind="hung",
-                    seed=seed,
-                    gown=world.scene.gown.name,
-                    person=world.scene.person.name,
-                    vertices=frame.vertices.astype(np.float32),
-                    arms=frame.arms.astype(np.float32),
-                    capsules=frame.robot_capsules.astype(np.float32),
-                    source=f"hanging for {instant} s",
-                )
-            )
+            states.append(_state_of(world, "hung", seed, f"hanging for {instant} s"))
     finally:
         world.close()
     return states
+
+
+def _state_of(world: BulletWorld, kind: str, seed: int, source: str) -> RoomState:
+    """What there is in a world now."""
+    frame = world.truth_frame()
+    return RoomState(
+        kind=kind,
+        seed=seed,
+        gown=world.scene.gown.name,
+        person=world.scene.person.name,
+        vertices=frame.vertices.astype(np.float32),
+        arms=frame.arms.astype(np.float32),
+        capsules=frame.robot_capsules.astype(np.float32),
+        source=source,
+    )
 
 
 def recorded(folder: Path, frames: int = FRAMES) -> list[RoomState]:
