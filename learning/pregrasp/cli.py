@@ -60,7 +60,7 @@ def parser() -> argparse.ArgumentParser:
     )
     train.add_argument("--trials", type=int, default=1000, metavar="N", help="active trials after them (default 1000)")
     train.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0")
-    train.add_argument("--grasp-only", action="store_true", help="ablation: the direct grasp alone")
+    train.add_argument("--grasp-only", action="store_true", help="ablation: a policy of direct grasps alone")
     train.add_argument(
         "--apart", type=Path, metavar="DATA", help="other states, in which it is tried to say how sure it can be"
     )
@@ -77,6 +77,9 @@ def parser() -> argparse.ArgumentParser:
     test = sub.add_parser("evaluate", help="ceiling of the oracle, success of a policy, agreement with PyBullet")
     test.add_argument("data", type=Path, metavar="DATA", help="folder of `data` that no training saw")
     test.add_argument("--policy", type=Path, metavar="FILE", help="a pregrasp.onnx")
+    test.add_argument(
+        "--against", type=Path, metavar="FILE", help="another pregrasp.onnx: which of both wins the same states"
+    )
     test.add_argument(
         "--engine", choices=("spring", "bullet"), default="spring", help="that tries the policy (default spring)"
     )
@@ -156,12 +159,14 @@ def _evaluate(options: argparse.Namespace) -> None:
     from .ceiling import table
     from .dataset import load_dataset
 
+    if options.against and not options.policy:
+        raise CaretreeError("--against compares two policies: name the other one with --policy")
     data = load_dataset(options.data)
     texts = [table(data)] if data.tells_ceiling else []
     if options.policy:
         from .evaluate import policy_table
 
-        texts.append(policy_table(data, options.policy, _say, engine=options.engine))
+        texts.append(policy_table(data, options.policy, _say, engine=options.engine, against=options.against))
     if options.bullet > 0:
         from .agreement import agreement_table
 

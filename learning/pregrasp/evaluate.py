@@ -90,17 +90,36 @@ def _succeeds(state: HungState, views: Views, action: Action, engine: str) -> bo
 
 
 def policy_table(
-    data: Dataset, path: Path, say: Callable[[str], None] = lambda text: None, *, engine: str = "spring"
+    data: Dataset,
+    path: Path,
+    say: Callable[[str], None] = lambda text: None,
+    *,
+    engine: str = "spring",
+    against: Path | None = None,
 ) -> str:
-    """Success as Markdown, each rate with its n and Wilson's 95 % interval; arguments as of `try_policy`."""
+    """Success as Markdown, each rate with its n and Wilson's 95 % interval.
+
+    Args:
+        data: the states.
+        path: of the policy.
+        say: takes lines of progress.
+        engine: of `ENGINES`, in which the actions are carried out.
+        against: of another policy, which is tried in the same states.
+
+    Raises:
+        CaretreeError: a file holds no policy, or the states cannot be tried.
+    """
     policy, everywhere = Policy(path), np.ones(len(data.seeds), bool)
     kinds = {"all states": everywhere}
     if data.tells_ceiling:
         found = ceiling(data)
         kinds |= {"hard states": found.hard, "states that the oracle can win": found.all}
     tried = try_policy(data, policy, say, engine=engine)
+    rows = [("best of all maps", tried.best), ("best of the direct maps", tried.direct)]
+    if against is not None:
+        rows.append((f"against it, {against}", try_policy(data, Policy(against), say, engine=engine).best))
     lines = [f"| {path.name}, {engine} | {' | '.join(kinds)} |", "|---|" + "---|" * len(kinds)]
-    for name, won in (("best of all maps", tried.best), ("best of the direct maps", tried.direct)):
+    for name, won in rows:
         lines.append(f"| {name} | {' | '.join(rate_text(won[kind]) for kind in kinds.values())} |")
     told = np.array([policy.confidence(value) for value in tried.value])
     mine, theirs, p = signs(tried.best, tried.direct)
@@ -110,4 +129,7 @@ def policy_table(
         f"A sweep is chosen in {rate_text(tried.primitive != DIRECT)}.  Calibration error of the confidence "
         f"{calibration_error(told, tried.best):.3f}, which is {told.mean():.2f} in the mean.",
     ]
+    for kind, chosen in kinds.items() if against is not None else ():
+        mine, theirs, p = signs(tried.best[chosen], rows[-1][1][chosen])
+        lines.append(f"Of {kind} it wins {mine} that {against} loses, and loses {theirs} (sign test p = {p:.2g}).")
     return "\n".join(lines)

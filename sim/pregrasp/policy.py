@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import CaretreeError
 from ..onnx_record import read_properties
 from .affordance import seen, votes
-from .numbers import PRIMITIVES
+from .numbers import DIRECT, PRIMITIVES
 from .surroundings import CELLS, surroundings, voted_corner
 from .views import Views
 
@@ -67,7 +67,10 @@ class Policy:
         return voted_corner(votes(self.maps(views), views), views.places()[0])
 
     def values(self, views: Views) -> np.ndarray:
-        """(n, 3, H, W) value of each action, -inf where none is thought of: off the gown, and far from the corner."""
+        """(n, 3, H, W) value of each action, -inf where none is thought of: off the gown, and far from the corner.
+
+        A policy that was trained on direct grasps alone thinks of no others.
+        """
         values = np.full((len(views.depth), len(PRIMITIVES), *views.depth.shape[1:]), -np.inf)
         places, spots = views.places()
         if not len(places):
@@ -78,6 +81,8 @@ class Policy:
         view, row, column = spots.T
         mirrored = self._taken(np.ascontiguousarray(cells[..., ::-1]), corners * MIRROR)[:, ::-1]
         values[view, :, row, column] = (self._taken(cells, corners) + mirrored) / 2
+        if self.record.get("grasp_only", False):
+            values[:, [k for k in range(len(PRIMITIVES)) if k != DIRECT]] = -np.inf
         return values
 
     def _taken(self, cells: np.ndarray, corners: np.ndarray) -> np.ndarray:

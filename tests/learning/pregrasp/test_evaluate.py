@@ -10,7 +10,7 @@ import pytest
 from caretree.learning.pregrasp import ceiling, dataset, evaluate
 from caretree.learning.pregrasp.calibration import calibration_error, fit_chance
 from caretree.learning.pregrasp.cli import main
-from caretree.learning.pregrasp.evaluate import ENGINES, try_policy
+from caretree.learning.pregrasp.evaluate import ENGINES, Tried, try_policy
 from caretree.learning.pregrasp.hung_state import hang
 from caretree.learning.pregrasp.oracle import corner_pixel
 from caretree.sim.errors import CaretreeError
@@ -32,6 +32,16 @@ class Told:
         row, column = self.pixel
         values[VIEW, PRIMITIVES.index("direct"), row, column] = 1.0
         return values
+
+
+class Named:
+    """A policy of which only the name of its file counts."""
+
+    def __init__(self, path: Path) -> None:
+        self.name = path.name
+
+    def confidence(self, _: float) -> float:
+        return 0.5
 
 
 @pytest.fixture
@@ -64,9 +74,29 @@ def test_the_command_tries_the_policy_in_the_engine_it_is_told(
 ) -> None:
     tried: list[str] = []
     monkeypatch.setattr(ceiling, "table", lambda _: "")  # of no attempts there is none
-    monkeypatch.setattr(evaluate, "policy_table", lambda *_, engine: tried.append(engine) or "")
+    monkeypatch.setattr(evaluate, "policy_table", lambda *_, engine, against: tried.append(engine) or "")
     assert main(["evaluate", str(tmp_path / "a"), "--policy", "any.onnx", "--engine", engine]) == 0
     assert tried == [engine]
+
+
+def test_two_policies_are_compared_in_the_same_states(
+    data: dataset.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    won = {"one.onnx": np.array([True]), "other.onnx": np.array([False])}
+
+    def told(_: object, policy: Named, *__: object, **___: object) -> Tried:
+        best = won[policy.name]
+        return Tried(best=best, direct=best, value=np.zeros(1), primitive=np.full(1, DIRECT))
+
+    monkeypatch.setattr(evaluate, "Policy", Named)
+    monkeypatch.setattr(evaluate, "try_policy", told)
+    everything = replace(data, oracle="none")
+    assert "against" not in evaluate.policy_table(everything, Path("one.onnx"))
+    text = evaluate.policy_table(everything, Path("one.onnx"), against=Path("other.onnx"))
+    assert "| against it, other.onnx | 0/1" in text
+    assert "Of all states it wins 1 that other.onnx loses, and loses 0 (sign test p = 1)." in text
+    with pytest.raises(CaretreeError, match="name the other one with --policy"):
+        main(["evaluate", str(tmp_path / "a"), "--against", "other.onnx"])
 
 
 def test_one_action_is_carried_out_once(data: dataset.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -81,6 +81,14 @@ def test_it_goes_on_where_it_stopped_and_runs_without_torch(folder: Path, monkey
         train(folder, out, Plan(steps=5, grasp_steps=3, trials=4))
 
 
+def test_a_policy_of_direct_grasps_alone_never_sweeps(folder: Path) -> None:
+    views = dataset.load_dataset(folder).views(0)
+    for grasp_only, known in ((False, [True, True, True]), (True, [False, True, False])):
+        plan = Plan(steps=1, grasp_steps=1, trials=0, grasp_only=grasp_only)
+        values = Policy(train(folder, folder.parent / f"out {grasp_only}", plan)).values(views)
+        assert np.isfinite(values).any((0, 2, 3)).tolist() == known
+
+
 def test_nothing_to_train_on_is_refused(folder: Path) -> None:
     with pytest.raises(CaretreeError, match="nothing to train on"):
         train(folder, folder.parent / "none", Plan(steps=0, trials=0))
