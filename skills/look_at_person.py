@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,7 +10,7 @@ from ..perception.errors import PerceptionFailure, Problem
 from ..perception.estimates import ArmPosture
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
-from .belief.person_tracking import see_person, watch_arm, watch_of
+from .belief.person_tracking import PERSON_TRACKING, head_view, see_person, visible_share, watch_arm, watch_of
 from .control.head import look_towards, pan_head
 from .core.ports import Input, Output
 from .core.reasons import Reason
@@ -48,9 +48,9 @@ class LookAtPersonTuning(Quantities):
 
 
 class LookAtPerson(Skill):
-    """Looks until the arm on `side` is known well, panning the head when it is not in view.
+    """Looks until the arm on `side` is known well, first where it was, then panning the head.
 
-    An arm that is covered now is taken to lie where it was seen before; it fails where it was not seen well then.
+    An arm that is covered where it was is taken to lie there still; it fails where it was not seen well then.
     """
 
     side = Input(Side, doc="arm of the person")
@@ -66,22 +66,46 @@ class LookAtPerson(Skill):
             yield from look_towards(self, self.world.room.bed[:, :2].mean(axis=0) + self.tuning.chest * HEADWARD[:2])
             return
         self.note(f"looks for the person's {self.side} arm")
-        lost = PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
+        known = watch_of(self).arms.get(self.side)
+        if known is not None:
+            yield from look_towards(self, known.points_in_map[1])
+            lost = yield from self._look()
+            if lost is None:
+                return
+            if self._covered():
+                yield from self._take_as_it_was(lost)
+                return
         for pan in self.tuning.pans:
             yield from pan_head(self, pan)
-            for _ in range(self.tuning.max_looks):
-                try:
-                    found = see_person(self)
-                except PerceptionFailure as stop:
-                    found, lost = [], stop
-                if self.side not in found:
-                    yield
-                    continue
-                posture = watch_of(self).arms[self.side]
-                if float(posture.deviation.max()) <= self.tuning.max_deviation:
-                    self.posture = posture
-                    return
-                yield from self.wait(self.tuning.look_interval)
+            lost = yield from self._look()
+            if lost is None:
+                return
+        yield from self._take_as_it_was(lost)
+
+    def _look(self) -> Generator[None, None, PerceptionFailure | None]:
+        """Look several times; what was in the way of finding the arm, or None, and then its posture is known."""
+        lost = PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
+        for _ in range(self.tuning.max_looks):
+            try:
+                found = see_person(self)
+            except PerceptionFailure as stop:
+                found, lost = [], stop
+            if self.side not in found:
+                yield
+                continue
+            posture = watch_of(self).arms[self.side]
+            if float(posture.deviation.max()) <= self.tuning.max_deviation:
+                self.posture = posture
+                return None
+            yield from self.wait(self.tuning.look_interval)
+        return lost
+
+    def _covered(self) -> bool:
+        """Whether something covers the arm where it was seen before: then there is no use in looking elsewhere."""
+        known = watch_of(self).arms[self.side]
+        return visible_share(head_view(self), known) < PERSON_TRACKING.min_visible
+
+    def _take_as_it_was(self, lost: PerceptionFailure) -> Iterator[None]:
         posture = self._remembered(lost)
         yield from look_towards(self, posture.points_in_map[0])
         self.note(f"takes the {self.side} arm, which is covered, to lie where it was")

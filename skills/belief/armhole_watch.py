@@ -50,6 +50,25 @@ class ArmholeWatchTuning(Quantities):
         "share of the way round them that the cuff shows with the hand inside",
         "measured: in recorded pulls at least this much with the hand inside, 0.25 where the sleeve had missed it",
     )
+    surely_round: float = quantity(
+        0.9,
+        "1",
+        "share of the way round them, from which the hand is inside however bare the arm looks",
+        "measured: 1.0 where a sleeve was on askew, the arm bare beyond its armhole (178)",
+    )
+    sleeve_covers: tuple[float, float] = quantity(
+        (1.9, 2.3),
+        "1",
+        "arm coordinates between which the sleeve is over the arm then",
+        "measured: an armhole half way up the forearm was at 1.5 to 1.8, its cuff at 2.2 to 2.8 (20 pulls)",
+    )
+    min_sleeve: float = quantity(
+        0.3,
+        "1",
+        "share of the arm's axis there that shows something else than skin, with the hand inside",
+        "measured: 0.62 and more in 19 pulls of 20 with the hand inside, of 176 to 183 and 0, none of it in the two "
+        "that had missed it, though the cuff showed 0.42 and 0.67 of the way round (178, 184)",
+    )
     memory: float = quantity(0.8, "s", "after which an armhole that is hidden may have moved on", "choice: four looks")
     max_points: int = quantity(
         25, "1", "points of the armhole whose arm coordinate is computed, about", "choice: bounds the time of computing"
@@ -154,14 +173,20 @@ class ArmholeWatch:
         return cover.share < tuning.min_covered
 
     def arm_is_beside(self, path: ArmPath) -> bool:
-        """Whether the head's camera sees the cuff on one side of the arm only; False where it cannot tell.
+        """Whether the head's camera sees the arm beside its sleeve; False where it cannot tell.
+
+        The cuff shows on one side of it only, or the arm is bare where the sleeve would be.
 
         Args:
             path: of the arm now.
         """
-        chain = np.array([path.point(coordinate) for coordinate in self._tuning.cuff_coordinates])
+        tuning, camera, senses = self._tuning, self._skill.world.look("head"), self._skill.context.senses
+        chain = np.array([path.point(coordinate) for coordinate in tuning.cuff_coordinates])
+        axis = np.linspace(*tuning.sleeve_covers, tuning.hand_points)
         try:
-            cover = self._skill.context.senses.cuff_round(self._skill.world.look("head"), points_in_map=chain)
+            round_arm = senses.cuff_round(camera, points_in_map=chain).share
+            points = np.array([path.point(float(coordinate)) for coordinate in axis])
+            bare = senses.skin_cover(camera, points_in_map=points).share < tuning.min_sleeve
         except PerceptionFailure:
             return False
-        return cover.share < self._tuning.min_round
+        return round_arm < (tuning.surely_round if bare else tuning.min_round)

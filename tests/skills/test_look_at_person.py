@@ -101,7 +101,7 @@ def test_an_arm_that_is_covered_now_lies_where_it_was_seen_well(before, reason):
     assert run.ended() == reason
     shows.append(LOST)
     assert run.ended() == (reason and Reason.NOTHING_SEEN), "the second round"
-    assert max(seen.head_pan for seen in run.seen) > 0.3, "it has looked all round"
+    assert max(seen.head_pan for seen in run.seen) > 0.3, "nothing covers it there: it has looked all round"
     if reason is None:
         assert run.skill.posture.deviation == pytest.approx(np.full(4, before))
 
@@ -119,7 +119,7 @@ def test_an_arm_under_cloth_is_not_found_where_it_was():
     heap.append(0.3)  # [m] of cloth over everything
     assert run.ended() is None
     assert "is covered" in run.skill.feedback_message
-    assert np.ptp([seen.head_pan for seen in run.seen]) > 0.6, "it has looked all round"
+    assert np.ptp([seen.head_pan for seen in run.seen]) < 0.5, "what is covered does not show from elsewhere"
     assert run.skill.posture.points_in_map == pytest.approx(LIES["right"].points_in_map)
 
 

@@ -11,7 +11,7 @@ begin from what the tree was between these two ticks.  Any other tree is followe
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, NamedTuple
@@ -109,8 +109,9 @@ class Explorer:
         self._forms = {node: _Form.of(node) for node in self._nodes}
         self._timeouts = [node for node in self._nodes if isinstance(node, Timeout)]
         self._resumes = all(_resumes(node) for node in self._inner)
-        below = self._read_below()
-        self._read = {leaf: _read_from(leaf, below) for leaf in self._options}  # what nobody reads changes nothing
+        self._reads, self._writes = self._keys_below("reads"), self._keys_below("writes")
+        self._counting = {leaf: _counting(leaf) for leaf in self._options}
+        self._read: dict[Any, frozenset[str]] = {}  # by leaf and what tries are left to those above
         self._in_safe = {leaf for node in self._nodes if isinstance(node, FailSafe) for leaf in node.safe.iterate()}
         self._numbers: dict[Any, int] = {}  # of every situation
         self._seen: set[int] = set()
@@ -251,7 +252,40 @@ class Explorer:
 
     def _situation(self, leaf: Stub) -> Any:
         """All that decides what can happen from here on."""
-        return leaf, self._read[leaf] & self.board, self._moved, self._state(self._root, self._active[leaf])
+        return leaf, self._read_from(leaf) & self.board, self._moved, self._state(self._root, self._active[leaf])
+
+    def _read_from(self, leaf: Stub) -> frozenset[str]:
+        """Keys that may be read from `leaf` on; what nobody reads changes nothing."""
+        left = tuple(above.attempts - above.tried for above in self._counting[leaf])
+        keys = self._read.get((leaf, left))
+        if keys is None:
+            keys = self._read[leaf, left] = self._look_ahead(leaf)
+        return keys
+
+    def _look_ahead(self, leaf: Stub) -> frozenset[str]:
+        """Keys read by a leaf, by what comes after it, and by all that is tried again while tries are left.
+
+        A body that is tried again reads nothing that it wrote before: its data is unset.
+        """
+        keys = set(self._reads[leaf])
+        for above, child in _ancestors(leaf):
+            n = above.children.index(child)
+            readers: list[Behaviour] = []
+            if remembers(above) or type(above) is FailSafe:
+                readers = above.children[n + 1 :]
+            elif type(above) is Stage:  # the pre-condition stands after the body, and comes before it
+                readers = above.children[:n]
+            elif isinstance(above, (Retry, RecoverBy)):
+                body, *recoveries = above.children
+                left = above.attempts - above.tried
+                if child is not body or left > 0:
+                    keys |= self._reads[body] - self._writes[body]
+                if left > (child is not body):  # a recovery is followed by a try
+                    readers = recoveries
+            elif type(above) is not Timeout:
+                readers = [above]
+            keys = keys.union(*(self._reads[reader] for reader in readers))
+        return frozenset(keys)
 
     def _state(self, node: Behaviour, active: frozenset[Behaviour]) -> Any:
         """Of a node at work its status, memory and children; of any other the status only, for it will start afresh."""
@@ -270,11 +304,11 @@ class Explorer:
             return (*state, child, child and self._state(child, active))
         return (*state, *(self._state(child, active) for child in node.children))
 
-    def _read_below(self) -> dict[Behaviour, frozenset[str]]:
-        """Keys that may be read at or below each node."""
+    def _keys_below(self, what: Literal["reads", "writes"]) -> dict[Behaviour, frozenset[str]]:
+        """Keys that may be read, or written, at or below each node."""
         below: dict[Behaviour, frozenset[str]] = {}
         for node in self._nodes:  # children come before their parents
-            keys = node.reads if isinstance(node, Stub) else ()
+            keys = getattr(node, what) if isinstance(node, Stub) else ()
             below[node] = frozenset(keys).union(*(below[child] for child in node.children))
         return below
 
@@ -342,18 +376,9 @@ class _Form:
         )
 
 
-def _read_from(leaf: Stub, below: Mapping[Behaviour, frozenset[str]]) -> frozenset[str]:
-    """Keys that may be read from `leaf` on: by it, by what comes after it, and by all that is tried again."""
-    readers: list[Behaviour] = [leaf]
-    for above, child in _ancestors(leaf):
-        n = above.children.index(child)
-        if remembers(above) or type(above) is FailSafe:
-            readers += above.children[n + 1 :]
-        elif type(above) is Stage:  # the pre-condition stands after the body, and comes before it
-            readers += above.children[:n]
-        elif type(above) is not Timeout:
-            readers.append(above)
-    return frozenset().union(*(below[reader] for reader in readers))
+def _counting(leaf: Stub) -> tuple[Any, ...]:
+    """Those above a leaf that try again."""
+    return tuple(above for above, _ in _ancestors(leaf) if type(above) in (Retry, RecoverBy))
 
 
 def _ancestors(node: Behaviour) -> Iterator[tuple[Behaviour, Behaviour]]:

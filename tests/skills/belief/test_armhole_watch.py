@@ -22,8 +22,8 @@ class Watcher(Skill):
     commands = False
 
 
-def make(points=None, share=1.0):
-    """A watch that sees an armhole at `points` (n, 3), or none, a hand covered by `share`, a cuff as far round it."""
+def make(points=None, share=1.0, cuff=None):
+    """A watch that sees an armhole at `points` (n, 3), or none, an arm covered by `share`, a cuff by that or `cuff`."""
 
     if points is None:
         ring = PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
@@ -44,7 +44,8 @@ def make(points=None, share=1.0):
         cover = Cover(stamp=0.0, confidence=0.9, share=share)
     world = ScriptedWorld()
     guard = GuardedWorld(world)
-    senses = fake_senses(held_armhole=ring, skin_cover=cover, cuff_round=cover)
+    cuff = cover if cuff is None else Cover(stamp=0.0, confidence=0.9, share=cuff)
+    senses = fake_senses(held_armhole=ring, skin_cover=cover, cuff_round=cuff)
     skill = Watcher("watch", Context(world=guard, guard=guard, senses=senses))
     return ArmholeWatch(skill, GRIP.arm, GRIP.hand), world
 
@@ -76,6 +77,14 @@ def test_the_grip_shifts_until_the_outer_edge_is_in_its_place(outer, wanted):
 def test_a_bare_hand_and_a_cuff_on_one_side_are_misses(share, said):
     ring, _ = make(share=share)
     assert ring.hand_is_bare(PATH) is ring.arm_is_beside(PATH) is said
+
+
+@pytest.mark.parametrize(
+    ("cuff", "covered", "beside"), [(0.92, 0.62, False), (0.67, 0.0, True), (1.0, 0.0, False), (0.3, 1.0, True)]
+)
+def test_an_arm_that_is_bare_where_its_sleeve_would_be_is_beside_it_unless_the_cuff_is_all_round(cuff, covered, beside):
+    ring, _ = make(share=covered, cuff=cuff)
+    assert ring.arm_is_beside(PATH) is beside
 
 
 def test_the_armhole_is_followed_and_forgotten_when_hidden():

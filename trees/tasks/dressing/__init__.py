@@ -12,7 +12,7 @@ What is owed whenever a stage fails is in safe.py, every number in tuning.py.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
 
@@ -21,23 +21,25 @@ from ....perception.senses import Senses
 from ....sim.mechanics.robot_model import RobotModel
 from ....sim.world import World
 from ....skills.core.context import Context
+from ....skills.core.reasons import Reason
 from ....skills.scripted.rehearsal import rehearsal
 from ....skills.scripted.scripted_senses import ScriptedSenses
 from ...nodes.composers import sequence
-from ...nodes.decorators import FailSafe
+from ...nodes.decorators import FailSafe, RecoverBy
 from ...run.stages import TaskStage
 from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the task's own leaves here
 from .check_face import CheckFace as CheckFace
 from .check_over_hand import CheckOverHand as CheckOverHand
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
-from .dress import dress
+from .dress import dress, dressed_anew
 from .lay import holds_gown, is_down, lay
 from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
 from .safe import make_safe
 from .spread import chest_covered, outside_out, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
+from .tuning import DRESSING
 
 STAGES = {
     "take_down": TaskStage(take_down, begins="gown_on_hook"),
@@ -65,9 +67,24 @@ def senses(context: Context) -> Senses:
 
 
 def build(context: Context, stages: Sequence[str] = tuple(STAGES)) -> Behaviour:
-    """All stages, or only those of the given names."""
-    body = sequence("dressing", *(STAGES[stage].build(context) for stage in stages))
+    """All stages, or only those of the given names.
+
+    Where a sleeve turns out not to be on its arm, as the gown is put straight, that arm is dressed again.
+    """
+    built = {stage: STAGES[stage].build(context) for stage in stages}
+    parts = [until_worn(context, part) if stage == "spread" else part for stage, part in built.items()]
+    body = sequence("dressing", *parts)
     return FailSafe("dress safely", body, make_safe(context))
+
+
+def until_worn(context: Context, last: Behaviour) -> RecoverBy:
+    """The stage that puts the gown straight, once more where an arm that was not in its sleeve has been dressed."""
+
+    def anew() -> Behaviour:
+        return dressed_anew(context)
+
+    missed: dict[Reason, Callable[[], Behaviour]] = {Reason.SLEEVE_MISSED: anew, Reason.NOTHING_SEEN: anew}
+    return RecoverBy("until it is worn", last, missed, attempts=DRESSING.dressed_attempts)
 
 
 def scripted(seed: int, robot: RobotModel | None = None) -> tuple[World, ScriptedSenses]:

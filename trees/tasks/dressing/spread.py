@@ -19,6 +19,7 @@ from ....skills.geometry.stances import stance_at_head
 from ....skills.look_at_person import LookAtPerson
 from ....skills.lower_arm import LowerArm
 from ....skills.navigate import Navigate
+from ....skills.retreat import Retreat
 from ....skills.seat_sleeves import SeatSleeves
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
@@ -63,7 +64,6 @@ def spread(context: Context) -> Stage:
         "spread",
         patient(bed, arm_lies(context, "left")),
         right_from_head(context, bed),
-        Navigate("go round to the head", bed, goal="bed_head"),
         surely_neat(context, bed),
         patient(bed, chest_looks_right(context)),
         seconds=DRESSING.spread_timeout,
@@ -98,7 +98,7 @@ def arm_lies(context: Context, side: Side) -> Behaviour:
 
 
 def right_from_head(context: Context, bed: Scope) -> Behaviour:
-    """See from the head of the bed, which is next anyhow, that the first sleeve is up its arm; else go beside it.
+    """See from the head of the bed, which is next anyhow, that the first sleeve is up its arm; else go beside it first.
 
     The way round the foot of the bed to it takes half a minute, and 4 of 6 first sleeves were up far enough (166 to
     171).
@@ -106,7 +106,12 @@ def right_from_head(context: Context, bed: Scope) -> Behaviour:
     arm = arm_scope(context, "from head", "right")
     up = CheckSleeve("up by now", arm, min_reach=DRESSING.armhole_slipped, must_show=True, tuning=FROM_HEAD)
     seen = sequence("seen up from the head", *go_to_head(arm), LookAtPerson("look", arm), patient(arm, up))
-    return fallback("the right arm, or from beside it", seen, patient(bed, arm_lies(context, "right")))
+    from_beside = sequence(
+        "the right arm from beside it",
+        patient(bed, arm_lies(context, "right")),
+        Navigate("go round to the head", bed, goal="bed_head"),
+    )
+    return fallback("the right arm, or from beside it", seen, from_beside)
 
 
 def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
@@ -138,7 +143,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
 
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
     """Draw up one sleeve; where it gets no farther, it may do."""
-    seat = (SeatSleeves("seat", gown, side=side), back_off("draw back from it", gown))
+    seat = (SeatSleeves("seat", gown, side=side), arms_away("clear the view", gown))
     left = back_off("leave it as it is", gown)
     return fallback(f"{gown.prefix}as far as it goes", sequence(f"{gown.prefix}draw it up", *seat), left)
 
@@ -156,12 +161,14 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     def laid_once_more() -> Behaviour:
         anew = Scope(bed, "anew")
-        return sequence("lay the collar once more", *go_to_head(anew), laid_in_the_middle(anew))
+        laid = laid_in_the_middle(anew)
+        return sequence("lay the collar once more", *go_to_head(anew), laid, arms_away("clear the view", anew))
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), *up)
-    unsure = {Reason.COLLAR_ASIDE: laid_once_more, Reason.NOTHING_SEEN: laid_once_more}
-    return RecoverBy("until it is surely neat", both, unsure, attempts=DRESSING.surely_neat_attempts)
+    return RecoverBy(
+        "until it is surely neat", both, {Reason.COLLAR_ASIDE: laid_once_more}, attempts=DRESSING.surely_neat_attempts
+    )
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
@@ -207,11 +214,15 @@ def unfolded(context: Context, bed: Scope) -> Behaviour:
 
 
 def looked_again(context: Context, bed: Scope) -> Behaviour:
-    """See arms from beside that are not known any more, or whose sleeves do not show; the collar may lie aside."""
-    arms = [arm_scope(context, f"{side} arm again", side) for side in SIDES]
-    beside = [node for side, arm in zip(SIDES, arms, strict=True) for node in go_beside(arm, side)]
+    """See from beside that both sleeves are on their arms, which may not be known any more, and lay the collar."""
+
+    def on_its_arm(side: Side) -> list[Behaviour]:
+        arm = arm_scope(context, f"{side} arm again", side)
+        return [*go_beside(arm, side), CheckSleeve("is on it", arm, must_show=True, tuning=FROM_HEAD)]
+
     again = Scope(bed, "again")
-    return sequence("both arms again", *beside, *go_to_head(again), straight(again))
+    arms = [node for side in SIDES for node in on_its_arm(side)]
+    return sequence("both arms again", *arms, *go_to_head(again), straight(again))
 
 
 def closely(gown: Scope, name: str, tuning: CheckCollarTuning) -> list[Behaviour]:
@@ -225,26 +236,30 @@ def look_closely(gown: Scope, name: str) -> Behaviour:
     return fallback(f"{gown.prefix}look: {name}", LookAtCollar(f"{name}?", gown), as_it_is)
 
 
+def arms_away(name: str, gown: Scope) -> Retreat:
+    """Bring arms that a skill has drawn back out of the head camera's view; a look with the hands needs no such way."""
+    return Retreat(name, gown, hand_distance=0.0, ready="if possible")
+
+
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
-    drawn = sequence(f"{gown.prefix}draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
-    return fallback(f"{gown.prefix}over the middle", drawn, back_off("leave it there", gown))
+    return fallback(f"{gown.prefix}over the middle", DrawOver("draw over", gown), back_off("leave it there", gown))
 
 
 def seated(bed: Scope) -> Behaviour:
     """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
     # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
-    seat = (go_up(gown), over(gown), SeatSleeves("seat", gown), back_off("clear the view", gown))
+    clear = arms_away("clear of the sleeves", gown)
+    seat = (go_up(gown), over(gown), clear, SeatSleeves("seat", gown))
     left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
     return fallback("as far as they go", sequence("draw them up", *seat), left)
 
 
 def laid_in_the_middle(gown: Scope) -> Behaviour:
     """Take the collar and lay it in the middle."""
-    lay = (Spread("spread", gown), back_off("clear the view", gown))
-    return sequence(f"{gown.prefix}by its collar", look_closely(gown, "where is it"), *lay)
+    return sequence(f"{gown.prefix}by its collar", look_closely(gown, "where is it"), Spread("spread", gown))
 
 
 def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:

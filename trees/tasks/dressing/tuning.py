@@ -172,6 +172,12 @@ class DressingTuning(Quantities):
         -0.25, "1", "arm coordinate at which the armhole ends the pull where it is seen", "choice: beyond the shoulder"
     )
     back_off_distance: float = quantity(0.25, "m", "of the base from a dressed arm", "choice: the arm comes into view")
+    dressed_attempts: int = quantity(
+        2,
+        "1",
+        "at arms and gown, the first one included, where a sleeve turns out not to be on its arm",
+        "choice: an arm has six tries each time",
+    )
     # settling the sleeves and the collar
     armhole_up: float = quantity(
         0.73,

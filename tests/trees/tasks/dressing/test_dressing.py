@@ -26,6 +26,11 @@ def test_names_are_short_enough_to_read_in_a_table(nodes):
     assert [node.name for node in nodes if len(node.name) > 40] == []
 
 
+def anew(node):
+    """Whether it dresses an arm again whose sleeve is not on it after all."""
+    return node.name.startswith(tuple(f"{side} {when}/" for side in ("left", "right") for when in ("before", "new")))
+
+
 @pytest.mark.parametrize(("side", "lifting", "pulling"), [("right", "left", "right"), ("left", "right", "left")])
 def test_one_hand_holds_the_arm_and_the_other_one_its_sleeve(nodes, side, lifting, pulling):
     lift, grasp = leaf(nodes, f"{side} arm/lift"), leaf(nodes, f"{side} arm/grasp the sleeve")
@@ -49,7 +54,10 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
     ]
     # up, up again once it slipped, laid back: both arms; laid out: both, after the person has moved and after all else;
     # the first sleeve up again before the second, which is laid out before its arm is lifted where it has to be
-    assert len(free) == 12
+    assert sum(not anew(node) for node in free) == 12
+    assert sum(anew(node) for node in free) == 10, (
+        "as often, but where the first one has slipped and the second one is at hand"
+    )
     assert all(node.bindings["hold"] is None for node in free)
 
 
@@ -58,8 +66,8 @@ def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_t
     # the left sleeve after the right arm, and where it is out of reach before its own arm is lifted; either where it
     # does not show after the person has moved and after all else; out from its own side before the left arm, and for
     # both arms after the person has moved and after all else
-    assert [carry.own_side for carry in carries].count(False) == 6
-    assert [carry.own_side for carry in carries].count(True) == 5
+    first = [carry.own_side for carry in carries if not anew(carry)]
+    assert (first.count(False), first.count(True)) == (6, 5)
     for carry in carries:
         once_more = carry.parent
         steps = once_more.parent.children

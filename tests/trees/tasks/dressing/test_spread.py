@@ -30,6 +30,7 @@ class WornGown(ScriptedSenses):
         closely: where the hands' cameras see the collar, if that is another place.
         pulled: how much farther up a sleeve is after it was pulled by its strap.
         hidden: side of the sleeve that does not show.
+        comes_on: whether it shows once that arm is dressed again.
         lower: how much lower an armhole is seen from the head of the bed, not from beside.
     """
 
@@ -45,10 +46,11 @@ class WornGown(ScriptedSenses):
         closely=None,
         pulled=0.0,
         hidden=None,
+        comes_on=False,
         lower=0.0,
     ):
         super().__init__(world)
-        self.pulled, self.hidden, self.lower = pulled, hidden, lower
+        self.pulled, self.hidden, self.comes_on, self.lower = pulled, hidden, comes_on, lower
         self.outside, self.shown, self.closely = outside, shown, closely
         self.stands = []
         self.low, self.off, self.stays, self.done = dict(zip(SIDES, reach, strict=True)), off, stays, []
@@ -62,6 +64,9 @@ class WornGown(ScriptedSenses):
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
+        if progress.status == "success" and self.hidden and progress.name == f"{self.hidden} new/pull up":
+            self.done.append(progress.name)
+            self.hidden = None if self.comes_on else self.hidden
         if progress.status == "success" and progress.name in PULLED and self.pulled:
             self.done.append(progress.name)
             self.low[PULLED[progress.name]] += self.pulled
@@ -154,7 +159,12 @@ def test_the_first_sleeve_is_gone_to_only_where_it_is_not_seen_up_from_the_head_
 
 @pytest.mark.parametrize("side", SIDES)
 def test_a_sleeve_that_does_not_show_is_not_claimed(side):
-    assert rehearsed(0.85, hidden=side)[0] == "safe_stop"
+    assert rehearsed(0.85, hidden=side) == ("safe_stop", [f"{side} new/pull up"] * 6)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_an_arm_whose_sleeve_does_not_show_is_dressed_again(side):
+    assert rehearsed(0.85, hidden=side, comes_on=True) == ("success", [f"{side} new/pull up"])
 
 
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
