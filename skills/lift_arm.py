@@ -56,7 +56,7 @@ class LiftGoal(Quantities):
         float(np.deg2rad(35.0)), "rad", "of the whole arm above the horizontal in the end", "choice: clear of the bed"
     )
     spread: float = quantity(
-        0.85,
+        0.75,
         "rad",
         "of the upper arm away from the body in the end, along the bed, if it does not point there already",
         "measured: an armhole stops where arm and trunk part: pulled up arms spread by 0.5, 0.6, 0.75, 0.9 rad and let "

@@ -65,6 +65,13 @@ def test_the_mean_of_what_both_hands_see_from_low_on_either_side_of_the_head_is_
     assert run.world.observe().arm_positions == pytest.approx(run.world.robot.ready, abs=0.02)
 
 
+@pytest.mark.parametrize(("x", "shown"), [(0.06, 0.8), (0.08, 0.6), (-0.04, 0.6)])
+def test_what_both_hands_see_far_apart_tells_less(x, shown):
+    run = bench(PLACES | {"right_hand": (x, 0.7)})
+    assert run.ended(seconds=60.0) is None
+    assert close_look(run.skill).confidence == pytest.approx(shown)
+
+
 @pytest.mark.parametrize("places", [{}, {"right_hand": PLACES["right_hand"]}])
 def test_where_not_both_hands_see_it_nothing_is_known_closely(places):
     run = bench(places)
