@@ -166,9 +166,12 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), *up)
-    return RecoverBy(
-        "until it is surely neat", both, {Reason.COLLAR_ASIDE: laid_once_more}, attempts=DRESSING.surely_neat_attempts
-    )
+    # a sleeve that comes no higher alone, or whose collar does not stay meanwhile, is drawn up with the other one (186)
+    unsure: dict[Reason, Callable[[], Behaviour]] = {
+        Reason.COLLAR_ASIDE: laid_once_more,
+        Reason.SLEEVE_LOW: laid_once_more,
+    }
+    return RecoverBy("until it is surely neat", both, unsure, attempts=DRESSING.surely_neat_attempts)
 
 
 def neaten(context: Context, bed: Scope) -> Behaviour:
