@@ -129,7 +129,7 @@ def rehearsed(reach, off=(0.0, 0.0), *, on_progress=None, **gown):
         (0.05, "success", ["seat"] * 5),
         (-0.10, "success", ["seat"] * 6),
         (-0.40, "success", ["seat"] * 8),
-        (-0.80, "success", ["seat"] * 11),
+        (-0.80, "success", [*["seat"] * 9, "spread", "seat", "seat"]),
     ],
 )
 def test_low_sleeves_are_drawn_up_and_once_more_where_that_was_not_enough(reach, ends, done):
