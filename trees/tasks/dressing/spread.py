@@ -19,7 +19,6 @@ from ....skills.geometry.stances import stance_at_head
 from ....skills.look_at_person import LookAtPerson
 from ....skills.lower_arm import LowerArm
 from ....skills.navigate import Navigate
-from ....skills.retreat import Retreat
 from ....skills.seat_sleeves import SeatSleeves
 from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
@@ -143,7 +142,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
 
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
     """Draw up one sleeve; where it gets no farther, it may do."""
-    seat = (SeatSleeves("seat", gown, side=side), arms_away("clear the view", gown))
+    seat = (SeatSleeves("seat", gown, side=side), back_off("draw back from it", gown))
     left = back_off("leave it as it is", gown)
     return fallback(f"{gown.prefix}as far as it goes", sequence(f"{gown.prefix}draw it up", *seat), left)
 
@@ -161,8 +160,7 @@ def surely_neat(context: Context, bed: Scope) -> Behaviour:
 
     def laid_once_more() -> Behaviour:
         anew = Scope(bed, "anew")
-        laid = laid_in_the_middle(anew)
-        return sequence("lay the collar once more", *go_to_head(anew), laid, arms_away("clear the view", anew))
+        return sequence("lay the collar once more", *go_to_head(anew), laid_in_the_middle(anew))
 
     up = (surely_up(context, bed, side) for side in SIDES[::-1])
     both = sequence("neat", patient(bed, neaten(context, bed)), *up)
@@ -239,30 +237,26 @@ def look_closely(gown: Scope, name: str) -> Behaviour:
     return fallback(f"{gown.prefix}look: {name}", LookAtCollar(f"{name}?", gown), as_it_is)
 
 
-def arms_away(name: str, gown: Scope) -> Retreat:
-    """Bring arms that a skill has drawn back out of the head camera's view; a look with the hands needs no such way."""
-    return Retreat(name, gown, hand_distance=0.0, ready="if possible")
-
-
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
-    return fallback(f"{gown.prefix}over the middle", DrawOver("draw over", gown), back_off("leave it there", gown))
+    drawn = sequence(f"{gown.prefix}draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
+    return fallback(f"{gown.prefix}over the middle", drawn, back_off("leave it there", gown))
 
 
 def seated(bed: Scope) -> Behaviour:
     """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
     # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
-    clear = arms_away("clear of the sleeves", gown)
-    seat = (go_up(gown), over(gown), clear, SeatSleeves("seat", gown))
+    seat = (go_up(gown), over(gown), SeatSleeves("seat", gown), back_off("clear the view", gown))
     left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
     return fallback("as far as they go", sequence("draw them up", *seat), left)
 
 
 def laid_in_the_middle(gown: Scope) -> Behaviour:
     """Take the collar and lay it in the middle."""
-    return sequence(f"{gown.prefix}by its collar", look_closely(gown, "where is it"), Spread("spread", gown))
+    lay = (Spread("spread", gown), back_off("clear the view", gown))
+    return sequence(f"{gown.prefix}by its collar", look_closely(gown, "where is it"), *lay)
 
 
 def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:
