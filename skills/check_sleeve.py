@@ -93,6 +93,7 @@ class CheckSleeve(Skill):
     min_together = Input(
         float, unit="1", default=0.0, doc="in the place of `min_reach` for the mean of both looks, where there are two"
     )
+    min_now = Input(float, unit="1", default=0.0, doc="what this look has to tell, whatever was seen before")
     must_show = Input(bool, default=False, doc="whether one of which too little shows fails, as before a claim")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
     reach = Output(float, unit="1", doc="how far up the upper arm the armhole is seen; 0 where it does not show")
@@ -125,6 +126,8 @@ class CheckSleeve(Skill):
         if self.seen_before > 0.0:
             counts = self.tuning.before_counts
             reach, least = counts * self.seen_before + (1.0 - counts) * reach, self.min_together
+        if seen.reach < self.min_now:
+            reach, least = seen.reach, self.min_now
         if reach < least:
             raise SkillFailure(
                 Reason.SLEEVE_LOW, f"the armhole is at {reach:.2f} of the upper arm, at least {least:.2f} is asked for"

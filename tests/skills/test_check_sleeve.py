@@ -120,3 +120,10 @@ def test_the_outer_side_is_looked_at_between_the_bindings_away_from_the_body(sid
     off = asked[-1] - shoulder - along[:, None] * upper
     assert np.linalg.norm(off, axis=1) == pytest.approx(0.035)
     assert np.all(off @ outwards(side) > 0.02)
+
+
+@pytest.mark.parametrize(("now", "status"), [(0.71, Status.SUCCESS), (0.69, Status.FAILURE)])
+def test_a_look_that_tells_too_little_is_low_whatever_was_seen_before(now, status):
+    skill = ran(worn(reach=now), seen_before=0.9, min_together=0.71, min_now=0.70)
+    assert skill.status == status
+    assert (skill.failure and skill.failure.reason) == (Reason.SLEEVE_LOW if status == Status.FAILURE else None)

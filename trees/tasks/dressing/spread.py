@@ -322,6 +322,7 @@ def still_inside(context: Context, side: Side, seen: Key) -> Behaviour:
             sleeve,
             seen_before=seen,
             min_together=DRESSING.armhole_surely,
+            min_now=DRESSING.armhole_surely_beside,
             tuning=BOTH_ALIKE,
         ),
     )
