@@ -34,7 +34,7 @@ def test_the_dressing_succeeds_at_the_rate_that_suffices():
     outcome, nodes = ended("dressing", REHEARSAL.tick_rate)
     assert outcome == "success"
     stages = [node.rpartition("/")[2] for node, status, _ in nodes if node.count("/") == 2 and status == "SUCCESS"]
-    assert stages == ["take down", "lay", "dress", "spread"]
+    assert stages == ["take down", "lay", "dress", "until it is worn"]
 
 
 @pytest.mark.parametrize("seed", range(5))
