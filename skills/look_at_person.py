@@ -66,6 +66,7 @@ class LookAtPerson(Skill):
             yield from look_towards(self, self.world.room.bed[:, :2].mean(axis=0) + self.tuning.chest * HEADWARD[:2])
             return
         self.note(f"looks for the person's {self.side} arm")
+        lost: PerceptionFailure | None = PerceptionFailure(Problem.ARM_LOST, f"{self.side} arm")
         known = watch_of(self).arms.get(self.side)
         if known is not None:
             yield from look_towards(self, known.points_in_map[1])
