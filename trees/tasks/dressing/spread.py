@@ -135,9 +135,13 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
         )
         return patient(anew, drawn)
 
-    inside = patient(bed, still_inside(context, side, seen_from_head(bed, side)))
+    seen = seen_from_head(bed, side)
+    # one that looks low from beside alone is drawn up once more; then the mean of both looks tells (0)
+    sure = patient(bed, still_inside(context, side, seen, "cuff", min_now=DRESSING.armhole_surely_beside))
     low = {Reason.SLEEVE_LOW: once_more}
-    return RecoverBy(f"until the {side} sleeve is up", inside, low, attempts=DRESSING.alone_attempts)
+    drawn = RecoverBy(f"until the {side} sleeve is up", sure, low, attempts=DRESSING.alone_attempts)
+    told = patient(bed, still_inside(context, side, seen, "cuff then"))
+    return fallback(f"the {side} sleeve up, as told by both", drawn, told)
 
 
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
@@ -306,14 +310,14 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
 
-def still_inside(context: Context, side: Side, seen: Key) -> Behaviour:
+def still_inside(context: Context, side: Side, seen: Key, name: str, min_now: float = 0.0) -> Behaviour:
     """Look from beside the bed whether the arm lies, inside its sleeve, which is up: its cuff shows all round it there.
 
     From beside the shoulder a cuff showed 42 % of the way round, and a run that was dressed ended (0).
     """
-    sleeve = arm_scope(context, f"{side} cuff", side)
+    sleeve = arm_scope(context, f"{side} {name}", side)
     return sequence(
-        f"the {side} arm is still inside",
+        f"{sleeve.prefix}the arm is still inside",
         Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look", sleeve),
         LowerArm("lies", sleeve, hand=sleeve["pulling"]),
@@ -322,7 +326,7 @@ def still_inside(context: Context, side: Side, seen: Key) -> Behaviour:
             sleeve,
             seen_before=seen,
             min_together=DRESSING.armhole_surely,
-            min_now=DRESSING.armhole_surely_beside,
+            min_now=min_now,
             tuning=BOTH_ALIKE,
         ),
     )

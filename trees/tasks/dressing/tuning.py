@@ -219,12 +219,15 @@ class DressingTuning(Quantities):
     armhole_surely_beside: float = quantity(
         0.70,
         "1",
-        "of the upper arm, as it is seen from beside the bed in the end, below which it is drawn up once more, too",
+        "of the upper arm, as it is seen from beside the bed in the end, below which it is drawn up once more",
         "measured: of 20 last looks of 0, 176 to 188 all 16 at sleeves above 0.74 told 0.70 and more; "
         "two at 0.700 and 0.689 told 0.68 and 0.69, and 0.74 and 0.72 in the mean of both looks (0, 186)",
     )
     alone_attempts: int = quantity(
-        3, "1", "at a sleeve that is low from beside the bed in the end, the first look included", "choice: two draws"
+        2,
+        "1",
+        "at a sleeve that is low from beside the bed in the end, the first look included",
+        "choice: one draw; then the mean of both looks tells, and what is low by that is drawn up with the other one",
     )
     armhole_slipped: float = quantity(
         0.40,
