@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from py_trees.behaviour import Behaviour
@@ -135,12 +136,12 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
         )
         return patient(anew, drawn)
 
-    seen = seen_from_head(bed, side)
+    seen, (surely, likely) = seen_from_head(bed, side), DRESSING.armhole_beside_alone
     # one that looks low from beside alone is drawn up once more; then the mean of both looks tells (0)
-    sure = patient(bed, still_inside(context, side, seen, "cuff", min_now=DRESSING.armhole_surely_beside))
+    sure = patient(bed, still_inside(context, side, seen, "still", surely))
     low = {Reason.SLEEVE_LOW: once_more}
     drawn = RecoverBy(f"until the {side} sleeve is up", sure, low, attempts=DRESSING.alone_attempts)
-    told = patient(bed, still_inside(context, side, seen, "cuff then"))
+    told = patient(bed, still_inside(context, side, seen, "then", likely))
     return fallback(f"the {side} sleeve up, as told by both", drawn, told)
 
 
@@ -310,14 +311,14 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     return sequence(f"{sleeve.prefix}up", fallback(f"{sleeve.prefix}seen", from_head, from_beside), go_up(sleeve))
 
 
-def still_inside(context: Context, side: Side, seen: Key, name: str, min_now: float = 0.0) -> Behaviour:
+def still_inside(context: Context, side: Side, seen: Key, when: Literal["still", "then"], min_now: float) -> Behaviour:
     """Look from beside the bed whether the arm lies, inside its sleeve, which is up: its cuff shows all round it there.
 
     From beside the shoulder a cuff showed 42 % of the way round, and a run that was dressed ended (0).
     """
-    sleeve = arm_scope(context, f"{side} {name}", side)
+    sleeve = arm_scope(context, f"{side} cuff" if when == "still" else f"{side} cuff then", side)
     return sequence(
-        f"{sleeve.prefix}the arm is still inside",
+        f"the {side} arm is {when} inside",
         Navigate("go round to see it", sleeve, goal=f"bed_{side}"),
         LookAtPerson("look", sleeve),
         LowerArm("lies", sleeve, hand=sleeve["pulling"]),
