@@ -219,8 +219,8 @@ class DressingTuning(Quantities):
     armhole_beside_alone: tuple[float, float] = quantity(
         (0.70, 0.65),
         "1",
-        "of the upper arm, as it is seen from beside the bed in the end, below which it is drawn up once more, whatever "
-        "the mean says, and after that",
+        "of the upper arm, as it is seen from beside the bed in the end, below which it is drawn up once more, "
+        "whatever the mean says, and after that",
         "measured: of 20 last looks of 0, 176 to 188 all 16 at sleeves above 0.74 told 0.70 and more; two at 0.700 and "
         "0.689 told 0.68 and 0.69, and 0.74 and 0.72 in the mean (0, 186); one at 0.74 told 0.68 afterwards (0)",
     )
