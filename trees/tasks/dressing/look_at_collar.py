@@ -41,7 +41,7 @@ class LookAtCollarTuning(Quantities):
         "m",
         "aside, between where both hands see its middle, from which either may be wrong",
         "measured: of 85 states of ten seeds that showed 0.80 of it, 3 of 52 seen within 0.040 m of the midline lay "
-        "beyond the 0.07 m allowed; of those seen less far apart none of 50 within 0.045 m",
+        "beyond the 0.07 m allowed; of those seen less far apart none of 44",
     )
     unsure: float = quantity(
         0.75, "1", "of what shows that counts then", "choice: too little to claim, and as a rule to draw the gown over"

@@ -282,11 +282,11 @@ class DressingTuning(Quantities):
         "choice: each takes a minute and a half; the stage's time ends them",
     )
     collar_aside: float = quantity(
-        0.045,
+        0.040,
         "m",
         "of the collar's middle, as both hands' cameras see it, beyond which it lies aside",
-        "measured: 0.07 m are allowed; of 101 states of ten seeds, 66 of them within that, 50 are told and none "
-        "wrongly; at 0.040 m, with looks that are far apart, 52 were and 3 of them wrongly (186)",
+        "measured: 0.07 m are allowed; of 101 states of ten seeds, 66 of them within that, 44 are told and none "
+        "wrongly; with looks that are far apart 52 were, and 3 of them wrongly (186)",
     )
     collar_headward: float = quantity(
         0.07,
