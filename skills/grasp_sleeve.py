@@ -87,21 +87,13 @@ class GraspSleeve(Skill):
 
     def _grasp(self) -> Iterator[None]:
         """Look, reach in, pinch."""
-        tuning = self.tuning
         self.note(f"looks for the {self.side} sleeve")
         try:
             strap = yield from self._look()
-            self.note(f"takes the {self.side} sleeve")
-            path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
-            way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
-        except MotionError:  # neither to look at it nor to take it: from here it was so five times in turn (190)
+            pose = yield from self._reach_in(strap)
+        except MotionError:  # to look at it or to take it: from here it was so five times in turn (190, 191)
             self._refuse_stand()
             raise
-        yield from move_hands(self, {self.hand: way.before}, speed=careful(self, tuning.approach_speed), way="either")
-        yield from open_gripper(self, self.hand, tuning.opening)
-        seen_well(self).pop(self.side, None)
-        yield from move_hands(self, {self.hand: way.inside}, speed=tuning.reach_in_speed, way="either")
-        pose = hand_now(self, self.hand)
         try:
             yield from pinch_or_back_off(self, self.hand)
         except SkillFailure as miss:
@@ -110,6 +102,18 @@ class GraspSleeve(Skill):
             raise
         strap_turns(self)[self.hand] = 0.0
         self.grip = strap_grip(self.side, self.hand, strap, pose)
+
+    def _reach_in(self, strap: SleeveOpening) -> Generator[None, None, np.ndarray]:
+        """Bring the open fingers to either side of the strap; returns the pose (4, 4) of the hand there."""
+        tuning = self.tuning
+        self.note(f"takes the {self.side} sleeve")
+        path = ArmPath.of(watch_arm(self, self.side, hold=self.hold))
+        way = way_in(self, self.side, self.hand, strap, path, worn=self.worn)
+        yield from move_hands(self, {self.hand: way.before}, speed=careful(self, tuning.approach_speed), way="either")
+        yield from open_gripper(self, self.hand, tuning.opening)
+        seen_well(self).pop(self.side, None)
+        yield from move_hands(self, {self.hand: way.inside}, speed=tuning.reach_in_speed, way="either")
+        return hand_now(self, self.hand)
 
     def _refuse_stand(self) -> None:
         """The next try is from elsewhere, or the sleeve is laid elsewhere first; one on the arm is tried as it lies."""

@@ -41,8 +41,7 @@ class ClearOfPerson(CollisionChecker):
         self._opening, self.head_pan = begins.gripper_opening, begins.head_pan
         room = self._room(begins.pose_base_in_map, begins.arm_positions, begins.head_pan)
         self._least = np.minimum(room, 0.0) - EPSILON
-        planned = self._least + np.where(self._least < -EPSILON, 0.0, CLEARANCE.planned)
-        self._least_gaps = self._gaps + planned
+        self._least_gaps = self._gaps + np.minimum(room, CLEARANCE.planned) - EPSILON
 
     def free(
         self,

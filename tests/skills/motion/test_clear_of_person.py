@@ -9,6 +9,7 @@ from caretree.sim.mechanics.collision import CollisionChecker
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
 from caretree.sim.robot.baxter import BAXTER
+from caretree.skills.geometry.clearance import CLEARANCE
 from caretree.skills.geometry.person_zone import PersonZone
 from caretree.skills.motion.clear_of_person import ClearOfPerson
 from caretree.skills.motion.errors import MotionBlocked
@@ -78,6 +79,19 @@ def test_where_a_motion_begins_too_near_it_may_leave_but_come_no_nearer(zone):
     assert not made.collisions(BASE, model.READY), "it stands there already"
     zone.update((place + (0.0, 0.0, 0.03))[None], part="head", radius=0.09)
     assert made.collisions(BASE, model.READY), "nearer than where it began"
+
+
+def test_a_motion_may_begin_within_the_room_that_ways_keep_for_smoothing(zone):
+    place = hand()[:3, 3] + (0.0, 0.0, -0.08)
+    zone.update(place[None], part="head", radius=0.09)
+    made = checker(zone, arms=model.READY)
+    touching = -made._room(BASE, model.READY, 0.0).min()
+    zone.update(place[None], part="head", radius=0.09 - touching - 0.4 * CLEARANCE.planned)
+    made = checker(zone, arms=model.READY)
+    assert 0.0 < made._room(BASE, model.READY, 0.0).min() < CLEARANCE.planned
+    assert made.free(BASE, model.READY), "a tracked arm had come 1 mm nearer: six times there was no way (191)"
+    zone.update((place + (0.0, 0.0, 0.001))[None], part="head", radius=0.09 - touching - 0.4 * CLEARANCE.planned)
+    assert not made.free(BASE, model.READY), "nearer than where it began"
 
 
 def test_the_robots_own_head_stays_turned_as_it_is_while_arms_move(zone):
