@@ -1,5 +1,7 @@
 """Worn sleeves are taken by the seams over the shoulders, both at once, and laid down behind the shoulders."""
 
+import math
+
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
@@ -7,6 +9,7 @@ from caretree.perception.estimates import Cover, Estimate, GraspPoint, WornSleev
 from caretree.sim.world import SIDES
 from caretree.skills.control.hands import gap_between_arms
 from caretree.skills.core.reasons import Reason
+from caretree.skills.geometry.arm_path import UP, ArmPath
 from caretree.skills.geometry.stances import HEADWARD, outwards, stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.skills.seat_sleeves import Drawn, SeatSleeves, SeatSleevesTuning
@@ -21,7 +24,17 @@ LEANS = SeatSleevesTuning().leans  # [rad]
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tick=lambda bench: None, chin=lambda: 0.0):
+def bench(
+    *,
+    cloth=HELD,
+    hidden=(),
+    leans=LEANS,
+    reach=None,
+    side=None,
+    each_tick=lambda bench: None,
+    chin=lambda: 0.0,
+    seams=SEAMS,
+):
     reaches = dict.fromkeys(SIDES, 0.3) if reach is None else reach
 
     def worn(frame, side, arm_in_map):
@@ -38,7 +51,7 @@ def bench(*, cloth=HELD, hidden=(), leans=LEANS, reach=None, side=None, each_tic
             stamp=0.0,
             confidence=0.9,
             target=f"sleeve_{side}",
-            position_in_map=SEAMS[side],
+            position_in_map=seams[side],
             approach_in_map=np.array((0.0, 0.0, -1.0)),
             closing_in_map=np.array((0.0, 1.0, 0.0)),
         )
@@ -114,6 +127,18 @@ def test_both_rise_at_the_same_time():
     run.ended()
     left, right = (drawn(run, side)[:, 2] for side in SIDES)
     assert np.abs(left - right).max() < 0.03  # [m]
+
+
+@pytest.mark.parametrize(("below", "aside"), [(0.01, 0.07), (-0.05, 0.045)])
+def test_a_seam_that_is_taken_low_beside_the_arm_is_drawn_off_it_before_it_is_lifted(below, aside):
+    arm = ArmPath.of(lying_posture("left"))
+    across, axis = arm.frame(0.3)[:, 0], arm.point(0.3)
+    low = axis + math.copysign(0.045, across @ outwards("left")) * across - below * UP
+    run = bench(seams=SEAMS | {"left": low}, side="left")
+    assert run.ended() is None
+    way = run.way("left")[run.openings("left") < 0.005]
+    risen = way[way[:, 2] > way[0, 2] + 0.01][0]
+    assert abs((risen - axis) @ across) == pytest.approx(aside, abs=0.008)  # [m]
 
 
 def test_a_sleeve_that_pulls_back_is_drawn_no_farther_and_the_other_one_is():
