@@ -9,7 +9,7 @@ from caretree.skills.core.reasons import Reason
 from caretree.skills.present_sleeve import PresentSleeve
 from caretree.skills.scripted.scripted_person import laid_strap, lying_arm, lying_posture
 
-from .bench import GRIP, LeafBench, beside_bed
+from .bench import GRIP, LeafBench, beside_bed, pulls
 
 WRIST, FINGERTIP = lying_arm("right")[2:]
 ALONG = (FINGERTIP - WRIST) * (1.0, 1.0, 0.0) / np.linalg.norm((FINGERTIP - WRIST)[:2])  # the right hand
@@ -29,7 +29,7 @@ def turned(run):
     return np.arctan2(-across @ ASIDE, -across @ ALONG)
 
 
-def ran(seen, load=1.0, armhole_shows=()):
+def ran(seen, load=1.0, armhole_shows=(), each_tick=lambda bench: None):
     """The bench after a run, why it failed, None after a success, and how often it looked at the sleeve.
 
     A heading that is None does not show; `armhole_shows` to these cameras.
@@ -56,6 +56,7 @@ def ran(seen, load=1.0, armhole_shows=()):
             sleeve_heading=answer,
             held_armhole=armhole,
         ),
+        each_tick=each_tick,
     )
     return run, run.ended(seconds=200.0), len(looks)
 
@@ -122,3 +123,17 @@ def test_a_gown_that_is_caught_is_not_torn_off(load):
     run, reason, _ = ran([heading(0.09)], load=load)  # [N]
     assert reason == Reason.SLEEVE_CAUGHT
     assert short_gown(run.skill) == {"right"}, "whose arm is spread less next time"
+
+
+def test_one_that_stops_short_of_its_place_is_caught_although_it_pulls_less_once_it_stands():
+    before = [np.zeros(3)]
+
+    def taut(bench):
+        here = bench.world.observe().pose_hand_in_map[1, :3, 3]
+        moves = np.linalg.norm(here - before[0]) > 1e-3  # [m]
+        pulls(bench.world, "right", (0.0, 0.0, -5.0 if moves and (here - FINGERTIP) @ ALONG > 0.2 else -3.0))
+        before[0] = here
+
+    run, reason, _ = ran([heading(0.09)], each_tick=taut)
+    assert reason == Reason.SLEEVE_CAUGHT
+    assert short_gown(run.skill) == {"right"}

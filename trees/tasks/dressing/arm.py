@@ -154,12 +154,14 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         down = LaySleeve(f"{why}, lay it down", held, hand=arm["pulling"])
         return sequence(f"{why}, laid down", down, grasp(f"{why}, take it again"))
 
-    def opened(name: str, why: str, **ports: float) -> Behaviour:
-        present = PresentSleeve(name, held, max_load=sleeve.carry_load, **ports)
+    def opened(name: str, why: str) -> Behaviour:
+        limits = {"max_load": sleeve.carry_load, "min_cuff_distance": sleeve.min_cuff_distance}
+        present = PresentSleeve(name, held, **limits)
         return RecoverBy(f"{name}, opened", present, {Reason.SLEEVE_FOLDED: lambda: lay(why)}, attempts=3)
 
     def missed() -> Behaviour:
-        # held out once more as it hung, it went past the hand again, 4 times of 5, each time farther off the bed (193)
+        # held out once more as it hung, it went past the hand again, 4 times of 5, each time farther off the bed (193);
+        # folded then, its cuff no farther out than the armhole, it missed the hand six times of six (184, 185, 193)
         return sequence("laid down, and held out again", lay("missed"), opened("present it again", "still folded"))
 
     pull = PullAlongArm("pull over the hand", held, grip_goal=DRESSING.past_wrist)
@@ -172,7 +174,7 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         Navigate("stand there", arm, goal=stand),
         LiftArm("lift", held, hand=arm["lifting"]),
         grasp("grasp the sleeve"),
-        opened("present the sleeve", "folded", min_cuff_distance=sleeve.min_cuff_distance),
+        opened("present the sleeve", "folded"),
         RecoverBy("until the hand is inside", pull, {Reason.SLEEVE_MISSED: missed}, attempts=3),
         RecoverBy(
             f"{arm.prefix}until it lies",

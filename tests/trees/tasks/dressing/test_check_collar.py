@@ -53,6 +53,26 @@ def test_a_collar_off_its_place_or_unseen_is_no_success(seen, reason):
 
 
 @pytest.mark.parametrize(
+    ("aside", "closely", "reason"),
+    [
+        (0.04, True, Reason.COLLAR_ASIDE),
+        (-0.04, True, Reason.COLLAR_ASIDE),
+        (0.02, True, Reason.NOTHING_SEEN),
+        (0.04, False, Reason.NOTHING_SEEN),
+    ],
+)
+def test_one_that_both_hands_see_aside_lies_there_however_little_of_it_tells(aside, closely, reason):
+    seen = replace(collar(aside), confidence=0.5)
+    run = LeafBench(
+        lambda context: CheckCollar("lies well", context, tuning=CheckCollarTuning(min_shown=0.7, min_told=0.8)),
+        beside_bed(collar_middle=seen, arm=lambda frame, side, **_: lying_posture(side)),
+    )
+    if closely:
+        CloseLook.of(run.skill).seen = seen
+    assert run.ended(seconds=1.0) == reason
+
+
+@pytest.mark.parametrize(
     ("shown", "closely", "reason"),
     [
         (0.96, False, None),

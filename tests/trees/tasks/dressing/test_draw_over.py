@@ -7,7 +7,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
 from caretree.sim.world import SIDES
-from caretree.skills.belief.shoulders import COLLAR_SEEN
+from caretree.skills.belief.shoulders import COLLAR_SEEN, CloseLook
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
@@ -70,6 +70,16 @@ def test_one_that_lies_in_the_middle_or_hardly_shows_is_left_alone(aside, shown)
     run = bench(aside, shown=shown)
     assert run.ended() is None
     assert all(np.ptp(run.way(side), axis=0) == pytest.approx(0.0, abs=1e-3) for side in SIDES)
+
+
+def test_one_that_hardly_shows_is_drawn_over_where_both_hands_saw_it_aside():
+    run = bench(0.15, shown=0.65)
+    place = np.append(MIDDLE[:2] + (0.15 + COLLAR_SEEN.aside, -0.05), HEIGHT)
+    towards = {"approach_in_map": np.array((0.0, 0.0, -1.0)), "closing_in_map": np.array((0.0, 1.0, 0.0))}
+    seen = GraspPoint(stamp=0.0, confidence=0.65, target="collar_middle", position_in_map=place, **towards)
+    CloseLook.of(run.skill).seen = seen
+    assert run.ended() is None
+    assert np.ptp(held(run, "left")[:, 0]) > 0.1  # [m]
 
 
 def test_one_hand_alone_draws_it_too():
