@@ -91,7 +91,7 @@ class GraspSleeve(Skill):
         try:
             strap = yield from self._look()
             pose = yield from self._reach_in(strap)
-        except MotionError:  # to look at it or to take it: from here it was so five times in turn (190, 191)
+        except (MotionError, PerceptionFailure):  # from here it was so four to six times in turn (190, 191, 192)
             self._refuse_stand()
             raise
         try:

@@ -1,4 +1,4 @@
-"""Where the robot stood in vain: a strap that it misses there, or gets to from no posture, is tried from elsewhere."""
+"""Where the robot stood in vain: a strap that it misses, does not see or does not get to is tried from elsewhere."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 from ...sim.world import Side
 from ..core.skill import Skill
 
-# Stands from which a sleeve was missed or out of reach since it was laid there, after which it has to lie elsewhere:
-# 8 cm from the hand one was out of reach five times in turn (151, 190), and one was missed four times alike (117).
+# Stands from which a sleeve was missed, unseen or out of reach since it was laid there, after which it has to lie
+# elsewhere: 8 cm from the hand one was out of reach five times in turn (151, 190), one was missed four times alike
+# (117), and one under a fold was looked for four times, a minute each (192).
 REFUSED = 2
 
 

@@ -111,6 +111,7 @@ def test_a_sleeve_that_shows_nowhere_is_told_and_no_hand_closes():
     assert run.openings("right").min() > 0.08
     head = [seen.head_pan for seen in run.seen]
     assert np.ptp(head) > 0.1, "it has looked around [rad]"
+    assert len(refused_stands(run.skill, "right")) == 1, "the next try is from elsewhere"
 
 
 def test_one_that_does_not_lie_where_it_was_seen_well_is_looked_for_again():
