@@ -11,7 +11,6 @@ import numpy as np
 from ..sim.quantity import Quantities, quantity
 from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
-from .control.even_out import EvenOutTuning, even_out
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.held_neckline import NEAR_HAND, HeldNeckline, NecklineTuning
@@ -65,7 +64,6 @@ class LayGownTuning(Quantities):
     middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
     neckline: NecklineTuning = field(default_factory=NecklineTuning)
     across: DrawAcrossTuning = field(default_factory=DrawAcrossTuning)
-    even: EvenOutTuning = field(default_factory=EvenOutTuning)
     leave: LeaveGownTuning = field(default_factory=LeaveGownTuning)
     approach_speed: float = quantity(0.4, "m/s", "of the base on its way to the bed", "choice: the gown hardly swings")
     base_speed: float = quantity(0.35, "m/s", "of the base along the bed", "choice: the gown is drawn, not dropped")
@@ -75,8 +73,7 @@ class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
     The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
-    far side, is drawn across to the near side before it is let go of, and one of which more hangs over one edge of the
-    bed to the other side.
+    far side, is drawn across to the near side before it is let go of.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -102,7 +99,6 @@ class LayGown(Skill):
                 yield from together(drive, look_towards(self, hand_now(self, NEAR_HAND)[:3, 3]))  # it comes along
             before = y
         yield from draw_across(neckline, *tuning.descent[-1], tuning.across)
-        yield from even_out(neckline, *tuning.descent[-1], tuning.even)
         yield from drive_to(self, self._base_for(tuning.drawn_y), speed=tuning.base_speed, straight=True)
         yield from self._lower(neckline, tuning.drawn_y, tuning.drawn_heights)
         yield from drive_to(self, self._base_for(tuning.end_y), speed=tuning.base_speed, straight=True)
@@ -114,14 +110,18 @@ class LayGown(Skill):
         return np.array((STANCES.lane, y + STANCES.ahead, STANCES.heading))
 
     def _lower(self, neckline: HeldNeckline, y: float, heights: tuple[float, ...]) -> Iterator[None]:
-        """Bring both ends of the neckline straight down to the first of `heights` [m] that is in reach.
+        """Bring both ends of the neckline straight down to the lowest of `heights` [m] that is in reach.
 
         Any other way there may lead over the person: a hand that swung round came down on the belly with 57 N (115).
+        Where the lowest is out of reach, they stop one above where they just get to: the far arm of a UR5 pair ended
+        at its full stretch.
 
         Let go of in the air, sleeves that the hands' way across had tucked in turned over as they fell, and pointed
         back at the person's hand as they were held out (148, 150, 156, 190, 194).
         """
-        for height in heights:
+        lowest = next((n for n, height in enumerate(heights) if neckline.reaches(y, height)), len(heights))
+        above = lowest if lowest == 0 else min(lowest + 1, len(heights) - 1)
+        for height in heights[above:]:
             with suppress(MotionError):
                 yield from neckline.to(y, height, way="line")
                 return

@@ -39,9 +39,6 @@ class DrawAcrossTuning(Quantities):
         "by which the far side is longer before the gown is drawn across",
         "choice: less is within the error of what is seen",
     )
-    shift_factor: float = quantity(
-        2.0, "1", "way of the hands for each metre that the gown is to go", "choice: the gown follows them half way"
-    )
     max_shift: float = quantity(0.12, "m", "of the hands towards the near side", "choice: within the arms' reach")
     slack_load: float = quantity(
         0.5, "N", "pull of the neckline on a hand below which it is slack", "choice: above the noise"
@@ -61,6 +58,8 @@ def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTu
     """Look at the near armhole; where the far side is longer, draw the neckline across and slacken it.
 
     The far side would fall over the edge of the bed, draw the gown after it, and catch on the person's hand there.
+    Laid down before it is let go of, the gown stays where the hands bring it: drawn by twice of what it was askew, its
+    far armhole came to 0.20 and 0.30 m from the midline, and the near one over the edge (138, 191).
     The far armhole hides behind the hand that holds it, so what is askew is told by the near one alone.
 
     Args:
@@ -79,7 +78,7 @@ def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTu
     shown = float(np.median(seen.armhole_points_in_map[:, 0]))
     askew = shown + tuning.hidden_offset - (neckline.apart + tuning.overhang) / 2
     if askew < -tuning.min_askew:
-        neckline.middle += min(-tuning.shift_factor * askew, tuning.max_shift)
+        neckline.middle += min(-askew, tuning.max_shift)
         with suppress(MotionError):  # then it stays where it is
             yield from neckline.to(y, z)
             yield from _slacken(neckline, y, z, tuning)

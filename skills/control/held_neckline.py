@@ -8,10 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
 from ..core.skill import Skill
-from .hands import Way, hand_now, move_hands
+from ..motion.errors import MotionError
+from ..motion.reach import plan_hand_line
+from .hands import Way, collision_checker, hand_now, move_hands
 
 # The robot stands at the person's right, facing the head of the bed.
 NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
@@ -75,6 +78,21 @@ class HeldNeckline:
         Raises:
             MotionError: out of reach, or something is in the way.
         """
+        goals = self._goals(y, z, share)
+        yield from move_hands(self.skill, goals, speed=self.tuning.speed, free="any", way=way)
+
+    def reaches(self, y: float, z: float) -> bool:
+        """Whether both hands get straight to the ends of a neckline at (y, z) [m, map]."""
+        seen, kinematics = self.skill.world.observe(), kinematics_of(self.skill.world.robot)
+        at = seen.arm_positions, seen.pose_base_in_map
+        try:
+            plan_hand_line(kinematics, self._goals(y, z), *at, free="any", checker=collision_checker(self.skill))
+        except MotionError:
+            return False
+        return True
+
+    def _goals(self, y: float, z: float, share: float = 1.0) -> dict[Side, np.ndarray]:
+        """Poses (4, 4) of both hands in the map."""
         tuning = self.tuning
         heights = (z, min(z, max(z - tuning.far_lower, tuning.level_from)))
         half = math.sqrt(max(self.apart**2 - (heights[0] - heights[1]) ** 2, 0.0)) / 2
@@ -84,4 +102,4 @@ class HeldNeckline:
             there = np.array((max(self.middle, tuning.min_near_x - half) + sign * half, y, height))
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
-        yield from move_hands(self.skill, goals, speed=tuning.speed, free="any", way=way)
+        return goals

@@ -23,7 +23,6 @@ WIDTH = 0.84  # between the hands [m]
 STRAIGHT_AT = 0.42  # x at which the near armhole shows in a gown that lies straight [m]
 START = (0.77, 1.80, -np.pi / 2)  # of the base, where the hem begins to touch the legs [m, m, rad]
 NARROWING = 0.03  # of the hands at once [m]
-FRICTION = 0.4  # of the gown on bed and legs [N]
 
 
 def armhole(x):
@@ -31,18 +30,15 @@ def armhole(x):
     return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
-def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None, across=None):
-    """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart.
-
-    The gown pulls both towards the near side by `uneven` [N], and against the way that they went last.
-    """
+def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None):
+    """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
     room.waypoints["start"] = START
     world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen))
     skill = LayGown("lay", context, width=width)
-    places, friction = [], 0.0
+    places = []
     for _ in range(6000):
         context.lease.advance()
         skill.tick_once()
@@ -54,17 +50,15 @@ def let_go_at(seen, taut_until=1.0, uneven=0.0, width=WIDTH, way_down=None, acro
             across.append(x["left"] - x["right"])
         pull = 1.0 if x["left"] - x["right"] > taut_until + 0.005 else 0.1
         places.append((x["left"], x["right"]))
-        way = sum(places[-1]) - sum(places[-2]) if len(places) > 1 else 0.0
-        friction = -FRICTION * np.sign(way) if abs(way) > 0.002 else friction
         for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-            world.load[side] = np.array(((uneven + friction) / 2 - sign * pull, 0.0, -1.0, 0.0, 0.0, 0.0))
+            world.load[side] = np.array((-sign * pull, 0.0, -1.0, 0.0, 0.0, 0.0))
         if "withdraws" in skill.feedback_message or skill.status != Status.RUNNING:
             break
     assert skill.failure is None, skill.failure
     return places[-1]
 
 
-@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.08), (-0.2, 0.12)])
+@pytest.mark.parametrize(("askew", "shift"), [(0.0, 0.0), (0.1, 0.0), (-0.02, 0.0), (-0.04, 0.04), (-0.2, 0.12)])
 def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     near, far = let_go_at(armhole(STRAIGHT_AT + askew))
     assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
@@ -76,7 +70,7 @@ def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_th
     let_go_at(armhole(STRAIGHT_AT), way_down=way_down)
     y, z = np.array(way_down)[:, SIDES.index("left")].T
     assert z[-1] < 0.75
-    low = int(np.argmax(z < 0.84))  # not before the gown is weighed
+    low = int(np.argmax(z < 0.84))
     assert y[low] - y[-1] == pytest.approx(0.10, abs=0.02)
     assert np.all(z[low:] < 0.84)
 
@@ -92,16 +86,10 @@ def test_a_taut_neckline_is_slackened_where_the_gown_was_askew(askew, steps):
     assert near - far == pytest.approx(WIDTH - steps * NARROWING, abs=0.01)
 
 
-@pytest.mark.parametrize(("uneven", "shift"), [(0.1, 0.0), (-0.1, 0.0), (-0.3, 0.045), (-2.0, 0.06)])
-def test_one_that_hangs_farther_over_one_edge_of_the_bed_is_drawn_to_the_other_side(uneven, shift):
-    near, far = let_go_at(armhole(STRAIGHT_AT), uneven=uneven)
-    assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
-
-
-def test_it_is_drawn_off_the_near_edge_as_far_as_the_hand_beside_the_base_gets():
-    near, far = let_go_at(armhole(STRAIGHT_AT), uneven=0.4, width=0.76)
+def test_a_short_neckline_is_held_as_near_as_the_hand_beside_the_base_gets():
+    near, far = let_go_at(armhole(STRAIGHT_AT), width=0.66)
     assert near == pytest.approx(0.35, abs=0.01)
-    assert near - far == pytest.approx(0.76, abs=0.01)
+    assert near - far == pytest.approx(0.66, abs=0.01)
 
 
 def test_the_far_end_hangs_lower_until_the_gown_is_almost_down():
