@@ -207,7 +207,7 @@ class Senses(ABC):
         """The armhole of a lying sleeve, with the middle of its rim on the shoulder's side as the place to grasp.
 
         Args:
-            frame: a view of the gown lying on the person.
+            frame: a view of the gown, lying on the person or hanging from both hands.
             side: of the sleeve.
             near_in_map: (3,) roughly where it is [m].
 

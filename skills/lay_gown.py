@@ -10,7 +10,7 @@ import numpy as np
 
 from ..sim.quantity import Quantities, quantity
 from .control.base import drive_to
-from .control.draw_across import DrawAcrossTuning, draw_across
+from .control.draw_across import DrawAcrossTuning, draw_across, see_askew
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.held_neckline import NEAR_HAND, HeldNeckline, NecklineTuning
@@ -73,7 +73,7 @@ class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
     The gown is between both hands, its outside towards the robot.  A gown that was taken askew, with more of it on the
-    far side, is drawn across to the near side before it is let go of.
+    far side, is laid nearer to the near side.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -85,6 +85,7 @@ class LayGown(Skill):
         tuning = self.tuning
         self.note("lays the gown on the person")
         neckline = HeldNeckline(self, self.width, tuning.middle_x, tuning.neckline)
+        yield from see_askew(neckline, tuning.across)
         yield from drive_to(self, self._base_for(tuning.start_y), speed=tuning.approach_speed)
         for share in tuning.start_shares:
             with suppress(MotionError):  # the next step may have a way

@@ -19,7 +19,8 @@ from .hands import Way, collision_checker, hand_now, move_hands
 # The robot stands at the person's right, facing the head of the bed.
 NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
 FAR_HAND: Side = "right"
-NEAR_SLEEVE: Side = "right"  # the wearer's side of the sleeve that this hand holds
+NEAR_SLEEVE: Side = "right"  # the wearer's side of the sleeve that the near hand holds
+FAR_SLEEVE: Side = "left"
 
 
 @dataclass(frozen=True, kw_only=True)

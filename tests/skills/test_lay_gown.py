@@ -65,6 +65,24 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     assert near - far == pytest.approx(WIDTH, abs=0.01)
 
 
+@pytest.mark.parametrize(("askew", "shift"), [(0.03, 0.0), (0.0, 0.0), (-0.02, 0.06), (-0.10, 0.12)])
+def test_a_gown_that_hangs_askew_is_laid_nearer(askew, shift):
+    looks = []
+
+    def below_its_hand(frame, *, side, near_in_map):
+        if len(looks) >= len(SIDES):  # on the bed it does not show
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
+        looks.append(near_in_map)
+        near_from_far = (looks[0] - looks[-1]) if len(looks) > 1 else None
+        place = near_in_map - (0.0, 0.0, 0.12)
+        if near_from_far is not None:  # both are off by as much as the first one, told with the second
+            place = place + 2 * askew * near_from_far / np.linalg.norm(near_from_far)
+        return replace(armhole(STRAIGHT_AT), armhole_points_in_map=np.tile(place, (5, 1)))
+
+    near, far = let_go_at(below_its_hand)
+    assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
+
+
 def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_they_are_let_go_of():
     way_down = []
     let_go_at(armhole(STRAIGHT_AT), way_down=way_down)

@@ -159,6 +159,17 @@ def test_a_miss_ends_with_the_hand_open_and_drawn_back():
     assert run.ended() == Reason.GRASP_MISSED
     assert run.openings("left")[-1] > 0.08
     assert run.way("left")[-1, 2] > SEAMS["left"][2] + 0.05  # [m]
+    assert run.context.memory.of(Drawn, Drawn).missed == {"left": 1, "right": 1}
+
+
+@pytest.mark.parametrize(("missed", "footward"), [(0, 0.0), (1, 0.03), (2, 0.06), (3, 0.0)])
+def test_a_seam_that_was_missed_is_taken_elsewhere(missed, footward):
+    run = bench()
+    run.context.memory.of(Drawn, Drawn).missed["left"] = missed
+    assert run.ended() is None
+    closed = run.way("left")[run.openings("left") < 0.005][0]
+    assert (SEAMS["left"] - closed) @ HEADWARD == pytest.approx(footward, abs=0.01)
+    assert run.context.memory.of(Drawn, Drawn).missed["left"] == 0
 
 
 @pytest.mark.parametrize("missed", SIDES)
