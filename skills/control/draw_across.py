@@ -48,6 +48,12 @@ class DrawAcrossTuning(Quantities):
         "measured: of 25 gowns those that were 0.014 to 0.046 m off to the far side came to lie 0.09 to 0.13 m off the "
         "hands' middle (126, 135, 193), the others less than 0.05 m, but for one that showed nothing of it (191)",
     )
+    hanging_most: float = quantity(
+        0.07,
+        "m",
+        "of that way, at most",
+        "measured: by 0.066 m one came to lie even, by 0.12 m one 0.12 m off to the near side (193, 135)",
+    )
     by_hand: float = quantity(
         0.45,
         "m",
@@ -93,7 +99,7 @@ def see_askew(neckline: HeldNeckline, tuning: DrawAcrossTuning) -> Iterator[None
                 places.append(float((place - middle) @ across))
     if len(places) == len(SIDES):
         askew = float(np.mean(places))
-        neckline.middle += min(tuning.hanging * max(-askew, 0.0), tuning.max_shift)
+        neckline.middle += min(tuning.hanging * max(-askew, 0.0), tuning.hanging_most)
 
 
 def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTuning) -> Iterator[None]:

@@ -65,7 +65,7 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     assert near - far == pytest.approx(WIDTH, abs=0.01)
 
 
-@pytest.mark.parametrize(("askew", "shift"), [(0.03, 0.0), (0.0, 0.0), (-0.02, 0.06), (-0.10, 0.12)])
+@pytest.mark.parametrize(("askew", "shift"), [(0.03, 0.0), (0.0, 0.0), (-0.02, 0.06), (-0.10, 0.07)])
 def test_a_gown_that_hangs_askew_is_laid_nearer(askew, shift):
     looks = []
 
