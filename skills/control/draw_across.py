@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
-from ...perception.image.cloud import unit
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, SensorLost, Side
 from ..motion.errors import MotionError
@@ -40,25 +39,22 @@ class DrawAcrossTuning(Quantities):
         "by which the far side is longer before the gown is drawn across",
         "choice: less is within the error of what is seen",
     )
-    hanging: float = quantity(
-        3.0,
-        "1",
-        "way of the hands to the near side for each metre by which both armholes of the hanging gown are off their "
-        "middle",
-        "measured: of 25 gowns those that were 0.014 to 0.046 m off to the far side came to lie 0.09 to 0.13 m off the "
-        "hands' middle (126, 135, 193), the others less than 0.05 m, but for one that showed nothing of it (191)",
-    )
-    hanging_most: float = quantity(
-        0.07,
+    hangs_low: float = quantity(
+        0.22,
         "m",
-        "of that way, at most",
-        "measured: by 0.066 m one came to lie even, by 0.12 m one 0.12 m off to the near side (193, 135)",
+        "below its hand, from which an armhole of the hanging gown is that of an end that was taken too far out",
+        "measured: 0.25 to 0.30 m at one hand of four gowns, which came to lie off the hands' middle, 0.09 and 0.13 m to "
+        "the other side where it was the near hand (135, 193), 0.03 and 0.09 m where it was the far one (188, 178); "
+        "0.06 to 0.16 m at all other hands (13 gowns, of which two lay 0.11 and 0.13 m off)",
+    )
+    hanging_shift: float = quantity(
+        0.06,
+        "m",
+        "of the hands to that side",
+        "measured: by 0.066 m one came to lie even, by 0.12 m one 0.12 m off to the other side (193, 135)",
     )
     by_hand: float = quantity(
-        0.45,
-        "m",
-        "from a hand to the middle of the armhole below it, at most",
-        "measured: 0.12 to 0.15 m, 0.30 m below the near hand of two gowns that were taken askew (135, 193)",
+        0.45, "m", "from a hand to the middle of the armhole below it, at most", "choice: more is another one"
     )
     max_shift: float = quantity(0.12, "m", "of the hands towards the near side", "choice: within the arms' reach")
     slack_load: float = quantity(
@@ -76,30 +72,25 @@ class DrawAcrossTuning(Quantities):
 
 
 def see_askew(neckline: HeldNeckline, tuning: DrawAcrossTuning) -> Iterator[None]:
-    """Look at both armholes of a gown that hangs between the hands; it is laid nearer by what they are off to the far.
+    """Look at both armholes of a gown that hangs between the hands; one that hangs low is laid farther out.
 
-    A gown that was taken so lies off the hands' middle by three times of that, over the far edge of the bed, and does
-    not reach the near hand of the person (193).
+    A neckline that was taken too far out at one end lies off the hands' middle, over the edge of the bed on the other
+    side: the first sleeve of one did not reach the person's hand (193).
 
     Args:
         neckline: in both hands; its middle on the bed is moved.
-        tuning: how far.
+        tuning: when, and how far.
     """
     skill = neckline.skill
     near, far = (hand_now(skill, hand)[:3, 3] for hand in (NEAR_HAND, FAR_HAND))
-    middle, across = (near + far) / 2, unit((near - far) * (1.0, 1.0, 0.0))
-    yield from look_towards(skill, middle)
-    places = []
-    with suppress(PerceptionFailure, SensorLost):
-        sleeves: dict[Side, np.ndarray] = {NEAR_SLEEVE: near, FAR_SLEEVE: far}
-        for side, hand in sleeves.items():
+    yield from look_towards(skill, (near + far) / 2)
+    sleeves: dict[Side, tuple[np.ndarray, float]] = {NEAR_SLEEVE: (near, 1.0), FAR_SLEEVE: (far, -1.0)}
+    for side, (hand, outwards) in sleeves.items():
+        with suppress(PerceptionFailure, SensorLost):
             seen = skill.context.senses.sleeve_opening(skill.world.look("head"), side=side, near_in_map=hand)
             place = np.median(seen.armhole_points_in_map, axis=0)
-            if np.linalg.norm(place - hand) < tuning.by_hand:
-                places.append(float((place - middle) @ across))
-    if len(places) == len(SIDES):
-        askew = float(np.mean(places))
-        neckline.middle += min(tuning.hanging * max(-askew, 0.0), tuning.hanging_most)
+            if hand[2] - place[2] > tuning.hangs_low and np.linalg.norm(place - hand) < tuning.by_hand:
+                neckline.middle += outwards * tuning.hanging_shift
 
 
 def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTuning) -> Iterator[None]:

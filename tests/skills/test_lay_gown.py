@@ -65,21 +65,19 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     assert near - far == pytest.approx(WIDTH, abs=0.01)
 
 
-@pytest.mark.parametrize(("askew", "shift"), [(0.03, 0.0), (0.0, 0.0), (-0.02, 0.06), (-0.10, 0.07)])
-def test_a_gown_that_hangs_askew_is_laid_nearer(askew, shift):
-    looks = []
+@pytest.mark.parametrize(
+    ("near_below", "far_below", "shift"), [(0.12, 0.14, 0.0), (0.30, 0.14, 0.06), (0.12, 0.25, -0.06), (0.3, 0.3, 0.0)]
+)
+def test_a_gown_that_was_taken_too_far_out_at_one_end_is_laid_farther_to_that_side(near_below, far_below, shift):
+    below = [near_below, far_below]
 
-    def below_its_hand(frame, *, side, near_in_map):
-        if len(looks) >= len(SIDES):  # on the bed it does not show
-            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
-        looks.append(near_in_map)
-        near_from_far = (looks[0] - looks[-1]) if len(looks) > 1 else None
-        place = near_in_map - (0.0, 0.0, 0.12)
-        if near_from_far is not None:  # both are off by as much as the first one, told with the second
-            place = place + 2 * askew * near_from_far / np.linalg.norm(near_from_far)
-        return replace(armhole(STRAIGHT_AT), armhole_points_in_map=np.tile(place, (5, 1)))
+    def under_its_hand(frame, *, side, near_in_map):
+        if not below:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")  # on the bed
+        points = np.tile(near_in_map - (0.0, 0.0, below.pop(0)), (5, 1))
+        return replace(laid_strap(side), armhole_points_in_map=points)
 
-    near, far = let_go_at(below_its_hand)
+    near, far = let_go_at(under_its_hand)
     assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
 
 
