@@ -43,9 +43,9 @@ class DrawAcrossTuning(Quantities):
         0.22,
         "m",
         "below its hand, from which an armhole of the hanging gown is that of an end that was taken too far out",
-        "measured: 0.25 to 0.30 m at one hand of four gowns, which came to lie off the hands' middle, by 0.09 and 0.13 m "
-        "to the other side where it was the near hand (135, 193), 0.03 and 0.09 m where it was the far one (188, 178); "
-        "0.06 to 0.16 m at all other hands (13 gowns, of which two lay 0.11 and 0.13 m off)",
+        "measured: 0.25 to 0.30 m at one hand of four gowns, which came to lie off the hands' middle, by 0.09 and 0.13 "
+        "m to the other side where it was the near hand (135, 193), 0.03 and 0.09 m where it was the far one (188, "
+        "178); 0.06 to 0.16 m at all other hands (13 gowns, of which two lay 0.11 and 0.13 m off)",
     )
     hanging_shift: float = quantity(
         0.06,
