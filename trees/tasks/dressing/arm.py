@@ -161,7 +161,7 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
 
     def missed() -> Behaviour:
         # held out once more as it hung, it went past the hand again, 4 times of 5, each time farther off the bed (193);
-        # folded then, its cuff no farther out than the armhole, it missed the hand six times of six (184, 185, 193)
+        # folded then, its cuff no farther out than the armhole, it missed the hand five times of five (184, 185, 193)
         return sequence("laid down, and held out again", lay("missed"), opened("present it again", "still folded"))
 
     pull = PullAlongArm("pull over the hand", held, grip_goal=DRESSING.past_wrist)
