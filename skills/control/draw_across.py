@@ -1,4 +1,4 @@
-"""See that a gown was taken askew, with more of it on the far side, and lay it nearer to the near side by that."""
+"""See that a gown was taken askew, as it hangs between the hands and once it is on the bed, and lay it even."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .held_neckline import FAR_HAND, FAR_SLEEVE, NEAR_HAND, NEAR_SLEEVE, HeldNec
 
 @dataclass(frozen=True, kw_only=True)
 class DrawAcrossTuning(Quantities):
-    """When a gown lies askew, and how far it is drawn."""
+    """When a gown hangs or lies askew, and how far it is drawn."""
 
     overhang: float = quantity(
         0.04,
