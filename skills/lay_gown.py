@@ -72,8 +72,8 @@ class LayGownTuning(Quantities):
 class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
-    The gown is between both hands, its outside towards the robot.  One that was taken askew, with more of it on one side,
-    is laid nearer to the other.
+    The gown is between both hands, its outside towards the robot.  One that was taken askew, with more of it on one
+    side, is laid nearer to the other.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
