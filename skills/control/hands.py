@@ -11,6 +11,7 @@ cannot be reached raise Unreachable or MotionBlocked, which a skill passes on as
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
@@ -27,11 +28,16 @@ from ..core.skill import Skill
 from ..motion.clear_of_person import ClearOfPerson
 from ..motion.errors import MotionError
 from ..motion.ik import FreeAxis
-from ..motion.reach import plan_arms, plan_hand_line, plan_reach
+from ..motion.reach import plan_arms, plan_hand_line, plan_reach, plan_straight_reach
 from ..motion.trajectory import HandSpeed
 from .follow import FOLLOW, follow
 
 Way = Literal["line", "any", "either"]
+WAYS: dict[Way, tuple[Callable[..., JointTrajectory], ...]] = {  # tried one after the other
+    "line": (plan_hand_line,),
+    "any": (plan_reach,),
+    "either": (plan_hand_line, plan_straight_reach, plan_reach),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +123,8 @@ def move_hands(
         goals: by side, pose (4, 4) in the map.
         speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
         free: hand axis about which the orientation does not matter (see `solve_ik`).
-        way: `line` straight and turning evenly; `any` way that is free; `either` straight where that is possible.
+        way: `line` straight and turning evenly; `any` way that is free; `either` straight where that is possible,
+            turning evenly or else as the joints would have it.
         retreat: the motion takes load off the person, so the guard lets it pass at any load.
         patience: how long the arms may lag behind at the end [s].
 
@@ -138,15 +145,13 @@ def move_hands(
             checker=collision_checker(skill),
         )
 
-    if way == "any":
-        trajectory = plan(plan_reach)
+    *first, last = WAYS[way]
+    for planner in first:
+        with suppress(MotionError):
+            trajectory = plan(planner)
+            break
     else:
-        try:
-            trajectory = plan(plan_hand_line)
-        except MotionError:
-            if way == "line":
-                raise
-            trajectory = plan(plan_reach)
+        trajectory = plan(last)
     yield from follow(skill, trajectory, retreat=retreat, patience=patience)
 
 
