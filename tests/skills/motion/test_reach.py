@@ -7,7 +7,7 @@ from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
 from caretree.skills.motion.errors import MotionBlocked, Unreachable
 from caretree.skills.motion.ik import hand_pose
-from caretree.skills.motion.reach import ReachTuning, plan_arms, plan_hand_line, plan_reach
+from caretree.skills.motion.reach import ReachTuning, plan_arms, plan_hand_line, plan_reach, plan_straight_reach
 
 BASE = np.array((0.95, -0.2, np.pi))
 BED = np.array((((-0.45, -1.0, 0.35), (0.45, 1.0, 0.60)),))
@@ -47,6 +47,42 @@ def test_a_line_is_straight_and_keeps_both_hands_together(kinematics):
         np.testing.assert_allclose(path[-1], goals[side][:3, 3], atol=1e-3)
     apart = hand_path(kinematics, trajectory, "left") - hand_path(kinematics, trajectory, "right")
     assert np.ptp(apart, axis=0).max() < 1e-3
+
+
+def off_the_line(path):
+    along = (path[-1] - path[0]) / np.linalg.norm(path[-1] - path[0])
+    off = (path - path[0]) - np.outer((path - path[0]) @ along, along)
+    return np.linalg.norm(off, axis=1).max()
+
+
+@pytest.mark.parametrize(
+    ("position", "approach", "closing"),
+    [
+        ((0.54, -0.65, 1.13), (-0.7, -1.3, 1.4), (0.5, -0.4, -0.2)),
+        ((0.28, -0.70, 0.87), (-1.0, 0.1, -0.6), (-0.8, 0.8, 0.4)),
+        ((0.47, -0.74, 0.83), (-1.9, -0.6, -0.7), (-0.7, -1.4, 0.8)),
+    ],
+)
+def test_where_an_even_turn_does_not_get_the_hand_still_goes_straight(kinematics, position, approach, closing):
+    goal = hand_pose(position, approach, closing)
+    with pytest.raises(Unreachable):
+        plan_hand_line(kinematics, {"left": goal}, model.READY, BASE)
+    aside = hand_path(kinematics, plan_reach(kinematics, {"left": goal}, model.READY, BASE), "left")
+    assert off_the_line(aside) > 0.1
+    trajectory = plan_straight_reach(kinematics, {"left": goal}, model.READY, BASE, hand_speed=0.2)
+    straight = hand_path(kinematics, trajectory, "left")
+    assert off_the_line(straight) < 2e-3
+    end = kinematics.pose_hand_in_map("left", trajectory.positions[-1], BASE)
+    np.testing.assert_allclose(end, goal, atol=6e-3)
+
+
+def test_a_straight_way_through_the_bed_is_refused(kinematics):
+    arms = model.READY.copy()
+    start, goal = (hand_pose((x, -0.3, 0.72), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)) for x in (0.6, 0.0))
+    high = np.array((((0.2, -1.0, 0.35), (0.4, 1.0, 0.80)),))  # a board between the two
+    arms[0] = plan_reach(kinematics, {"left": start}, arms, BASE).positions[-1]
+    with pytest.raises(MotionBlocked, match="box 0"):
+        plan_straight_reach(kinematics, {"left": goal}, arms, BASE, checker=CollisionChecker(kinematics, high))
 
 
 def test_a_line_out_of_reach_or_through_the_bed_is_refused(kinematics):
