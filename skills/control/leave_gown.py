@@ -14,7 +14,6 @@ from ..geometry.stances import STANCES
 from .base import drive_to
 from .fingers import open_gripper
 from .hands import hand_now, move_hands
-from .held_neckline import FAR_HAND, NEAR_HAND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +38,7 @@ def leave_gown(skill: Skill, tuning: LeaveGownTuning) -> Iterator[None]:
         MotionError: out of reach, or something is in the way.
         SkillFailure: COMMAND_LOST, PATH_BLOCKED or TIMEOUT.
     """
-    for side in (FAR_HAND, NEAR_HAND):  # the near end first, the gown came to lie 0.03 m to the far side (131, 134)
+    for side in SIDES:  # the near corner first: then its back panel swings out over the edge of the bed
         yield from open_gripper(skill, side)
     skill.note("withdraws")
     up: dict[Side, np.ndarray] = {side: hand_now(skill, side) for side in SIDES}
