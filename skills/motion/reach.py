@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -76,29 +76,11 @@ def plan_hand_line(
         Unreachable: a point of a line is out of reach, or the arm would have to fold over on the way.
         MotionBlocked: the motion would hit something.
     """
-    sides: list[Side] = [side for side in SIDES if side in goals]
-    starts = {
-        side: kinematics.pose_hand_in_map(side, arm_positions[SIDES.index(side)], pose_base_in_map) for side in sides
-    }
-    count = max(_line_points(starts[side], goals[side], tuning) for side in sides)
-    waypoints: dict[Side, np.ndarray] = {}
-    for side in sides:
-        q = np.asarray(arm_positions[SIDES.index(side)], float)
-        path = [q]
-        shares = np.linspace(0.0, 1.0, count + 1)[1:]
-        for share, pose in zip(shares, _line(starts[side], np.asarray(goals[side], float), shares), strict=True):
-            q = solve_ik(kinematics, side, pose, pose_base_in_map, path[-1], free=free, seeds=1)
-            if np.abs(q - path[-1]).max() > tuning.max_joint_step:
-                raise Unreachable(
-                    f"the {side} arm would fold over {share:.0%} along the straight line to "
-                    f"{np.round(goals[side][:3, 3], 3).tolist()} m",
-                    0.0,
-                    0.0,
-                    q,
-                )
-            path.append(q)
-        waypoints[side] = np.array(path)
-    other = None if len(sides) == 2 else arm_positions[1 - SIDES.index(sides[0])]
+
+    def evenly(side: Side, share: float, pose: np.ndarray, before: np.ndarray) -> np.ndarray:
+        return solve_ik(kinematics, side, pose, pose_base_in_map, before, free=free, seeds=1)
+
+    waypoints = _along_lines(kinematics, goals, np.asarray(arm_positions, float), pose_base_in_map, evenly, tuning)
     return plan_joint_motion(
         kinematics,
         waypoints,
@@ -106,7 +88,7 @@ def plan_hand_line(
         speed_scale=speed_scale,
         hand_speed=hand_speed,
         checker=checker,
-        other_arm=other,
+        other_arm=_resting(arm_positions, goals),
     )
 
 
@@ -131,21 +113,16 @@ def plan_straight_reach(
     Arguments and errors are those of `plan_hand_line`.
     """
     arms = np.asarray(arm_positions, float)
-    sides: list[Side] = [side for side in SIDES if side in goals]
     target = _end_postures(kinematics, goals, arms, pose_base_in_map, free, checker)
-    starts = {side: kinematics.pose_hand_in_map(side, arms[SIDES.index(side)], pose_base_in_map) for side in sides}
-    count = max(_line_points(starts[side], goals[side], tuning) for side in sides)
-    shares = np.linspace(0.0, 1.0, count + 1)
-    waypoints: dict[Side, np.ndarray] = {}
-    for side in sides:
-        start, end = arms[SIDES.index(side)], target[SIDES.index(side)]
-        path = [start]
-        for share, pose in zip(shares[1:-1], _line(starts[side], goals[side], shares[1:-1]), strict=True):
-            between = (1.0 - share) * start + share * end
-            path.append(solve_ik(kinematics, side, pose, pose_base_in_map, between, free="any", seeds=1))
-        waypoints[side] = np.array([*path, end])
-        if np.abs(np.diff(waypoints[side], axis=0)).max() > tuning.max_joint_step:
-            raise Unreachable(f"the {side} arm would fold over on the way", 0.0, 0.0, end)
+
+    def as_the_joints_turn(side: Side, share: float, pose: np.ndarray, before: np.ndarray) -> np.ndarray:
+        n = SIDES.index(side)
+        if share == 1.0:
+            return target[n]
+        between = (1.0 - share) * arms[n] + share * target[n]
+        return solve_ik(kinematics, side, pose, pose_base_in_map, between, free="any", seeds=1)
+
+    waypoints = _along_lines(kinematics, goals, arms, pose_base_in_map, as_the_joints_turn, tuning)
     return plan_joint_motion(
         kinematics,
         waypoints,
@@ -153,7 +130,7 @@ def plan_straight_reach(
         speed_scale=speed_scale,
         hand_speed=hand_speed,
         checker=checker,
-        other_arm=None if len(sides) == 2 else arms[1 - SIDES.index(sides[0])],
+        other_arm=_resting(arms, goals),
     )
 
 
@@ -268,6 +245,54 @@ def plan_arms(
         with suppress(MotionBlocked):
             way = min(way, round_it(seed), key=lambda each: each.times[-1])
     return way
+
+
+def _along_lines(
+    kinematics: Kinematics,
+    goals: Mapping[Side, np.ndarray],
+    arms: np.ndarray,
+    pose_base_in_map: np.ndarray,
+    posture: Callable[[Side, float, np.ndarray, np.ndarray], np.ndarray],
+    tuning: ReachTuning,
+) -> dict[Side, np.ndarray]:
+    """Joint angles (k, n) by side that bring hands along straight lines, from where they are.
+
+    Args:
+        kinematics: the robot.
+        goals: by side, pose (4, 4) in the map.
+        arms: (2, n) where the arms are now [rad].
+        pose_base_in_map: (3,) where the base stands.
+        posture: by side, share of the line, pose (4, 4) there, and angles (n,) at the point before.
+        tuning: how near to each other the points are.
+
+    Raises:
+        Unreachable: a point of a line is out of reach, or the arm would have to fold over on the way.
+    """
+    goals = {side: np.asarray(goals[side], float) for side in SIDES if side in goals}
+    starts = {side: kinematics.pose_hand_in_map(side, arms[SIDES.index(side)], pose_base_in_map) for side in goals}
+    count = max(_line_points(starts[side], goal, tuning) for side, goal in goals.items())
+    shares = np.linspace(0.0, 1.0, count + 1)[1:]
+    waypoints: dict[Side, np.ndarray] = {}
+    for side, goal in goals.items():
+        path = [arms[SIDES.index(side)]]
+        for share, pose in zip(shares, _line(starts[side], goal, shares), strict=True):
+            q = posture(side, share, pose, path[-1])
+            if np.abs(q - path[-1]).max() > tuning.max_joint_step:
+                raise Unreachable(
+                    f"the {side} arm would fold over {share:.0%} along the straight line to "
+                    f"{np.round(goal[:3, 3], 3).tolist()} m",
+                    0.0,
+                    0.0,
+                    q,
+                )
+            path.append(q)
+        waypoints[side] = np.array(path)
+    return waypoints
+
+
+def _resting(arms: np.ndarray, goals: Mapping[Side, np.ndarray]) -> np.ndarray | None:
+    """Joint angles (n,) of the arm that has no goal, None where both have one."""
+    return next((arms[n] for n, side in enumerate(SIDES) if side not in goals), None)
 
 
 def _end_postures(
