@@ -56,8 +56,11 @@ class View:
     true: float
 
 
-def views_of(record: Path, rng: np.random.Generator) -> Iterator[View]:
-    """All sleeves of one record (a folder), wherever the hands are open and away."""
+def states_of(record: Path) -> Iterator[tuple[int, RecordedRoom, int, Side, np.ndarray, float]]:
+    """Seed, room, frame, side, arms (2, 4, 3) [m] and how far up it is of each sleeve.
+
+    States are those in which the hands are open and away, but for ones in which no sleeve has moved since the last.
+    """
     truth, run = read_truth(record), json.loads((record / "run.json").read_text())
     with np.load(record / "truth.npz") as arrays:
         room = RecordedRoom(run, {name: arrays[name] for name in NEEDED + OPTIONAL if name in arrays})
@@ -75,12 +78,27 @@ def views_of(record: Path, rng: np.random.Generator) -> Iterator[View]:
     for n, i in enumerate(states):
         up = [float(sleeves[side].armhole.upper_arm[n]) if sleeves[side].on[n] else None for side in SIDES]
         if up == before:
-            continue  # nothing has moved since
+            continue
         before = up
-        for side, arm, true in zip(SIDES, truth.arms[i].astype(float), up, strict=True):
-            for where, stand in stands(side) if true is not None else ():
-                for draw, (features, told) in enumerate(_seen(room, i, arm, stand, rng)):
-                    yield View(int(run["seed"]), (str(record), int(i), side, draw), where, features, told, true)
+        for side, true in zip(SIDES, up, strict=True):
+            if true is not None:
+                yield int(run["seed"]), room, int(i), side, truth.arms[i].astype(float), true
+
+
+def views_of(record: Path, rng: np.random.Generator) -> Iterator[View]:
+    """All sleeves of one record (a folder), wherever the hands are open and away."""
+    for seed, room, i, side, arms, true in states_of(record):
+        arm = arms[SIDES.index(side)]
+        for where, stand in stands(side):
+            for draw, (features, told) in enumerate(_seen(room, i, arm, stand, rng)):
+                yield View(seed, (str(record), i, side, draw), where, features, told, true)
+
+
+def head_view(stand: np.ndarray, shoulder: np.ndarray) -> np.ndarray:
+    """Pose (4, 4) of the head's camera from a stand (3,) that has a shoulder (3,) nearest to its middle."""
+    kinematics = kinematics_of(BAXTER)
+    poses = [kinematics.pose_camera_in_map("head", np.asarray(stand), BAXTER.ready, float(pan)) for pan in PANS]
+    return max(poses, key=lambda p: (shoulder - p[:3, 3]) @ p[:3, 2] / np.linalg.norm(shoulder - p[:3, 3]))
 
 
 def stands(side: Side) -> list[tuple[str, np.ndarray]]:
@@ -93,9 +111,7 @@ def _seen(
     room: RecordedRoom, i: int, arm: np.ndarray, stand: np.ndarray, rng: np.random.Generator
 ) -> Iterator[tuple[np.ndarray, float]]:
     """Features and what is told of a sleeve in state `i`, with several draws of the error of a tracked arm (4, 3)."""
-    kinematics = kinematics_of(BAXTER)
-    poses = [kinematics.pose_camera_in_map("head", np.asarray(stand), BAXTER.ready, float(pan)) for pan in PANS]
-    pose = max(poses, key=lambda p: (arm[0] - p[:3, 3]) @ p[:3, 2] / np.linalg.norm(arm[0] - p[:3, 3]))
+    pose = head_view(stand, arm[0])
     size, _ = CAMERA_VIEWS["head"]
     drawn = room.at(i).render(pose, size, camera_intrinsics("head"))
     frame = Frame(

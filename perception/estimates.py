@@ -126,6 +126,20 @@ class WornSleeve(Estimate):
     round_arm: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class ArmholeProfile(Estimate):
+    """Where the binding of a worn sleeve's armhole shows round its arm, in one picture.
+
+    Attributes:
+        side: of the person.
+        armhole_at: (n,) share of the upper arm, 0 shoulder, 1 elbow, in equal sectors round its axis, which begin at
+            the top and go round outwards; NaN where it does not show.
+    """
+
+    side: Side
+    armhole_at: np.ndarray
+
+
 Primitive = Literal["move_left", "direct", "move_right"]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..sim.errors import CaretreeError
 from ..sim.world import Frame, Side
 from .estimates import (
+    ArmholeProfile,
     ArmPosture,
     ChestCover,
     ChestFront,
@@ -275,11 +276,12 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
-        """Where a sleeve shows that is over the hand, but not yet up the arm: 0 elbow to 1 wrist.
+    def armhole_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> ArmholeProfile:
+        """Where its armhole shows round the arm; several pictures tell how far up it is.  Else as `worn_sleeve`."""
 
-        Arguments and errors are those of `worn_sleeve`.
-        """
+    @abstractmethod
+    def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
+        """Where one shows that is over the hand, not yet up the arm: 0 elbow, 1 wrist.  Else as `worn_sleeve`."""
 
     # -- the gown on the person --------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
+from .belief.close_look import close_reach
 from .belief.person_tracking import watch_arm
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
@@ -75,6 +76,7 @@ class CheckSleeveTuning(Quantities):
 class CheckSleeve(Skill):
     """Looks where the cuff is: down the arm and round it, in a heap at the shoulder, or beside the arm.
 
+    How far up it is, a close look tells, where there was one since the gown was touched (`LookAtSleeves`).
     It fails where the cuff is in a heap or beside the arm, where the upper arm shows bare, and where the armhole is too
     far down the arm; a sleeve of which too little shows is let pass, unless it `must_show`.
     """
@@ -94,6 +96,9 @@ class CheckSleeve(Skill):
         float, unit="1", default=0.0, doc="in the place of `min_reach` for the mean of both looks, where there are two"
     )
     min_now = Input(float, unit="1", default=0.0, doc="what this look has to tell, whatever was seen before")
+    min_closely = Input(
+        float, unit="1", default=0.0, doc="in the place of all of these, where it was looked at closely"
+    )
     must_show = Input(bool, default=False, doc="whether one of which too little shows fails, as before a claim")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
     reach = Output(float, unit="1", doc="how far up the upper arm the armhole is seen; 0 where it does not show")
@@ -102,14 +107,17 @@ class CheckSleeve(Skill):
     def steps(self) -> Iterator[None]:
         """One look."""
         arm = watch_arm(self, self.side).points_in_map
+        closely = close_reach(self, self.side)
         try:
             seen = self.context.senses.worn_sleeve(self.world.look("head"), side=self.side, arm_in_map=arm)
         except PerceptionFailure as hidden:
             self._see_covered(arm)
             self.note(f"cannot see the {self.side} sleeve's bindings")
-            if self.must_show:
+            if closely is not None:
+                self._ask(closely, self.min_closely)
+            elif self.must_show:
                 raise SkillFailure(Reason.NOTHING_SEEN, f"{hidden}") from None
-            self.reach = 0.0
+            self.reach = closely or 0.0
             return
         self.note(
             f"{self.side} armhole {seen.reach:.2f} up the upper arm, cuff at {seen.cuff_at:.2f}, "
@@ -122,18 +130,31 @@ class CheckSleeve(Skill):
                 f"{seen.round_arm:.0%} of the way round it",
             )
         self._see_outer_side(arm, seen.armhole_at, seen.cuff_at)
-        reach, least = seen.reach, self.min_reach
+        self._ask(*self._told(seen.reach, closely))
+        self.reach = seen.reach if closely is None else closely
+        yield
+
+    def _told(self, now: float, closely: float | None) -> tuple[float, float]:
+        """How far up the armhole is told to be, and has to be, by this look, one before, or a close one."""
+        if closely is not None:
+            return closely, self.min_closely
+        if now < self.min_now:
+            return now, self.min_now
         if self.seen_before > 0.0:
             counts = self.tuning.before_counts
-            reach, least = counts * self.seen_before + (1.0 - counts) * reach, self.min_together
-        if seen.reach < self.min_now:
-            reach, least = seen.reach, self.min_now
+            return counts * self.seen_before + (1.0 - counts) * now, self.min_together
+        return now, self.min_reach
+
+    def _ask(self, reach: float, least: float) -> None:
+        """The armhole is as far up as is asked for.
+
+        Raises:
+            SkillFailure: SLEEVE_LOW.
+        """
         if reach < least:
             raise SkillFailure(
                 Reason.SLEEVE_LOW, f"the armhole is at {reach:.2f} of the upper arm, at least {least:.2f} is asked for"
             )
-        self.reach = seen.reach
-        yield
 
     def _see_covered(self, arm: np.ndarray) -> None:
         """Whatever hides the bindings, a sleeve covers the top of its arm (4, 3).

@@ -14,6 +14,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture, GraspPoint
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Frame, Side
+from .belief.close_look import close_reach
 from .belief.face import FACE, cover_of, face_points
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
@@ -307,7 +308,13 @@ class SeatSleeves(Skill):
         return False
 
     def _reach(self, frame: Frame, side: Side) -> float:
-        """How far up the upper arm an armhole is seen; one that does not show is low: somebody asked for this skill."""
+        """How far up the upper arm an armhole is seen, closely if it was.
+
+        One that does not show is low: somebody asked for this skill.
+        """
+        closely = close_reach(self, side)
+        if closely is not None:
+            return closely
         arm = watch_arm(self, side).points_in_map
         try:
             return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach

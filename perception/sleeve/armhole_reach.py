@@ -13,8 +13,7 @@ import numpy as np
 
 from ...sim.quantity import Quantities, quantity
 from ..image.cloud import unit
-
-UP = np.array((0.0, 0.0, 1.0))
+from .arm_frame import arm_frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,10 +95,7 @@ def reach_features(
         (9,) five quantiles of the armhole's points along the arm and the cuff's middle [m]; where a plane through the
         points meets the arm's axis [m], and by how much it slants upwards and outwards [1].
     """
-    shoulder, along = arm_in_map[0], unit(arm_in_map[1] - arm_in_map[0])
-    up = unit(UP - (UP @ along) * along)
-    outwards = np.cross(along, up)
-    outwards *= np.sign(outwards[0] * shoulder[0]) or 1.0  # away from the bed's middle line
+    shoulder, (along, up, outwards) = arm_in_map[0], arm_frame(arm_in_map)
     off = armhole_in_map - shoulder
     way = off @ along
     plane = np.column_stack((np.ones(len(off)), off @ up, off @ outwards))

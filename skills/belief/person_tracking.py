@@ -51,6 +51,12 @@ class PersonTrackingTuning(Quantities):
         0.3, "1", "arm coordinate from which the arm has to be in view", "choice: the gown covers the shoulder"
     )
     visible_to: float = quantity(3.0, "1", "arm coordinate up to which it has to be", "choice: the fingertip")
+    hand_from: float = quantity(
+        2.0,
+        "1",
+        "arm coordinate from which an arm that the gown hides shows whether it has stayed",
+        "choice: the wrist",
+    )
     visible_points: int = quantity(28, "1", "points of the arm's axis that are looked at", "choice: some cm apart")
     sure_deviation: float = quantity(
         0.035, "m", "of any joint, up to which an arm is known well", "choice: well enough to take the arm"
@@ -173,6 +179,8 @@ def watch_arm(
             else:
                 _search(skill, frame, side, tuning)
         except PerceptionFailure:
+            if side in watch.arms and hold is None and hand_share(frame, watch.arms[side]) >= tuning.min_visible:
+                watch.seen[side] = now
             if now - watch.seen.get(side, -np.inf) > patience:
                 raise
     return watch.arms[side]
@@ -266,6 +274,21 @@ def bare_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTunin
     axis = ArmPath.of(posture).at(np.linspace(tuning.visible_from, tuning.visible_to, tuning.visible_points))
     rows, columns, _, inside = pixels_of(frame, axis)
     return float((inside & (surfaces_at(frame.rgb, rows, columns) == Surface.SKIN)).mean())
+
+
+def hand_share(frame: Frame, posture: ArmPosture, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> float:
+    """Share of a hand that a picture shows where it was: an arm in its sleeve, whose hand does, has stayed.
+
+    Args:
+        frame: that may show the hand.
+        posture: where the arm was.
+        tuning: from where on it is looked at, and how far from there its skin may be.
+    """
+    axis = ArmPath.of(posture).at(np.linspace(tuning.hand_from, tuning.visible_to, tuning.visible_points))
+    rows, columns, depth, inside = pixels_of(frame, axis)
+    there = np.abs(frame.depth[rows, columns] - depth) < tuning.hidden_behind
+    skin = surfaces_at(frame.rgb, rows, columns) == Surface.SKIN
+    return float((inside & skin & there).mean())
 
 
 def see_person(skill: Skill, *, tuning: PersonTrackingTuning = PERSON_TRACKING) -> list[Side]:

@@ -11,6 +11,7 @@ from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES
 from ..core.skill import Skill
 from ..geometry.stances import HEADWARD
+from .close_look import close_look
 from .person_tracking import watch_arm, watch_of
 
 
@@ -26,33 +27,9 @@ class CollarSeen(Quantities):
         "from beside both shoulders: 0.012, 0.030 and 0.011 m on average; the mean of the three is off by 0.013 m then "
         "(root mean square), at worst by 0.030 m",
     )
-    lasts: float = quantity(60.0, "s", "for which a close look tells", "choice: nobody touches what it saw")
 
 
 COLLAR_SEEN = CollarSeen()
-_LASTS = COLLAR_SEEN.lasts
-
-
-@dataclass
-class CloseLook:
-    """The last close look at the collar, until a hand comes down to the gown.
-
-    Attributes:
-        seen: where its middle lies; None where it may lie elsewhere by now.
-    """
-
-    seen: GraspPoint | None = None
-
-    @staticmethod
-    def of(skill: Skill) -> CloseLook:
-        """The run's."""
-        return skill.context.memory.of(CloseLook, CloseLook)
-
-
-def close_look(skill: Skill, max_age: float = _LASTS) -> GraspPoint | None:
-    """Where the neckline's middle was seen closely within `max_age` [s], if no hand came down to the gown since."""
-    seen = CloseLook.of(skill).seen
-    return seen if seen is not None and skill.now() - seen.stamp < max_age else None
 
 
 def look_at_collar(skill: Skill, middle: np.ndarray, away: tuple[float, float] = (0.0, 0.0)) -> GraspPoint:

@@ -10,7 +10,7 @@ import numpy as np
 from ...perception.estimates import GraspPoint
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Side
-from ..belief.shoulders import CloseLook
+from ..belief.close_look import CloseLook
 from ..core.skill import Skill
 from ..geometry.from_above import from_above
 from .pinch import grasp_poses, pinch_or_back_off, reach_in
@@ -59,7 +59,7 @@ def take_from_above(skill: Skill, hand: Side, point: GraspPoint, outward: np.nda
         MotionError: out of reach.
         SkillFailure: GRASP_MISSED, COMMAND_LOST or MOTION_BLOCKED.
     """
-    CloseLook.of(skill).seen = None
+    CloseLook.of(skill).forget()
     approach = from_above(point.approach_in_map, outward, law.max_tilt)
     yield from reach_in(
         skill,

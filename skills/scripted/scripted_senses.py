@@ -12,6 +12,7 @@ import numpy as np
 from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
+    ArmholeProfile,
     ArmPosture,
     ChestCover,
     ChestFront,
@@ -187,6 +188,10 @@ class ScriptedSenses(Senses):
         return WornSleeve(
             stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, reach=0.9, round_arm=0.8
         )
+
+    def armhole_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> ArmholeProfile:
+        """At the shoulder, all the way round."""
+        return ArmholeProfile(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=np.full(24, 0.1))
 
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """Beyond the hand: one that is over it is drawn up at once."""

@@ -42,6 +42,7 @@ from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.dressing.let_gown_go import LetGownGo
 from caretree.trees.tasks.dressing.look_at_collar import LookAtCollar
+from caretree.trees.tasks.dressing.look_at_sleeves import LookAtSleeves
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
 from caretree.trees.tasks.undress.draw_off import DrawOff
 from caretree.trees.tasks.undress.take_seam import TakeSeam
@@ -82,6 +83,7 @@ EXAMPLES = {
     LayGown: lambda context: LayGown("lay gown", context, width=0.8),
     LetGownGo: lambda context: LetGownGo("let gown go", context),
     LookAtCollar: lambda context: LookAtCollar("look at collar", context),
+    LookAtSleeves: lambda context: LookAtSleeves("look at sleeves", context),
     LayOnHand: lambda context: LayOnHand("lay on hand", context, side="right", hand="right"),
     LaySleeve: lambda context: LaySleeve("lay sleeve", context, side="right", hand="right"),
     LiftArm: lambda context: LiftArm("lift arm", context, side="right", hand="left"),

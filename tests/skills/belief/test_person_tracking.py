@@ -10,6 +10,7 @@ from caretree.skills.belief.person_tracking import (
     bare_share,
     careful,
     doubt_arms,
+    hand_share,
     head_view,
     see_person,
     swung_to,
@@ -111,6 +112,34 @@ def test_an_arm_under_cloth_is_taken_to_stay_and_is_lost_in_the_end():
     with pytest.raises(PerceptionFailure) as lost:
         watch_arm(skill, "right", period=0.0, patience=10.0)
     assert lost.value.problem == Problem.ARM_LOST
+
+
+def test_an_arm_in_its_sleeve_has_stayed_where_its_hand_shows():
+    """Its sleeve hid it for 300 s, and then it was not drawn up any more, 20 times in turn (128)."""
+    there, bare_from = lying_posture("right"), [0]
+
+    def frame(camera, time):
+        seen = looking_down(time, range(200))
+        seen.rgb[:, bare_from[-1] :], seen.depth[:, bare_from[-1] :] = (214, 158, 124), 1.55
+        return seen
+
+    skill, world = make(lambda frame, side: there, frames=frame)
+    first = watch_arm(skill, "right", period=0.0)
+    bare_from.append(103)  # the column of the wrist
+    world.clock.wait_until(11.0)
+    assert hand_share(frame("head", 11.0), there) > 0.75 > visible_share(frame("head", 11.0), there)
+    assert watch_arm(skill, "right", period=0.0, patience=10.0) is first
+    bare_from.append(200)
+    world.clock.wait_until(20.0)
+    assert watch_arm(skill, "right", period=0.0, patience=10.0) is first
+    world.clock.wait_until(22.0)
+    with pytest.raises(PerceptionFailure):
+        watch_arm(skill, "right", period=0.0, patience=10.0)
+
+
+def test_skin_that_is_not_where_a_hand_was_is_not_that_hand():
+    nearer = looking_down(covered=range(200), colour=(214, 158, 124))
+    assert hand_share(nearer, lying_posture("right")) == 0.0
 
 
 @pytest.mark.parametrize(("off", "deviation", "stays"), [(0.1, 0.05, True), (0.1, 0.02, False), (0.14, 0.09, False)])

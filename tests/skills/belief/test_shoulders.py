@@ -3,14 +3,8 @@
 import numpy as np
 import pytest
 from caretree.perception.estimates import GraspPoint
-from caretree.skills.belief.shoulders import (
-    CloseLook,
-    CollarSeen,
-    between_shoulders,
-    close_look,
-    look_at_collar,
-    off_middle,
-)
+from caretree.skills.belief.close_look import CloseLook, close_look
+from caretree.skills.belief.shoulders import CollarSeen, between_shoulders, look_at_collar, off_middle
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
 

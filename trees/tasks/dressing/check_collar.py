@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ....sim.quantity import Quantities, quantity
-from ....skills.belief.shoulders import between_shoulders, close_look, look_at_collar, off_middle
+from ....skills.belief.close_look import close_look
+from ....skills.belief.shoulders import between_shoulders, look_at_collar, off_middle
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason, SkillFailure
 from ....skills.core.skill import Skill

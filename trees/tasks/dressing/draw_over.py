@@ -11,8 +11,9 @@ import numpy as np
 from ....perception.estimates import GraspPoint
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import SIDES, Side
+from ....skills.belief.close_look import close_look
 from ....skills.belief.person_motion import while_person_rests
-from ....skills.belief.shoulders import between_shoulders, close_look, look_at_collar, off_middle
+from ....skills.belief.shoulders import between_shoulders, look_at_collar, off_middle
 from ....skills.control.carry import Carry
 from ....skills.control.fingers import let_cloth_go
 from ....skills.control.hands import hand_now

@@ -12,8 +12,9 @@ from ....perception.errors import PerceptionFailure
 from ....perception.estimates import GraspPoint
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import SIDES, Side
+from ....skills.belief.close_look import CloseLook, close_look
 from ....skills.belief.person_tracking import careful
-from ....skills.belief.shoulders import CloseLook, between_shoulders, close_look, off_middle
+from ....skills.belief.shoulders import between_shoulders, off_middle
 from ....skills.control.hand_view import view_of
 from ....skills.control.hands import move_arms, move_hands
 from ....skills.core.ports import Input

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from ....perception.estimates import ChestCover
 from ....sim.world import SIDES, Side
+from ....skills.belief.close_look import CloseLook
 from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
 from ....skills.core.context import Context
 from ....skills.core.ports import Key
@@ -30,6 +31,7 @@ from .check_collar import CheckCollar, CheckCollarTuning
 from .check_face import CheckFace
 from .draw_over import DrawOver
 from .look_at_collar import LookAtCollar
+from .look_at_sleeves import LookAtSleeves
 from .patience import patient
 from .tuning import DRESSING
 
@@ -134,6 +136,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
             RecoverBy(f"{anew.prefix}until the face is free", face, covered, attempts=2),
             straight(anew),
             *closely(anew, "about the middle", MIDDLE),
+            look_at_sleeves(anew),
         )
         return patient(anew, drawn)
 
@@ -192,7 +195,8 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
     face_free = CheckFace("the face is free", bed)
-    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, *sleeves, *middle, flat_now)
+    closer = look_at_sleeves(bed)
+    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, closer, *sleeves, *middle, flat_now)
 
     def set_right() -> Behaviour:
         return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
@@ -246,6 +250,13 @@ def look_closely(gown: Scope, name: str) -> Behaviour:
     return fallback(f"{gown.prefix}look: {name}", LookAtCollar(f"{name}?", gown), as_it_is)
 
 
+def look_at_sleeves(gown: Scope) -> Behaviour:
+    """Look with both hands' cameras how far up the sleeves are; where they do not get there, other looks tell."""
+    return fallback(
+        f"{gown.prefix}look at both sleeves", LookAtSleeves("sleeves?", gown), back_off("as they are", gown)
+    )
+
+
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
@@ -286,7 +297,7 @@ def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:
 
 
 def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
-    """Look from the head of the bed whether a sleeve is up far enough; where it may be, look from beside it.
+    """See from the head of the bed whether a sleeve is up far enough; where no close look told, look from beside it.
 
     From the head alone, sleeves that hide behind a shoulder did not show in any of six rounds (215, 233, 238), and ones
     that were up were drawn up again, which took the collar aside (126, 198).
@@ -294,7 +305,9 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     sleeve = arm_scope(context, name, side)
     closely = Scope(sleeve, "by")
 
-    sits = CheckSleeve("sits", sleeve, min_reach=DRESSING.armhole_up, must_show=True, tuning=FROM_HEAD, reach=seen)
+    up, near = DRESSING.armhole_up, DRESSING.armhole_closely
+    sits = CheckSleeve("sits", sleeve, min_reach=up, min_closely=near, must_show=True, tuning=FROM_HEAD, reach=seen)
+    afar = Condition(f"{sleeve.prefix}seen from afar", seen_from_afar, Reason.SLEEVE_LOW)
     may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=HOWEVER_LITTLE, reach=seen)
     sits_after_all = CheckSleeve(
         "sits after all",
@@ -308,6 +321,7 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), sits)
     from_beside = sequence(
         f"{sleeve.prefix}from beside it",
+        afar,
         may_sit,
         *go_beside(closely, side),
         sits_after_all,
@@ -332,6 +346,7 @@ def still_inside(context: Context, side: Side, seen: Key, when: Literal["still",
             seen_before=seen,
             min_together=DRESSING.armhole_surely,
             min_now=min_now,
+            min_closely=DRESSING.armhole_closely,
             tuning=BOTH_ALIKE,
         ),
     )
@@ -355,6 +370,11 @@ def chest_covered(context: Context) -> bool:
 def outside_out(context: Context) -> bool:
     """The head camera sees hardly any of the gown's inside on the trunk: nothing of it is folded over."""
     return _cover(context).outside > DRESSING.outside_share
+
+
+def seen_from_afar(context: Context) -> bool:
+    """The sleeves were not both looked at closely since the gown was touched: other looks have to do."""
+    return len(context.memory.of(CloseLook, CloseLook).sleeves) < len(SIDES)
 
 
 def _cover(context: Context) -> ChestCover:

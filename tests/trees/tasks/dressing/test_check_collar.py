@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import GraspPoint
-from caretree.skills.belief.shoulders import COLLAR_SEEN, CloseLook
+from caretree.skills.belief.close_look import CloseLook
+from caretree.skills.belief.shoulders import COLLAR_SEEN
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.check_collar import CheckCollar, CheckCollarTuning

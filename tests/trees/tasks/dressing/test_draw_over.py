@@ -7,7 +7,8 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Estimate, GraspPoint
 from caretree.sim.world import SIDES
-from caretree.skills.belief.shoulders import COLLAR_SEEN, CloseLook
+from caretree.skills.belief.close_look import CloseLook
+from caretree.skills.belief.shoulders import COLLAR_SEEN
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture

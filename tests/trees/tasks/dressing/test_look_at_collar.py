@@ -7,7 +7,7 @@ from caretree.perception.estimates import GraspPoint
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
-from caretree.skills.belief.shoulders import CloseLook, close_look
+from caretree.skills.belief.close_look import CloseLook, close_look
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.look_at_collar import LookAtCollar

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.sleeve.armhole_profile import DEFAULT
 from caretree.sim.world import SIDES
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
@@ -31,6 +32,7 @@ class WornGown(ScriptedSenses):
         pulled: how much farther up a sleeve is after it was pulled by its strap.
         hidden: side of the sleeve that does not show.
         comes_on: whether it shows once that arm is dressed again.
+        near: how much higher the hands' cameras see an armhole than it is; None: it does not show to them.
         lower: how much lower an armhole is seen from the head of the bed, not from beside.
     """
 
@@ -48,8 +50,10 @@ class WornGown(ScriptedSenses):
         hidden=None,
         comes_on=False,
         lower=0.0,
+        near=None,
     ):
         super().__init__(world)
+        self.near = near
         self.pulled, self.hidden, self.comes_on, self.lower = pulled, hidden, comes_on, lower
         self.outside, self.shown, self.closely = outside, shown, closely
         self.stands = []
@@ -61,6 +65,14 @@ class WornGown(ScriptedSenses):
         at_head = abs(self._world.observe().pose_base_in_map[0]) < 0.5
         seen = super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map)
         return replace(seen, reach=self.low[side] - at_head * self.lower)
+
+    def armhole_profile(self, frame, *, side, arm_in_map):
+        """None shows to the hands, unless they see it at its place but for an error of `near`."""
+        if self.near is None or side == self.hidden:
+            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
+        base, *changes = DEFAULT.from_mean
+        at = 1.0 - (self.low[side] + self.near - base - changes[1]) / changes[0]
+        return replace(super().armhole_profile(frame, side=side, arm_in_map=arm_in_map), armhole_at=np.full(24, at))
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
@@ -115,6 +127,28 @@ def rehearsed(reach, off=(0.0, 0.0), *, on_progress=None, **gown):
     for stand in senses.stands:
         assert stand[:2] == pytest.approx(stance_at_head()[:2], abs=0.05), "drawn from the bed's head"
     return result.outcome, senses.done
+
+
+@pytest.mark.parametrize(
+    ("reach", "near", "lower", "done"),
+    [
+        (0.80, 0.0, 0.0, []),
+        (0.80, 0.0, 0.3, []),  # seen low from the head of the bed
+        (0.80, -0.1, 0.0, ["seat"]),
+        (0.68, 0.05, 0.0, []),
+        ((0.80, 0.60), 0.0, -0.3, ["seat"]),
+        (0.60, 0.0, -0.3, ["seat"]),
+    ],
+)
+def test_what_the_hands_see_of_the_sleeves_counts_where_they_do(reach, near, lower, done):
+    went = []
+
+    def on_progress(progress):
+        went.append(progress.name)
+
+    ends = rehearsed(reach, near=near, lower=lower, on_progress=on_progress)
+    assert ends == ("success", done)
+    assert not [name for name in went if "by/go" in name], "nobody has to look from beside the bed"
 
 
 @pytest.mark.parametrize(
