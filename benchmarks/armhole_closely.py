@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from armhole_reach import FITTED_ABOVE, SCATTER, TOO_LOW, fit, head_view, report, states_of
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.estimates import ArmholeProfile
-from caretree.perception.sleeve.armhole_profile import armhole_profile, reach_of, rim_features
+from caretree.perception.estimates import SleeveProfile
+from caretree.perception.sleeve.sleeve_profile import reach_of, rim_features, sleeve_profile
 from caretree.sim.render.camera import CAMERA_VIEWS, camera_intrinsics, looking_at
 from caretree.sim.render.raster import add_sensor_noise
 from caretree.sim.render.recorded_room import RecordedRoom
@@ -38,7 +38,7 @@ class Sleeve(NamedTuple):
     """What each of `PICTURES` shows of one armhole, None where too little, and how far up it is in truth."""
 
     seed: int
-    profiles: tuple[ArmholeProfile | None, ...]
+    profiles: tuple[SleeveProfile | None, ...]
     true: float
 
 
@@ -52,11 +52,11 @@ def sleeves_in(record: Path, rng: np.random.Generator) -> Iterator[Sleeve]:
         for aside, headward, up in LOOK.eyes:
             eye = middle + aside * outwards(side) + headward * HEADWARD + up * UP
             poses.append((f"{side}_hand", looking_at(eye, arm[0] + LOOK.aimed_at * (arm[1] - arm[0]))))
-        profiles: list[ArmholeProfile | None] = []
+        profiles: list[SleeveProfile | None] = []
         for camera, pose in poses:
             profiles.append(None)
             with suppress(PerceptionFailure):
-                profiles[-1] = armhole_profile(_frame(room, i, camera, pose, rng), side, tracked)
+                profiles[-1] = sleeve_profile(_frame(room, i, camera, pose, rng), side, tracked)
         yield Sleeve(seed, tuple(profiles), true)
 
 

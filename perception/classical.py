@@ -11,7 +11,6 @@ from ..sim.quantity import Quantities
 from ..sim.world import SIDES, Frame, RoomMap, Side
 from .errors import PerceptionFailure, Problem
 from .estimates import (
-    ArmholeProfile,
     ArmPosture,
     ChestCover,
     ChestFront,
@@ -25,6 +24,7 @@ from .estimates import (
     Shift,
     SleeveHeading,
     SleeveOpening,
+    SleeveProfile,
     WornSleeve,
 )
 from .gown.collar import CollarTuning, collar_middle
@@ -43,12 +43,12 @@ from .person.head import HeadTuning, head_seen
 from .person.skin import SkinTuning
 from .person.skin_cover import SkinCoverTuning, skin_cover
 from .senses import Senses
-from .sleeve.armhole_profile import ArmholeProfileTuning, armhole_profile
 from .sleeve.cuff_round_arm import CuffTuning, cuff_round
 from .sleeve.held_armhole import HeldArmholeTuning, held_armhole
 from .sleeve.held_sleeve_heading import SleeveHeadingTuning, sleeve_heading
 from .sleeve.lying_sleeve import LyingSleeveTuning, sleeve_opening
 from .sleeve.shoulder_seam import ShoulderSeamTuning, shoulder_seam
+from .sleeve.sleeve_profile import SleeveProfileTuning, sleeve_profile
 from .sleeve.strap import StrapTuning, sleeve_strap
 from .sleeve.worn_sleeve import WornSleeveTuning, worn_sleeve
 
@@ -68,7 +68,7 @@ class ClassicalTuning(Quantities):
     held_armhole: HeldArmholeTuning = field(default_factory=HeldArmholeTuning)
     sleeve_heading: SleeveHeadingTuning = field(default_factory=SleeveHeadingTuning)
     worn_sleeve: WornSleeveTuning = field(default_factory=WornSleeveTuning)
-    armhole_profile: ArmholeProfileTuning = field(default_factory=ArmholeProfileTuning)
+    sleeve_profile: SleeveProfileTuning = field(default_factory=SleeveProfileTuning)
     cuff_round: CuffTuning = field(default_factory=CuffTuning)
     collar: CollarTuning = field(default_factory=CollarTuning)
     overhang: OverhangTuning = field(default_factory=OverhangTuning)
@@ -182,9 +182,9 @@ class ClassicalSenses(Senses):
         """By the bindings of armhole and cuff near the upper arm."""
         return worn_sleeve(frame, side, arm_in_map, self._tuning.worn_sleeve)
 
-    def armhole_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> ArmholeProfile:
-        """By the armhole's binding near the upper arm."""
-        return armhole_profile(frame, side, arm_in_map, self._tuning.armhole_profile)
+    def sleeve_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> SleeveProfile:
+        """By the bindings of armhole and cuff near the upper arm."""
+        return sleeve_profile(frame, side, arm_in_map, self._tuning.sleeve_profile)
 
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """As on an upper arm, by the bindings near the forearm."""

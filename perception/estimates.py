@@ -127,17 +127,20 @@ class WornSleeve(Estimate):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArmholeProfile(Estimate):
-    """Where the binding of a worn sleeve's armhole shows round its arm, in one picture.
+class SleeveProfile(Estimate):
+    """Where the bindings of a worn sleeve show round its arm, in one picture.
+
+    Sectors are equal ones round the upper arm's axis, which begin at the top and go round outwards.
 
     Attributes:
         side: of the person.
-        armhole_at: (n,) share of the upper arm, 0 shoulder, 1 elbow, in equal sectors round its axis, which begin at
-            the top and go round outwards; NaN where it does not show.
+        armhole_at: (n,) share of the upper arm, 0 shoulder, 1 elbow, in each sector; NaN where it does not show.
+        cuff_shows: (n,) bool, in which of them the cuff does.
     """
 
     side: Side
     armhole_at: np.ndarray
+    cuff_shows: np.ndarray
 
 
 Primitive = Literal["move_left", "direct", "move_right"]

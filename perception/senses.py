@@ -11,7 +11,6 @@ import numpy as np
 from ..sim.errors import CaretreeError
 from ..sim.world import Frame, Side
 from .estimates import (
-    ArmholeProfile,
     ArmPosture,
     ChestCover,
     ChestFront,
@@ -25,6 +24,7 @@ from .estimates import (
     Shift,
     SleeveHeading,
     SleeveOpening,
+    SleeveProfile,
     WornSleeve,
 )
 
@@ -276,8 +276,8 @@ class Senses(ABC):
         """
 
     @abstractmethod
-    def armhole_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> ArmholeProfile:
-        """Where its armhole shows round the arm; several pictures tell how far up it is.  Else as `worn_sleeve`."""
+    def sleeve_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> SleeveProfile:
+        """Where its bindings show round the arm; several pictures tell how it sits.  Else as `worn_sleeve`."""
 
     @abstractmethod
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:

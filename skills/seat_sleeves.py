@@ -14,7 +14,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture, GraspPoint
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Frame, Side
-from .belief.close_look import close_reach
+from .belief.close_look import sleeve_seen
 from .belief.face import FACE, cover_of, face_points
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
@@ -312,9 +312,9 @@ class SeatSleeves(Skill):
 
         One that does not show is low: somebody asked for this skill.
         """
-        closely = close_reach(self, side)
+        closely = sleeve_seen(self, side)
         if closely is not None:
-            return closely
+            return closely.reach
         arm = watch_arm(self, side).points_in_map
         try:
             return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach

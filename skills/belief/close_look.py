@@ -23,17 +23,32 @@ class CloseLookTuning(Quantities):
 CLOSE_LOOK = CloseLookTuning()
 
 
+@dataclass(frozen=True)
+class SleeveSeen:
+    """How a sleeve was seen to sit.
+
+    Attributes:
+        reach: how far up its armhole is, share of the upper arm.
+        round_arm: share of the way round the arm that its cuff shows, but for the widest gap.
+        when: it was seen [s].
+    """
+
+    reach: float
+    round_arm: float
+    when: float
+
+
 @dataclass
 class CloseLook:
     """The last close looks, until a hand comes down to the gown.
 
     Attributes:
         seen: where the collar's middle lies; None where it may lie elsewhere by now.
-        sleeves: how far up each armhole is, share of the upper arm, and when it was seen [s].
+        sleeves: how each of them sits.
     """
 
     seen: GraspPoint | None = None
-    sleeves: dict[Side, tuple[float, float]] = field(default_factory=dict)
+    sleeves: dict[Side, SleeveSeen] = field(default_factory=dict)
 
     @staticmethod
     def of(skill: Skill) -> CloseLook:
@@ -52,7 +67,7 @@ def close_look(skill: Skill, max_age: float = CLOSE_LOOK.collar_lasts) -> GraspP
     return seen if seen is not None and skill.now() - seen.stamp < max_age else None
 
 
-def close_reach(skill: Skill, side: Side, max_age: float = CLOSE_LOOK.sleeves_last) -> float | None:
-    """How far up an armhole was seen closely within `max_age` [s], if no hand came down to the gown since."""
-    reach, when = CloseLook.of(skill).sleeves.get(side, (0.0, -max_age))
-    return reach if skill.now() - when < max_age else None
+def sleeve_seen(skill: Skill, side: Side, max_age: float = CLOSE_LOOK.sleeves_last) -> SleeveSeen | None:
+    """How a sleeve was seen closely to sit within `max_age` [s], if no hand came down to the gown since."""
+    seen = CloseLook.of(skill).sleeves.get(side)
+    return seen if seen is not None and skill.now() - seen.when < max_age else None

@@ -12,7 +12,6 @@ import numpy as np
 from ...perception.estimates import (
     CORNER_OF,
     SLEEVE_OF,
-    ArmholeProfile,
     ArmPosture,
     ChestCover,
     ChestFront,
@@ -27,6 +26,7 @@ from ...perception.estimates import (
     Shift,
     SleeveHeading,
     SleeveOpening,
+    SleeveProfile,
     WornSleeve,
 )
 from ...perception.person.person_facts import PERSON
@@ -189,9 +189,10 @@ class ScriptedSenses(Senses):
             stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1, cuff_at=0.6, reach=0.9, round_arm=0.8
         )
 
-    def armhole_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> ArmholeProfile:
+    def sleeve_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> SleeveProfile:
         """At the shoulder, all the way round."""
-        return ArmholeProfile(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=np.full(24, 0.1))
+        shows = np.ones(24, bool)
+        return SleeveProfile(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1 * shows, cuff_shows=shows)
 
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """Beyond the hand: one that is over it is drawn up at once."""

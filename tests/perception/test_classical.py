@@ -57,7 +57,7 @@ ELSEWHERE = {
     "arm_shift",
     "worn_sleeve",
     "sleeve_on_forearm",
-    "armhole_profile",
+    "sleeve_profile",
     "overhang",
     "sleeve_strap",
     "chest_cover",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, WornSleeve
-from caretree.skills.belief.close_look import CloseLook
+from caretree.skills.belief.close_look import CloseLook, SleeveSeen
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import outwards
@@ -131,23 +131,26 @@ def test_a_look_that_tells_too_little_is_low_whatever_was_seen_before(now, statu
 
 
 @pytest.mark.parametrize(
-    ("seen", "closely", "status"),
+    ("seen", "closely", "round_arm", "status"),
     [
-        (worn(reach=0.5), 0.75, Status.SUCCESS),
-        (worn(reach=0.9), 0.65, Status.FAILURE),
-        (HIDDEN, 0.75, Status.SUCCESS),
-        (HIDDEN, 0.65, Status.FAILURE),
-        (worn(reach=0.9, round_arm=0.2), 0.75, Status.FAILURE),
+        (worn(reach=0.5), 0.75, 0.9, Status.SUCCESS),
+        (worn(reach=0.9), 0.65, 0.9, Status.FAILURE),
+        (HIDDEN, 0.75, 0.9, Status.SUCCESS),
+        (HIDDEN, 0.65, 0.9, Status.FAILURE),
+        (worn(round_arm=0.4), 0.75, 0.6, Status.SUCCESS),
+        (worn(round_arm=0.4), 0.75, 0.5, Status.FAILURE),
+        (worn(round_arm=0.5), 0.75, 0.2, Status.SUCCESS),
+        (worn(cuff_at=0.05), 0.75, 0.9, Status.FAILURE),
     ],
 )
-def test_a_close_look_tells_how_far_up_it_is_and_this_one_whether_the_arm_is_inside(seen, closely, status):
+def test_a_close_look_tells_how_far_up_it_is_and_either_whether_the_arm_is_inside(seen, closely, round_arm, status):
     run = LeafBench(
         lambda context: CheckSleeve(
             "inside", context, side="left", min_reach=0.73, min_now=0.73, min_closely=0.71, must_show=True
         ),
         beside_bed(worn_sleeve=seen, arm=lying_posture("left"), skin_cover=Cover(stamp=0.0, confidence=1.0, share=1.0)),
     )
-    CloseLook.of(run.skill).sleeves["left"] = closely, run.skill.now()
+    CloseLook.of(run.skill).sleeves["left"] = SleeveSeen(closely, round_arm, run.skill.now())
     run.ended(seconds=1.0)
     assert run.skill.status == status
     assert status == Status.FAILURE or run.skill.reach == closely

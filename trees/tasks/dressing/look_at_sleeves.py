@@ -1,4 +1,4 @@
-"""Look closely how far up both sleeves are, with the hands' cameras beside the shoulders, from the head of the bed."""
+"""Look closely how both sleeves sit, with the hands' cameras beside the shoulders, from the head of the bed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....perception.errors import PerceptionFailure
-from ....perception.estimates import ArmholeProfile, ArmPosture
-from ....perception.sleeve.armhole_profile import reach_of
+from ....perception.estimates import ArmPosture, SleeveProfile
+from ....perception.sleeve.sleeve_profile import reach_of, round_arm
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import SIDES, Side
-from ....skills.belief.close_look import CloseLook, close_reach
+from ....skills.belief.close_look import CloseLook, SleeveSeen, sleeve_seen
 from ....skills.belief.person_tracking import careful, watch_arm
 from ....skills.control.hand_view import view_of
 from ....skills.control.hands import move_arms, move_hands
@@ -46,7 +46,7 @@ class LookAtSleevesTuning(Quantities):
 
 
 class LookAtSleeves(Skill):
-    """Sees with the head's and both hands' cameras how far up the armholes are; what nobody touched since, is known.
+    """Sees with the head's and both hands' cameras how the sleeves sit; what nobody touched since, is known.
 
     One picture shows half of an armhole: its upper edge lies near the shoulder while its lower one may hang at the
     middle of the upper arm.  Each hand looks at the shoulder on its side.  Where no hand gets there, nothing is told.
@@ -58,11 +58,11 @@ class LookAtSleeves(Skill):
 
     def steps(self) -> Iterator[None]:
         """Look, bring the hands there, look, bring them back."""
-        if all(close_reach(self, side) is not None for side in SIDES):
+        if all(sleeve_seen(self, side) is not None for side in SIDES):
             yield
             return
         arms: dict[Side, ArmPosture] = {side: watch_arm(self, side) for side in SIDES}
-        seen: dict[Side, list[ArmholeProfile]] = {side: [] for side in SIDES}
+        seen: dict[Side, list[SleeveProfile]] = {side: [] for side in SIDES}
         for arm in arms.values():
             yield from look_towards(self, arm.points_in_map[0])
             self._look("head", arm, seen)
@@ -75,11 +75,11 @@ class LookAtSleeves(Skill):
         yield from move_arms(self, self.world.robot.ready, speed=careful(self, self.tuning.speed))
         self._keep(seen)
 
-    def _look(self, camera: str, arm: ArmPosture, seen: Mapping[Side, list[ArmholeProfile]]) -> None:
+    def _look(self, camera: str, arm: ArmPosture, seen: Mapping[Side, list[SleeveProfile]]) -> None:
         """Add what a camera sees of one armhole, if it does."""
         with suppress(PerceptionFailure):
             frame = self.world.look(camera)
-            profile = self.context.senses.armhole_profile(frame, side=arm.side, arm_in_map=arm.points_in_map)
+            profile = self.context.senses.sleeve_profile(frame, side=arm.side, arm_in_map=arm.points_in_map)
             seen[arm.side].append(profile)
 
     def _views(self, arms: Mapping[Side, ArmPosture], eye: tuple[float, float, float]) -> dict[Side, np.ndarray]:
@@ -93,11 +93,11 @@ class LookAtSleeves(Skill):
             views[side] = view_of(self.world.robot, side, shoulder + self.tuning.aimed_at * (elbow - shoulder), place)
         return views
 
-    def _keep(self, seen: Mapping[Side, list[ArmholeProfile]]) -> None:
+    def _keep(self, seen: Mapping[Side, list[SleeveProfile]]) -> None:
         """What is known of both now."""
         known = CloseLook.of(self).sleeves
         for side, profiles in seen.items():
             if len(profiles) >= self.tuning.min_pictures:
-                known[side] = reach_of(profiles), self.now()
-        told = ", ".join(f"{side} armhole {known[side][0]:.2f}" for side in SIDES if side in known)
-        self.note(f"{told} up the upper arm" if told else "too little of both armholes shows")
+                known[side] = SleeveSeen(reach_of(profiles), round_arm(profiles), self.now())
+        told = [f"{side} armhole {sat.reach:.2f}, cuff {sat.round_arm:.0%} round" for side, sat in known.items()]
+        self.note(", ".join(told) or "too little of both armholes shows")

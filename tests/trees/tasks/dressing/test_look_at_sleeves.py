@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import ArmholeProfile
-from caretree.perception.sleeve.armhole_profile import reach_of
+from caretree.perception.estimates import SleeveProfile
+from caretree.perception.sleeve.sleeve_profile import reach_of
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.world import SIDES
-from caretree.skills.belief.close_look import CloseLook, close_reach
+from caretree.skills.belief.close_look import CloseLook, SleeveSeen, sleeve_seen
 from caretree.skills.geometry.stances import outwards, stance_at_head
 from caretree.skills.scripted.scripted_person import lying_posture
 from caretree.trees.tasks.dressing.look_at_sleeves import LookAtSleeves, LookAtSleevesTuning
@@ -32,13 +32,15 @@ def bench(shows=("head", "left_hand", "right_hand"), at=0.3, looks=None, tuning=
     options = {} if tuning is None else {"tuning": tuning}
     run = LeafBench(
         lambda context: LookAtSleeves("look", context, **options),
-        beside_bed(stand=stance_at_head(), armhole_profile=seen, arm=lambda frame, side, **_: lying_posture(side)),
+        beside_bed(stand=stance_at_head(), sleeve_profile=seen, arm=lambda frame, side, **_: lying_posture(side)),
     )
     return run
 
 
 def profile(side, at):
-    return ArmholeProfile(stamp=0.0, confidence=1.0, side=side, armhole_at=np.full(24, at))
+    return SleeveProfile(
+        stamp=0.0, confidence=1.0, side=side, armhole_at=np.full(24, at), cuff_shows=np.arange(24) < 12
+    )
 
 
 def test_both_are_looked_at_by_head_and_hand_from_two_places_beside_the_shoulder():
@@ -46,7 +48,8 @@ def test_both_are_looked_at_by_head_and_hand_from_two_places_beside_the_shoulder
     run = bench(looks=looks)
     assert run.ended(seconds=90.0) is None
     for side in SIDES:
-        assert close_reach(run.skill, side) == reach_of([profile(side, 0.3)])
+        assert sleeve_seen(run.skill, side).reach == reach_of([profile(side, 0.3)])
+        assert sleeve_seen(run.skill, side).round_arm == 0.5
         assert [camera for camera, whose, _ in looks if whose == side] == ["head"] + [f"{side}_hand"] * len(EYES)
     middle = np.mean([lying_posture(side).points_in_map[0] for side in SIDES], axis=0)
     for n, eye in enumerate(EYES):
@@ -63,23 +66,23 @@ def test_both_are_looked_at_by_head_and_hand_from_two_places_beside_the_shoulder
 def test_one_picture_tells_nothing(shows, known):
     run = bench(shows)
     assert run.ended(seconds=90.0) is None
-    assert tuple(side for side in SIDES if close_reach(run.skill, side) is not None) == known
+    assert tuple(side for side in SIDES if sleeve_seen(run.skill, side) is not None) == known
 
 
 def test_places_that_no_hand_gets_to_are_left_out():
     run = bench(tuning=LookAtSleevesTuning(eyes=((3.0, 0.0, 3.0), EYES[1])))
     assert run.ended(seconds=90.0) is None
-    assert close_reach(run.skill, "left") is not None
+    assert sleeve_seen(run.skill, "left") is not None
     run = bench(tuning=LookAtSleevesTuning(eyes=((3.0, 0.0, 3.0),)))
     assert run.ended(seconds=90.0) is None
-    assert close_reach(run.skill, "left") is None
+    assert sleeve_seen(run.skill, "left") is None
 
 
 def test_what_nobody_touched_since_is_not_looked_at_again():
     looks = []
     run = bench(looks=looks)
     for side in SIDES:
-        CloseLook.of(run.skill).sleeves[side] = 0.8, run.skill.now()
+        CloseLook.of(run.skill).sleeves[side] = SleeveSeen(0.8, 0.9, run.skill.now())
     assert run.ended(seconds=1.0) is None
     assert not looks
-    assert close_reach(run.skill, "right") == 0.8
+    assert sleeve_seen(run.skill, "right").reach == 0.8

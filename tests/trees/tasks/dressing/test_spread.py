@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.sleeve.armhole_profile import DEFAULT
+from caretree.perception.sleeve.sleeve_profile import DEFAULT
 from caretree.sim.world import SIDES
 from caretree.skills.geometry.stances import stance_at_head
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
@@ -66,13 +66,13 @@ class WornGown(ScriptedSenses):
         seen = super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map)
         return replace(seen, reach=self.low[side] - at_head * self.lower)
 
-    def armhole_profile(self, frame, *, side, arm_in_map):
+    def sleeve_profile(self, frame, *, side, arm_in_map):
         """None shows to the hands, unless they see it at its place but for an error of `near`."""
         if self.near is None or side == self.hidden:
             raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
         base, *changes = DEFAULT.from_mean
         at = 1.0 - (self.low[side] + self.near - base - changes[1]) / changes[0]
-        return replace(super().armhole_profile(frame, side=side, arm_in_map=arm_in_map), armhole_at=np.full(24, at))
+        return replace(super().sleeve_profile(frame, side=side, arm_in_map=arm_in_map), armhole_at=np.full(24, at))
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.estimates import ArmholeProfile
+from caretree.perception.estimates import SleeveProfile
 from caretree.perception.sleeve.arm_frame import arm_frame
-from caretree.perception.sleeve.armhole_profile import DEFAULT, armhole_profile, reach_of, rim_features
+from caretree.perception.sleeve.sleeve_profile import DEFAULT, reach_of, rim_features, round_arm, sleeve_profile
 from caretree.skills.scripted.scripted_person import lying_posture
 
 from .test_worn_sleeve import ARM, picture
@@ -16,11 +16,13 @@ SECTORS = DEFAULT.sectors
 BELOW = ARM - (0.0, 0.0, 0.05)  # of an arm whose sleeve is what the camera sees
 
 
-def profile(at, shows=slice(None)):
+def profile(at, shows=slice(None), cuff=()):
     """A rim at `at` (sectors,), of which some sectors show."""
     seen = np.full(SECTORS, np.nan)
     seen[shows] = np.broadcast_to(at, SECTORS)[shows]
-    return ArmholeProfile(stamp=0.0, confidence=1.0, side="right", armhole_at=seen)
+    return SleeveProfile(
+        stamp=0.0, confidence=1.0, side="right", armhole_at=seen, cuff_shows=np.isin(np.arange(SECTORS), cuff)
+    )
 
 
 def slanting(middle=0.3, slant=0.2):
@@ -29,11 +31,12 @@ def slanting(middle=0.3, slant=0.2):
 
 
 def test_a_stripe_across_an_arm_shows_above_it_where_it_is():
-    seen = armhole_profile(picture((30, 40), (55, 65)), "right", BELOW)
+    seen = sleeve_profile(picture((30, 40), (55, 65)), "right", BELOW)
     shows = ~np.isnan(seen.armhole_at)
     assert 3 <= np.count_nonzero(shows) < SECTORS / 2
     assert seen.armhole_at[shows] == pytest.approx(0.25, abs=0.02)
     assert shows[0] or shows[-1], "sectors begin at the top"
+    assert np.count_nonzero(seen.cuff_shows) >= 3
     assert not shows[SECTORS // 4 : 3 * SECTORS // 4].all(), "nothing shows below"
 
 
@@ -49,7 +52,7 @@ def test_the_frame_of_an_arm_points_along_it_up_and_away_from_the_body(side, sig
 
 def test_what_shows_too_little_is_not_told():
     with pytest.raises(PerceptionFailure):
-        armhole_profile(picture((30, 40), (55, 65), rows=(0, 15)), "right", BELOW)
+        sleeve_profile(picture((30, 40), (55, 65), rows=(0, 15)), "right", BELOW)
 
 
 def test_pictures_of_both_halves_tell_a_slanting_rim_which_one_half_does_not():
@@ -75,3 +78,19 @@ def test_a_higher_rim_reaches_farther_up_and_no_farther_than_the_shoulder():
     assert reaches[0] < 0.6 < reaches[1] < 0.85
     assert reaches[-1] == 1.0
     assert reach_of([replace(profile(0.3), side="left")]) == reach_of([profile(0.3)])
+
+
+@pytest.mark.parametrize(
+    ("cuffs", "share"),
+    [
+        ([()], 0.0),
+        ([(5,)], 1 / SECTORS),
+        ([range(SECTORS)], 1.0),
+        ([range(12)], 0.5),
+        ([(0, 8, 16)], 1 - 7 / SECTORS),
+        ([(22, 23, 0, 1)], 4 / SECTORS),  # across the top
+        ([range(6), range(12, 18)], 0.75),  # either picture shows a quarter
+    ],
+)
+def test_a_cuff_is_round_the_arm_but_for_the_widest_gap(cuffs, share):
+    assert round_arm([profile(0.2, cuff=tuple(cuff)) for cuff in cuffs]) == pytest.approx(share)
