@@ -38,6 +38,7 @@ from caretree.trees.tasks.draw_blanket.take_edge import TakeEdge
 from caretree.trees.tasks.dressing.check_collar import CheckCollar
 from caretree.trees.tasks.dressing.check_face import CheckFace
 from caretree.trees.tasks.dressing.check_over_hand import CheckOverHand
+from caretree.trees.tasks.dressing.check_worn import CheckWorn
 from caretree.trees.tasks.dressing.draw_flat import DrawFlat
 from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.dressing.let_gown_go import LetGownGo
@@ -72,6 +73,7 @@ EXAMPLES = {
     CheckSleeve: lambda context: CheckSleeve("check sleeve", context, side="right"),
     TakeSeam: lambda context: TakeSeam("take seam", context, side="right", hand="left"),
     TakeEdge: lambda context: TakeEdge("take edge", context, side="right", hand="left"),
+    CheckWorn: lambda context: CheckWorn("check worn", context, side="right", min_reach=0.7),
     DrawFlat: lambda context: DrawFlat("draw flat", context, side="left", hand="left"),
     DrawOff: lambda context: DrawOff("draw off", context, side="right", hand="left"),
     DrawOver: lambda context: DrawOver("draw over", context),

@@ -30,6 +30,7 @@ from ...run.stages import TaskStage
 from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the task's own leaves here
 from .check_face import CheckFace as CheckFace
 from .check_over_hand import CheckOverHand as CheckOverHand
+from .check_worn import CheckWorn as CheckWorn
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
 from .dress import dress, dressed_anew

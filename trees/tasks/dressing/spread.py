@@ -29,6 +29,7 @@ from ...nodes.decorators import RecoverBy, Stage, timed_stage
 from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
 from .check_collar import CheckCollar, CheckCollarTuning
 from .check_face import CheckFace
+from .check_worn import CheckWorn
 from .draw_over import DrawOver
 from .look_at_collar import LookAtCollar
 from .look_at_sleeves import LookAtSleeves
@@ -118,7 +119,7 @@ def right_from_head(context: Context, bed: Scope) -> Behaviour:
 
 
 def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
-    """See from beside the bed, too, that a sleeve is up; one that is not is drawn up alone.
+    """Where no close look told it surely, see from beside the bed that a sleeve is up; else it is drawn up alone.
 
     The collar, laid after both were drawn up, takes the right sleeve down again by up to 0.1, which hardly shows from
     the head of the bed (155, 156).  Drawn up alone, it mostly leaves the collar where it is; that is seen, and set
@@ -146,7 +147,9 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
     low = {Reason.SLEEVE_LOW: once_more}
     drawn = RecoverBy(f"until the {side} sleeve is up", sure, low, attempts=DRESSING.alone_attempts)
     told = patient(bed, still_inside(context, side, seen, "then", likely))
-    return fallback(f"the {side} sleeve up, as told by both", drawn, told)
+    sleeve = arm_scope(context, f"{side} sleeve worn", side)
+    worn = CheckWorn("sits", sleeve, min_reach=DRESSING.armhole_closely)
+    return fallback(f"the {side} sleeve up, as told by both", worn, drawn, told)
 
 
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
@@ -162,7 +165,7 @@ def seen_from_head(bed: Scope, side: Side) -> Key:
 
 
 def surely_neat(context: Context, bed: Scope) -> Behaviour:
-    """Worn neatly, as seen from the head of the bed, and both sleeves up as seen from beside it.
+    """Worn neatly, as seen from the head of the bed, and both sleeves up, as seen closely or from beside it.
 
     A collar that one of them took along is laid in the middle once more, and all of it is seen anew.
     """
