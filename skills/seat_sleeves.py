@@ -201,6 +201,7 @@ class SeatSleeves(Skill):
     """
 
     side = Input(Side, default=None, doc="whose sleeve is drawn up, alone and however high it is; None: both, if low")
+    up = Input(float, unit="1", default=0.0, doc="of the upper arm, from which an armhole seen closely is left alone")
     tuning = Input(SeatSleevesTuning, default=SeatSleevesTuning(), doc="numbers of this skill")
     reasons = (
         Reason.NOTHING_SEEN,
@@ -230,9 +231,7 @@ class SeatSleeves(Skill):
             yield from look_towards(self, shoulders[n])
             frame = self.world.look("head")
             reach[side] = self._reach(frame, side)
-            if not self.side and side not in left_before and self._as_high_as_it_gets(side, reach[side], drawn):
-                drawn.left.add(side)
-            elif side == self.side or (not self.side and reach[side] < tuning.up_already):
+            if self._is_drawn(side, reach[side], drawn, left_before):
                 with hidden:  # one that does not show does not keep the other from being drawn
                     seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
         if not seams and hidden.problems:
@@ -320,6 +319,20 @@ class SeatSleeves(Skill):
             return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach
         except PerceptionFailure:
             return 0.0
+
+    def _is_drawn(self, side: Side, reach: float, drawn: Drawn, left_before: set[Side]) -> bool:
+        """Whether an armhole seen at `reach` is to be drawn up; one that is left for once is noted.
+
+        Where it was looked at closely, that tells.  Else one that is most likely up is left, every other time.
+        """
+        if self.side is not None:
+            return side == self.side
+        if self.up > 0.0 and sleeve_seen(self, side) is not None:
+            return reach < self.up
+        if side not in left_before and self._as_high_as_it_gets(side, reach, drawn):
+            drawn.left.add(side)
+            return False
+        return reach < self.tuning.up_already
 
     def _as_high_as_it_gets(self, side: Side, reach: float, drawn: Drawn) -> bool:
         """Whether an armhole seen at `reach` is most likely up, and was seen no lower before it was drawn last."""

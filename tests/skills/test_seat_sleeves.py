@@ -7,6 +7,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, Estimate, GraspPoint, WornSleeve
 from caretree.sim.world import SIDES
+from caretree.skills.belief.close_look import CloseLook, SleeveSeen
 from caretree.skills.control.hands import gap_between_arms
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.arm_path import UP, ArmPath
@@ -31,6 +32,7 @@ def bench(
     leans=LEANS,
     reach=None,
     side=None,
+    up=0.0,
     each_tick=lambda bench: None,
     chin=lambda: 0.0,
     seams=SEAMS,
@@ -57,7 +59,7 @@ def bench(
         )
 
     return LeafBench(
-        lambda context: SeatSleeves("seat", context, side=side, tuning=SeatSleevesTuning(leans=leans)),
+        lambda context: SeatSleeves("seat", context, side=side, up=up, tuning=SeatSleevesTuning(leans=leans)),
         beside_bed(
             stand=stance_at_head(),
             shoulder_seam=seam,
@@ -237,6 +239,21 @@ def test_one_that_is_most_likely_up_and_that_no_draw_brings_higher_is_left(times
     assert memory.times["left"] == times + drawn
     moved = np.linalg.norm(np.ptp(run.way("left"), axis=0))
     assert moved > 0.2 if drawn else moved == pytest.approx(0.0, abs=1e-3)  # [m]
+
+
+@pytest.mark.parametrize(
+    ("closely", "drawn"),
+    [((0.71, 0.75), {"left"}), ((0.75, 0.71), {"right"}), ((0.60, 0.60), {"left", "right"}), ((0.73, 0.73), set())],
+)
+def test_what_was_seen_closely_tells_which_are_drawn(closely, drawn):
+    """Left for once by what the head's camera sees, the other one, which was up, was drawn instead (0)."""
+    run = bench(reach=dict(zip(SIDES, closely[::-1], strict=True)), up=0.72)
+    memory = run.context.memory.of(Drawn, Drawn)
+    memory.times, memory.reach = dict.fromkeys(SIDES, 2), dict.fromkeys(SIDES, 0.75)
+    for side, reach in zip(SIDES, closely, strict=True):
+        CloseLook.of(run.skill).sleeves[side] = SleeveSeen(reach, 0.9, run.skill.now())
+    assert run.ended() is None
+    assert {side for side in SIDES if memory.times[side] > 2} == drawn
 
 
 def test_where_both_are_up_no_hand_moves():

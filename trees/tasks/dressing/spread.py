@@ -271,7 +271,8 @@ def seated(bed: Scope) -> Behaviour:
     """Draw up sleeves that are low, the gown to the middle first; where they get no farther, they may do anyhow."""
     gown = Scope(bed, "sleeves")
     # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
-    seat = (go_up(gown), over(gown), SeatSleeves("seat", gown), back_off("clear the view", gown))
+    draw = SeatSleeves("seat", gown, up=DRESSING.armhole_closely)
+    seat = (go_up(gown), over(gown), draw, back_off("clear the view", gown))
     left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
     return fallback("as far as they go", sequence("draw them up", *seat), left)
 

@@ -187,11 +187,12 @@ class DressingTuning(Quantities):
         "those told from 0.72 on were below 0.70 (benchmarks/armhole_reach.py)",
     )
     armhole_closely: float = quantity(
-        0.73,
+        0.72,
         "1",
         "likewise, as the head's and the hands' cameras see it closely",
-        "measured: of 455 armholes in recorded states of 13 development seeds, drawn anew, 119 are told so, 61 % of "
-        "those that are up, and one of them is not, at 0.69; from 0.72 on four of 139 (benchmarks/armhole_closely.py)",
+        "measured: of 455 armholes in recorded states of 13 development seeds, drawn anew, 139 are told so, 70 % of "
+        "those that are up, and four of them are not, at 0.67 to 0.695; from 0.73 on one of 119, but seed 0 went round "
+        "for 1,070 s (benchmarks/armhole_closely.py)",
     )
     armhole_may_sit: float = quantity(
         0.62,
