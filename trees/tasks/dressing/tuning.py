@@ -191,8 +191,8 @@ class DressingTuning(Quantities):
         "1",
         "likewise, as the head's and the hands' cameras see it closely",
         "measured: of 61 looks in runs of five development seeds, which told it 0.015 too low, 35 tell so, 83 % of "
-        "those that are up, and one wrongly, at 0.69; drawn anew, of 455 armholes of 13 seeds, 177, 85 %, and 13 wrongly "
-        "(benchmarks/armhole_closely.py).  Asked for 0.73, seed 0 went round for 1,070 s",
+        "those that are up, and one wrongly, at 0.69; drawn anew, of 455 armholes of 13 seeds, 177, 85 %, and 13 "
+        "wrongly (benchmarks/armhole_closely.py).  Asked for 0.73, seed 0 went round for 1,070 s",
     )
     armhole_may_sit: float = quantity(
         0.62,
