@@ -59,9 +59,9 @@ HOWEVER_SEEN = replace(NEAT, min_shown=0.0)
 def spread(context: Context) -> Stage:
     """The stage `spread`: both sleeves up, the collar in the middle, the chest covered.
 
-    From beside the bed the robot sees that the arm that was dressed last lies, and in the end that both do, inside
-    their sleeves.  The gown is put straight from its head, from where both hands reach both shoulders and the whole
-    collar shows.
+    From beside the bed the robot sees that the arm that was dressed last lies.  The gown is put straight from its head,
+    from where both hands reach both shoulders and the whole collar shows; from there the hands' cameras see in the end
+    that both arms lie inside their sleeves, else the robot goes beside the bed to see it.
     """
     bed = Scope(context, "gown")
     return timed_stage(
