@@ -131,10 +131,9 @@ class CheckSleeve(Skill):
             f"{self.side} armhole {seen.reach:.2f} up the upper arm, cuff at {seen.cuff_at:.2f}, "
             f"{seen.round_arm:.0%} round it"
         )
-        inside = seen.round_arm >= self.tuning.min_share_round or (
-            closely is not None and closely.round_arm > self.tuning.min_round_closely
-        )
-        if seen.cuff_at < self.tuning.min_cuff_at or not inside:
+        shows = seen.cuff_at >= self.tuning.min_cuff_at and seen.round_arm >= self.tuning.min_share_round
+        surely = closely is not None and closely.round_arm > self.tuning.min_round_closely
+        if not shows and not surely:
             raise SkillFailure(
                 Reason.SLEEVE_MISSED,
                 f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "

@@ -140,7 +140,8 @@ def test_a_look_that_tells_too_little_is_low_whatever_was_seen_before(now, statu
         (worn(round_arm=0.4), 0.75, 0.6, Status.SUCCESS),
         (worn(round_arm=0.4), 0.75, 0.5, Status.FAILURE),
         (worn(round_arm=0.5), 0.75, 0.2, Status.SUCCESS),
-        (worn(cuff_at=0.05), 0.75, 0.9, Status.FAILURE),
+        (worn(cuff_at=0.05), 0.75, 0.9, Status.SUCCESS),
+        (worn(cuff_at=0.05), 0.75, 0.5, Status.FAILURE),
     ],
 )
 def test_a_close_look_tells_how_far_up_it_is_and_either_whether_the_arm_is_inside(seen, closely, round_arm, status):

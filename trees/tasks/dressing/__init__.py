@@ -39,7 +39,7 @@ from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
 from .look_at_sleeves import LookAtSleeves as LookAtSleeves
 from .safe import make_safe
-from .spread import chest_covered, outside_out, seen_from_afar, spread
+from .spread import chest_covered, none_seen_low, outside_out, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
 from .tuning import DRESSING
 
@@ -60,7 +60,7 @@ CONDITIONS = (
     holds_gown_with,
     is_down,
     outside_out,
-    seen_from_afar,
+    none_seen_low,
 )
 
 

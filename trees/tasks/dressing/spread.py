@@ -39,7 +39,7 @@ from .tuning import DRESSING
 LOW = (Reason.SLEEVE_LOW, Reason.SLEEVE_MISSED)  # below the elbow the cuff does not show all round the arm
 UNSEEN = (Reason.ARM_LOST, Reason.NOTHING_SEEN)
 # From the head of the bed a worn cuff showed 8 % of the way round its arm ten times in turn (290): asked from beside.
-HOWEVER_LITTLE = CheckSleeveTuning(min_share_round=0.0, min_covered=0.0, min_outer_covered=0.0)
+HOWEVER_LITTLE = CheckSleeveTuning(min_cuff_at=-1.0, min_share_round=0.0, min_covered=0.0, min_outer_covered=0.0)
 BOTH_ALIKE = CheckSleeveTuning(before_counts=0.5)  # one is right where the other one is off by 0.1 (156)
 
 TOLD = {"min_told": DRESSING.collar_told, "min_told_from_head": DRESSING.collar_told_from_head}
@@ -301,7 +301,7 @@ def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:
 
 
 def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
-    """See from the head of the bed whether a sleeve is up far enough; where no close look told, look from beside it.
+    """See from the head of the bed whether a sleeve is up far enough; where no close look told it low, from beside it.
 
     From the head alone, sleeves that hide behind a shoulder did not show in any of six rounds (215, 233, 238), and ones
     that were up were drawn up again, which took the collar aside (126, 198).
@@ -311,7 +311,7 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
 
     up, near = DRESSING.armhole_up, DRESSING.armhole_closely
     sits = CheckSleeve("sits", sleeve, min_reach=up, min_closely=near, must_show=True, tuning=FROM_HEAD, reach=seen)
-    afar = Condition(f"{sleeve.prefix}seen from afar", seen_from_afar, Reason.SLEEVE_LOW)
+    not_low = Condition(f"{sleeve.prefix}not seen low", none_seen_low, Reason.SLEEVE_LOW)
     may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=HOWEVER_LITTLE, reach=seen)
     sits_after_all = CheckSleeve(
         "sits after all",
@@ -325,7 +325,7 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     from_head = sequence(f"{sleeve.prefix}from the head", LookAtPerson("look", sleeve), sits)
     from_beside = sequence(
         f"{sleeve.prefix}from beside it",
-        afar,
+        not_low,
         may_sit,
         *go_beside(closely, side),
         sits_after_all,
@@ -376,9 +376,10 @@ def outside_out(context: Context) -> bool:
     return _cover(context).outside > DRESSING.outside_share
 
 
-def seen_from_afar(context: Context) -> bool:
-    """The sleeves were not both looked at closely since the gown was touched: other looks have to do."""
-    return len(context.memory.of(CloseLook, CloseLook).sleeves) < len(SIDES)
+def none_seen_low(context: Context) -> bool:
+    """No close look since the gown was touched has told that a sleeve is low: what else is seen of them tells."""
+    seen = context.memory.of(CloseLook, CloseLook).sleeves.values()
+    return all(sleeve.reach >= DRESSING.armhole_closely for sleeve in seen)
 
 
 def _cover(context: Context) -> ChestCover:
