@@ -105,7 +105,10 @@ class CheckSleeve(Skill):
     )
     min_now = Input(float, unit="1", default=0.0, doc="what this look has to tell, whatever was seen before")
     min_closely = Input(
-        float, unit="1", default=0.0, doc="in the place of all of these, where it was looked at closely"
+        float,
+        unit="1",
+        default=0.0,
+        doc="in the place of all of these, where it was looked at closely; 0: this look alone tells",
     )
     must_show = Input(bool, default=False, doc="whether one of which too little shows fails, as before a claim")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
@@ -115,7 +118,7 @@ class CheckSleeve(Skill):
     def steps(self) -> Iterator[None]:
         """One look."""
         arm = watch_arm(self, self.side).points_in_map
-        closely = sleeve_seen(self, self.side)
+        closely = sleeve_seen(self, self.side) if self.min_closely > 0.0 else None
         try:
             seen = self.context.senses.worn_sleeve(self.world.look("head"), side=self.side, arm_in_map=arm)
         except PerceptionFailure as hidden:

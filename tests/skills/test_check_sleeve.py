@@ -155,3 +155,18 @@ def test_a_close_look_tells_how_far_up_it_is_and_either_whether_the_arm_is_insid
     run.ended(seconds=1.0)
     assert run.skill.status == status
     assert status == Status.FAILURE or run.skill.reach == closely
+
+
+@pytest.mark.parametrize(("reach", "status"), [(0.75, Status.SUCCESS), (0.30, Status.FAILURE)])
+def test_where_no_close_look_is_asked_for_this_look_alone_tells(reach, status):
+    run = LeafBench(
+        lambda context: CheckSleeve("inside", context, side="left", min_reach=0.4),
+        beside_bed(
+            worn_sleeve=worn(reach=reach),
+            arm=lying_posture("left"),
+            skin_cover=Cover(stamp=0.0, confidence=1.0, share=1.0),
+        ),
+    )
+    CloseLook.of(run.skill).sleeves["left"] = SleeveSeen(0.35, 0.9, run.skill.now())
+    run.ended(seconds=1.0)
+    assert run.skill.status == status

@@ -312,13 +312,16 @@ def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:
     up, near = DRESSING.armhole_up, DRESSING.armhole_closely
     sits = CheckSleeve("sits", sleeve, min_reach=up, min_closely=near, must_show=True, tuning=FROM_HEAD, reach=seen)
     not_low = Condition(f"{sleeve.prefix}not seen low", none_seen_low, Reason.SLEEVE_LOW)
-    may_sit = CheckSleeve("may sit", sleeve, min_reach=DRESSING.armhole_may_sit, tuning=HOWEVER_LITTLE, reach=seen)
+    may_sit = CheckSleeve(
+        "may sit", sleeve, min_reach=DRESSING.armhole_may_sit, min_closely=near, tuning=HOWEVER_LITTLE, reach=seen
+    )
     sits_after_all = CheckSleeve(
         "sits after all",
         closely,
         min_reach=DRESSING.armhole_beside,
         seen_before=seen,
         min_together=DRESSING.armhole_together,
+        min_closely=near,
         must_show=True,
         tuning=FROM_HEAD,
     )
