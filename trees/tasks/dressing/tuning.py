@@ -190,8 +190,8 @@ class DressingTuning(Quantities):
         0.69,
         "1",
         "likewise, as the head's and the hands' cameras see it closely",
-        "measured: of 73 looks in runs of seeds 0, 120, 128, 137, 143 and 149, which told it 0.016 too low (standard "
-        "deviation 0.026), 45 tell so, 86 % of those that are up, and one wrongly, at 0.69; from 0.73 on 31, 59 %, and "
+        "measured: of 55 looks in runs of seeds 120, 128, 137, 143 and 149, which told it 0.013 too low (standard "
+        "deviation 0.029), 30 tell so, 81 % of those that are up, and one wrongly, at 0.69; from 0.73 on 24, 64 %, and "
         "that one.  Drawn anew, with worse arms, 13 of 177 from 0.70 on are wrong (benchmarks/armhole_closely.py)",
     )
     armhole_may_sit: float = quantity(
