@@ -13,7 +13,7 @@ WHEN = {  # stages -> when its fault begins
         "gown/outside to the robot:start",
     ),
     "dress": ("right arm/lift:step", "left arm/pull up:step", "left arm/is inside:start"),
-    "spread": ("left sleeve/go up and look:start", "left armhole/look:start", "right cuff/look:start"),
+    "spread": ("left sleeve/go up and look:start", "gown/sleeves?:step", "left armhole/look:start"),
 }
 
 
