@@ -135,12 +135,12 @@ class SleeveProfile(Estimate):
     Attributes:
         side: of the person.
         armhole_at: (n,) share of the upper arm, 0 shoulder, 1 elbow, in each sector; NaN where it does not show.
-        cuff_shows: (n,) bool, in which of them the cuff does.
+        cuff_at: (n,) likewise of the cuff.
     """
 
     side: Side
     armhole_at: np.ndarray
-    cuff_shows: np.ndarray
+    cuff_at: np.ndarray
 
 
 Primitive = Literal["move_left", "direct", "move_right"]

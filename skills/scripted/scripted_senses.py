@@ -191,8 +191,8 @@ class ScriptedSenses(Senses):
 
     def sleeve_profile(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> SleeveProfile:
         """At the shoulder, all the way round."""
-        shows = np.ones(24, bool)
-        return SleeveProfile(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=0.1 * shows, cuff_shows=shows)
+        armhole_at, cuff_at = np.full((2, 24), ((0.1,), (0.6,)))
+        return SleeveProfile(stamp=frame.stamp, confidence=0.9, side=side, armhole_at=armhole_at, cuff_at=cuff_at)
 
     def sleeve_on_forearm(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """Beyond the hand: one that is over it is drawn up at once."""

@@ -16,13 +16,12 @@ SECTORS = DEFAULT.sectors
 BELOW = ARM - (0.0, 0.0, 0.05)  # of an arm whose sleeve is what the camera sees
 
 
-def profile(at, shows=slice(None), cuff=()):
-    """A rim at `at` (sectors,), of which some sectors show."""
+def profile(at, shows=slice(None), cuff=(), cuff_at=0.7):
+    """A rim at `at` (sectors,), of which some sectors show, and the cuff of others."""
     seen = np.full(SECTORS, np.nan)
     seen[shows] = np.broadcast_to(at, SECTORS)[shows]
-    return SleeveProfile(
-        stamp=0.0, confidence=1.0, side="right", armhole_at=seen, cuff_shows=np.isin(np.arange(SECTORS), cuff)
-    )
+    cuff_seen = np.where(np.isin(np.arange(SECTORS), cuff), cuff_at, np.nan)
+    return SleeveProfile(stamp=0.0, confidence=1.0, side="right", armhole_at=seen, cuff_at=cuff_seen)
 
 
 def slanting(middle=0.3, slant=0.2):
@@ -36,7 +35,9 @@ def test_a_stripe_across_an_arm_shows_above_it_where_it_is():
     assert 3 <= np.count_nonzero(shows) < SECTORS / 2
     assert seen.armhole_at[shows] == pytest.approx(0.25, abs=0.02)
     assert shows[0] or shows[-1], "sectors begin at the top"
-    assert np.count_nonzero(seen.cuff_shows) >= 3
+    cuff = ~np.isnan(seen.cuff_at)
+    assert np.count_nonzero(cuff) >= 3
+    assert seen.cuff_at[cuff] == pytest.approx(0.66, abs=0.02)
     assert not shows[SECTORS // 4 : 3 * SECTORS // 4].all(), "nothing shows below"
 
 
@@ -78,6 +79,16 @@ def test_a_higher_rim_reaches_farther_up_and_no_farther_than_the_shoulder():
     assert reaches[0] < 0.6 < reaches[1] < 0.85
     assert reaches[-1] == 1.0
     assert reach_of([replace(profile(0.3), side="left")]) == reach_of([profile(0.3)])
+
+
+def test_an_armhole_under_its_gathered_sleeve_is_lower_than_it_looks():
+    hidden, worn, gathered, turned_in = (
+        reach_of([profile(0.3, cuff=cuff, cuff_at=at)])
+        for cuff, at in (((), 0.0), ((0, 8), 0.7), ((0, 8), 0.5), ((0, 8), 0.25))
+    )
+    assert hidden == worn
+    assert gathered == pytest.approx(worn - 0.5 * 0.15)
+    assert turned_in == pytest.approx(worn - 0.5 * 0.40)
 
 
 @pytest.mark.parametrize(

@@ -38,9 +38,8 @@ def bench(shows=("head", "left_hand", "right_hand"), at=0.3, looks=None, tuning=
 
 
 def profile(side, at):
-    return SleeveProfile(
-        stamp=0.0, confidence=1.0, side=side, armhole_at=np.full(24, at), cuff_shows=np.arange(24) < 12
-    )
+    cuff_at = np.where(np.arange(24) < 12, at + 0.5, np.nan)
+    return SleeveProfile(stamp=0.0, confidence=1.0, side=side, armhole_at=np.full(24, at), cuff_at=cuff_at)
 
 
 def test_both_are_looked_at_by_head_and_hand_from_two_places_beside_the_shoulder():
