@@ -45,14 +45,14 @@ def bench(side, *, hem=0.9, high=0.9, cloth=HELD):
 
 
 @pytest.mark.parametrize(("side", "outwards"), [("left", -1.0), ("right", 1.0)])
-def test_it_is_drawn_footward_and_outwards(side, outwards):
+def test_it_is_drawn_outwards_and_a_little_footward(side, outwards):
     run = bench(side)
     hand = PULLING[side]
     assert run.ended() is None
     path = run.way(hand)[run.openings(hand) < 0.005]
     assert path[0, :2] == pytest.approx(MIDDLE[:2] + (outwards * 0.20, 0.80), abs=0.03), "taken above the thigh"
     assert path[:, 2].max() - path[0, 2] == pytest.approx(0.08, abs=0.02), "above the body"
-    assert path[-1] - path[0] == pytest.approx((outwards * 0.10, 0.15, 0.02), abs=0.03), "and laid down"
+    assert path[-1] - path[0] == pytest.approx((outwards * 0.20, 0.05, 0.02), abs=0.03), "and laid down"
     assert run.openings(hand)[-1] > 0.03
     assert run.way(hand)[-1, 2] > path[-1, 2] + 0.08, "drawn back"
 
@@ -65,7 +65,7 @@ def test_a_front_that_is_folded_up_or_out_of_reach_is_taken_elsewhere(gown, take
     assert run.ended() is None
     path = run.way(PULLING["left"])[run.openings(PULLING["left"]) < 0.005]
     assert path[0, 1] == pytest.approx(MIDDLE[1] + taken, abs=0.03)
-    assert path[-1, 1] - path[0, 1] == pytest.approx(0.15, abs=0.03)
+    assert path[-1, 1] - path[0, 1] == pytest.approx(0.05, abs=0.03)
 
 
 def test_a_front_that_does_not_show_is_left_alone():
