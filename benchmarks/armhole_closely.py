@@ -56,11 +56,11 @@ def sleeves_in(record: Path, rng: np.random.Generator) -> Iterator[Sleeve]:
         for camera, pose in poses:
             profiles.append(None)
             with suppress(PerceptionFailure):
-                profiles[-1] = sleeve_profile(_frame(room, i, camera, pose, rng), side, tracked)
+                profiles[-1] = sleeve_profile(frame_of(room, i, camera, pose, rng), side, tracked)
         yield Sleeve(seed, tuple(profiles), true)
 
 
-def _frame(room: RecordedRoom, i: int, camera: str, pose: np.ndarray, rng: np.random.Generator) -> Frame:
+def frame_of(room: RecordedRoom, i: int, camera: str, pose: np.ndarray, rng: np.random.Generator) -> Frame:
     """What a camera at a pose (4, 4) sees of state `i`."""
     size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
     rgb, depth = add_sensor_noise(room.at(i).render(pose, size, lens), rng)
