@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from ....perception.errors import PerceptionFailure
 from ....perception.estimates import GraspPoint
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import SIDES, Side
@@ -25,6 +26,7 @@ from ....skills.control.withdraw import withdraw
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason
 from ....skills.core.skill import Skill
+from ....skills.core.tries import Tries
 from ....skills.geometry.arm_path import UP
 from ....skills.geometry.stances import HEADWARD, outwards
 
@@ -136,13 +138,22 @@ class DrawOver(Skill):
         yield from withdraw(self, held, tuning.withdrawal)
 
     def _places(self, middle: np.ndarray, collar: np.ndarray) -> dict[Side, GraspPoint]:
-        """Where each hand takes the cloth on the chest; both are seen before a hand comes in between."""
-        tuning = self.tuning
+        """Where each hand takes the cloth on the chest; both are seen before a hand comes in between.
+
+        A side of the chest that is bare is left out: the gown lay 0.09 m to the right, and was drawn up as it lay (189).
+
+        Raises:
+            PerceptionFailure: there is cloth on neither side.
+        """
+        tuning, bare = self.tuning, Tries(PerceptionFailure)
         footward = float(np.clip(tuning.below_collar - (collar - middle) @ HEADWARD, *tuning.footward))
         places: dict[Side, GraspPoint] = {}
         for side in SIDES:
             away = middle + tuning.apart * outwards(side) - footward * HEADWARD - collar
-            places[side] = look_at_collar(self, middle, (float(away[0]), float(away[1])))
+            with bare:
+                places[side] = look_at_collar(self, middle, (float(away[0]), float(away[1])))
+        if not places:
+            raise bare.last
         return places
 
     def _take(self, side: Side, place: GraspPoint) -> Iterator[None]:

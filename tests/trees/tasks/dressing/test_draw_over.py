@@ -22,10 +22,13 @@ HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(aside, *, cloth=HELD, shown=0.9):
-    """The collar `aside` [m], of which a share is `shown`."""
+def bench(aside, *, cloth=HELD, shown=0.9, bare=()):
+    """The collar `aside` [m], of which a share is `shown`, over a chest with `bare` sides."""
 
     def collar(frame, *, near_in_map, away=(0.0, 0.0)):
+        x = aside + COLLAR_SEEN.aside + away[0]
+        if any(away) and ("left" if x < 0.0 else "right") in bare:
+            raise HIDDEN
         return GraspPoint(
             stamp=0.0,
             confidence=shown,
@@ -81,6 +84,19 @@ def test_one_that_hardly_shows_is_drawn_over_where_both_hands_saw_it_aside():
     CloseLook.of(run.skill).seen = seen
     assert run.ended() is None
     assert np.ptp(held(run, "left")[:, 0]) > 0.1  # [m]
+
+
+@pytest.mark.parametrize("bare", SIDES)
+def test_a_gown_beside_a_bare_side_of_the_chest_is_drawn_by_the_other_hand(bare):
+    run = bench(0.12, bare=(bare,))
+    other = SIDES[1 - SIDES.index(bare)]
+    assert run.ended() is None
+    assert np.ptp(held(run, other)[:, 0]) > 0.15  # [m]
+    assert len(held(run, bare)) == 0
+
+
+def test_over_a_bare_chest_there_is_nothing_to_draw():
+    assert bench(0.12, bare=SIDES).ended() == Reason.NOTHING_SEEN
 
 
 def test_one_hand_alone_draws_it_too():
