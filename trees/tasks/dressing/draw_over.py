@@ -140,7 +140,7 @@ class DrawOver(Skill):
     def _places(self, middle: np.ndarray, collar: np.ndarray) -> dict[Side, GraspPoint]:
         """Where each hand takes the cloth on the chest; both are seen before a hand comes in between.
 
-        A side of the chest that is bare is left out: the gown lay 0.09 m to the right, and was drawn up as it lay (189).
+        A bare side of the chest is left out: the gown lay 0.09 m to the right, and was drawn up as it lay (189).
 
         Raises:
             PerceptionFailure: there is cloth on neither side.
