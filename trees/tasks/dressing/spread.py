@@ -42,14 +42,14 @@ UNSEEN = (Reason.ARM_LOST, Reason.NOTHING_SEEN)
 HOWEVER_LITTLE = CheckSleeveTuning(min_cuff_at=-1.0, min_share_round=0.0, min_covered=0.0, min_outer_covered=0.0)
 BOTH_ALIKE = CheckSleeveTuning(before_counts=0.5)  # one is right where the other one is off by 0.1 (156)
 
-TOLD = {"min_told": DRESSING.collar_told, "min_told_from_head": DRESSING.collar_told_from_head}
-MIDDLE = CheckCollarTuning(
-    min_shown=DRESSING.collar_shown, max_aside=DRESSING.collar_aside, max_headward=DRESSING.collar_headward, **TOLD
-)
-ASIDE, HEADWARD, FOOTWARD = DRESSING.collar_neat
 # What shows too little of itself is left as it lies at first: laid by a guess, it came from 0.02 to 0.15 m aside (101).
 NEAT = CheckCollarTuning(
-    min_shown=DRESSING.collar_shown, max_aside=ASIDE, max_headward=HEADWARD, max_footward=FOOTWARD, **TOLD
+    min_shown=DRESSING.collar_shown,
+    max_aside=DRESSING.collar_aside,
+    max_headward=DRESSING.collar_headward,
+    max_footward=DRESSING.collar_footward,
+    min_told=DRESSING.collar_told,
+    min_told_from_head=DRESSING.collar_told_from_head,
 )
 # Over the face it does not stay (178), nor where it was looked at again and told as little: 0.10 and 0.06 m aside, seen
 # there by each hand in another place, it was looked at 10 and 20 times more (195, 192).
@@ -136,7 +136,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
             drawn_alone(anew, side),
             RecoverBy(f"{anew.prefix}until the face is free", face, covered, attempts=2),
             straight(anew),
-            *closely(anew, "about the middle", MIDDLE),
+            *closely(anew, "about the middle"),
             look_at_sleeves(anew),
         )
         return patient(anew, drawn)
@@ -194,7 +194,7 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     up and after, cost half a minute each time (257 to 260).
     """
     sleeves = [shown(context, f"{side} armhole", side, seen_from_head(bed, side)) for side in SIDES]
-    middle = closely(bed, "the collar lies in the middle", MIDDLE)
+    middle = closely(bed, "the collar lies in the middle")
     flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
     face_free = CheckFace("the face is free", bed)
@@ -242,7 +242,7 @@ def looked_again(context: Context, bed: Scope) -> Behaviour:
     return sequence("both arms again", *arms, *go_to_head(again), straight(again, HOWEVER_SEEN))
 
 
-def closely(gown: Scope, name: str, tuning: CheckCollarTuning) -> list[Behaviour]:
+def closely(gown: Scope, name: str, tuning: CheckCollarTuning = NEAT) -> list[Behaviour]:
     """Look at the collar with both hands' cameras, and judge it by that."""
     return [look_closely(gown, name), CheckCollar(name, gown, tuning=tuning)]
 

@@ -268,14 +268,6 @@ class DressingTuning(Quantities):
         "measured: in 157 looks of 25 runs its middle was missed by 0.044 m at most from there on (root mean square "
         "0.016 m), by 0.083 m from 0.90 on; of those told in the middle 0 of 34 were wrong, 1 of 14 from 0.90 to 0.95",
     )
-    collar_neat: tuple[float, float, float] = quantity(
-        (0.040, 0.065, 0.07),
-        "m",
-        "of the collar's middle aside, headward and footward, beyond which it is laid straight",
-        "choice: of 0.07, 0.10 and 0.08 m that are allowed.  Headward it lies 0.027 m (0.02 to 0.04) beyond where it "
-        "is seen (114 to 123); laid without need, it comes to lie farther headward (107: 0.02, then 0.09 m) and draws "
-        "the sleeves down (114: from 0.78 to 0.69)",
-    )
     neaten_attempts: int = quantity(
         10,
         "1",
@@ -303,6 +295,13 @@ class DressingTuning(Quantities):
         "of the collar's middle, as it is seen, beyond which it lies on the throat",
         "measured: 0.10 m are allowed of the neckline's edge; the tape is seen 0.02 m footward of that (25 views), and "
         "0.07 m seen was 0.093 and 0.100 m (101, 112), 0.08 m claimed was too much (101)",
+    )
+    collar_footward: float = quantity(
+        0.07,
+        "m",
+        "of the collar's middle, as it is seen, beyond which it lies too low",
+        "choice: of 0.08 m that are allowed; laid without need, it comes to lie farther headward (107: 0.02, then "
+        "0.09 m) and draws the sleeves down (114: from 0.78 to 0.69)",
     )
     shoulders_on_bed: tuple[float, float, float] = quantity(
         (0.0, -0.55, 0.10), "m", "of an adult, from the middle of the mattress", "choice: where the map's bed says"
