@@ -12,6 +12,7 @@ from ....skills.control.lowering import lies
 from ....skills.core.ports import Input
 from ....skills.core.reasons import Reason, SkillFailure
 from ....skills.core.skill import Skill
+from ....skills.lower_arm import LowerArmTuning
 
 
 class CheckWorn(Skill):
@@ -25,6 +26,7 @@ class CheckWorn(Skill):
     side = Input(Side, doc="arm of the person")
     min_reach = Input(float, unit="1", doc="how far up the upper arm the armhole is at least: 0 elbow, 1 shoulder")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="what tells that an arm is inside")
+    lowering = Input(LowerArmTuning, default=LowerArmTuning(), doc="numbers of `LowerArm`, which tell that an arm lies")
     reasons = (Reason.NOTHING_SEEN, Reason.SLEEVE_LOW, Reason.ARM_SLIPPED, Reason.ARM_LOST)
 
     def steps(self) -> Iterator[None]:
@@ -36,7 +38,7 @@ class CheckWorn(Skill):
             raise SkillFailure(Reason.SLEEVE_LOW, f"{seen.reach:.2f}, at least {self.min_reach:.2f} is asked for")
         if seen.round_arm <= self.tuning.min_round_closely:
             raise SkillFailure(Reason.NOTHING_SEEN, f"its cuff shows {seen.round_arm:.0%} of the way round the arm")
-        if not lies(self, watch_arm(self, self.side)):
+        if not lies(self, watch_arm(self, self.side), self.lowering.lies_below):
             raise SkillFailure(Reason.ARM_SLIPPED, f"the {self.side} arm does not lie")
         self.note(f"the {self.side} arm lies inside its sleeve")
         yield

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
+from caretree.sim.scene.scene import room_map
 from caretree.skills.belief.close_look import CLOSE_LOOK, CloseLook, SleeveSeen
 from caretree.skills.core.reasons import Reason
 from caretree.skills.scripted.scripted_person import lying_posture
@@ -12,7 +12,13 @@ from caretree.trees.tasks.dressing.check_worn import CheckWorn
 from ....skills.bench import LeafBench, beside_bed
 
 LYING = lying_posture("left")
-RAISED = replace(LYING, points_in_map=LYING.points_in_map + np.array((0.0, 0.0, 0.3)) * ((0,), (1,), (1,), (1,)))
+
+
+def raised(height):
+    """The left arm, its joints beyond the shoulder at such a height above the mattress [m]."""
+    points = LYING.points_in_map.copy()
+    points[1:, 2] = room_map().bed[1, 2] + height
+    return replace(LYING, points_in_map=points)
 
 
 @pytest.mark.parametrize(
@@ -22,7 +28,8 @@ RAISED = replace(LYING, points_in_map=LYING.points_in_map + np.array((0.0, 0.0, 
         (0.71, 0.6, 0.0, LYING, Reason.SLEEVE_LOW),
         (0.75, 0.5, 0.0, LYING, Reason.NOTHING_SEEN),
         (0.75, 0.6, 1.1 * CLOSE_LOOK.sleeves_last, LYING, Reason.NOTHING_SEEN),
-        (0.75, 0.6, 0.0, RAISED, Reason.ARM_SLIPPED),
+        (0.75, 0.6, 0.0, raised(0.12), None),  # as high as `LowerArm` leaves an arm
+        (0.75, 0.6, 0.0, raised(0.16), Reason.ARM_SLIPPED),
     ],
 )
 def test_a_sleeve_sits_where_armhole_cuff_and_arm_say_so(reach, round_arm, age, arm, reason):
