@@ -42,15 +42,15 @@ class LookAtCollarTuning(Quantities):
         4.0,
         "1",
         "power of how much of it a picture shows, by which that picture counts",
-        "measured: 93 states of five development seeds: off by 0.031 m aside (root mean square; 0.072 m at worst), the "
-        "mean of both hands' by 0.033 and 0.12 m",
+        "measured: 133 states of seven development seeds: off by 0.032 m aside (root mean square; 0.11 m at worst), "
+        "the mean of both hands' by 0.035 and 0.15 m (benchmarks/collar_closely.py)",
     )
     apart: float = quantity(
         0.03,
         "m",
         "aside, standard deviation of where the pictures show its middle, as they count, from which any may be wrong",
-        "measured: of those states 32 are told within 0.045 m of the midline, none wrongly; however far apart 8 "
-        "more, 3 of them wrongly",
+        "measured: of those states 43 are told within 0.040 m of the midline, two wrongly; however far apart 4 more, "
+        "one of them wrongly; by both hands' mean, no more than 0.05 m apart, 42, two wrongly",
     )
     unsure: float = quantity(
         0.75, "1", "of what shows that counts then", "choice: too little to claim, and as a rule to draw the gown over"
