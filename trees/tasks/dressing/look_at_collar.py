@@ -42,7 +42,7 @@ class LookAtCollarTuning(Quantities):
         4.0,
         "1",
         "power of how much of it a picture shows, by which that picture counts",
-        "measured: 133 states of seven development seeds: off by 0.032 m aside (root mean square; 0.11 m at worst), "
+        "measured: 133 states of eight development seeds: off by 0.032 m aside (root mean square; 0.11 m at worst), "
         "the mean of both hands' by 0.035 and 0.15 m (benchmarks/collar_closely.py)",
     )
     apart: float = quantity(

@@ -285,7 +285,7 @@ class DressingTuning(Quantities):
         0.040,
         "m",
         "of the collar's middle, as head and hands see it closely, beyond which it lies aside",
-        "measured: 0.07 m are allowed; of 133 states of seven development seeds, 66 of them within all bounds, 43 are "
+        "measured: 0.07 m are allowed; of 133 states of eight development seeds, 66 of them within all bounds, 43 are "
         "told, two of them wrongly, within 0.050 m 51 and four (benchmarks/collar_closely.py)",
     )
     collar_headward: float = quantity(
