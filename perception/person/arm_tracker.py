@@ -56,13 +56,6 @@ class ArmTrackerTuning(Quantities):
         "of the pull that keeps unseen joints where they were, standard deviation",
         "choice: a few frames' motion",
     )
-    shoulder_stays: float = quantity(
-        0.018,
-        "m",
-        "from where the shoulder was, beyond which an arm that is looked for afresh is not the one that lay there",
-        "measured: of 1,530 postures of 14 runs those of one alone had a shoulder farther off (0.024 m, the elbow 0.13 "
-        "m, seen from across the bed); its sleeve was told 0.1 too far up, and claimed (149)",
-    )
     shoulder_deviation: float = quantity(
         0.02, "m", "of the shoulder joint as the arm moves", "choice: the trunk stays on the bed"
     )
@@ -214,8 +207,6 @@ class ArmTracker:
         try:
             fit = self._search(self._body, self._view(frame, self._body))
         except PerceptionFailure:
-            return False
-        if not moved and np.linalg.norm(fit.joints[0] - self._shoulder) > self._tuning.shoulder_stays:
             return False
         if self._bare_share(frame, fit.joints) < self._tuning.min_bare_share:
             return False
