@@ -45,8 +45,8 @@ class SleeveProfileTuning(Quantities):
         "1",
         "of the upper arm between armhole and cuff, on average round the arm, below which a sleeve is gathered, and by "
         "how much lower its armhole is told for what is missing",
-        "measured: 128 states of worn sleeves of seven seeds show 0.32 to 0.73; the left one of 178, which was turned "
-        "in with its cuff over its armhole, -0.01 to 0.03, and was told 0.13 too high on average (12 states)",
+        "measured: 181 of 182 states of worn sleeves of seven seeds show 0.32 to 0.73; the left one of 178, which was "
+        "turned in with its cuff over its armhole, -0.01 to 0.03, and was told 0.13 too high on average (12 states)",
     )
     full_sectors: int = quantity(12, "1", "that make it certain", "choice: half of the way round")
 

@@ -46,8 +46,8 @@ class DrawFlatTuning(Quantities):
         "m",
         "outwards and footward that the cloth is drawn",
         "measured, with both sleeves drawn up next, on two states before it: 0.81, 0.86 and 0.73, 0.71 up, the collar "
-        "0.05 m aside at most, three layers on 2 % of the chest (188, 128); drawn 0.10 m outwards and 0.15 m footward, "
-        "which took the left armhole 0.14 lower, 0.92, 0.69 and 0.68, the right one off, 0.10 m aside, 11 % (188)",
+        "0.05 m aside at most, three layers on 2 % of the chest (188, 128); drawn 0.10 m outwards and 0.15 m footward "
+        "0.92, 0.69 and 0.68, the right one off, the collar 0.10 m aside, 11 % (188)",
     )
     stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
     # twice as fast, the hand, which may come down beside the leg, met it with 113 N, not 88 N (147)
