@@ -36,6 +36,13 @@ def test_weight_along_the_arc_is_borne_and_a_pull_across_it_is_given_way_to():
     assert np.linalg.norm(arc.offset) <= 0.08 + 1e-9
 
 
+def test_friction_of_a_joint_is_borne_so_that_an_arm_is_spread():
+    arc = Arc(SHOULDER, ELBOW, GOAL)
+    tangent = arc.at(0.3)[1]
+    np.testing.assert_array_equal(arc.give_way(8.6 * arc.axis, tangent, 0.0, 0.1), 0.0)
+    assert arc.give_way(-20.0 * arc.axis, tangent, 0.1, 0.1) @ arc.axis < 0, "whatever pulls harder is given way to"
+
+
 def test_a_bent_arm_is_straightened_on_the_way():
     bent, straight = np.linalg.norm(ELBOW - SHOULDER), 0.5
     arc = Arc(SHOULDER, ELBOW, GOAL, reach=straight)
