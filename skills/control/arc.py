@@ -22,7 +22,7 @@ class ArcTuning(Quantities):
         12.0,
         "N",
         "pull square to the arm and the arc that is borne",
-        "measured: at an elbow 0.28 m from its shoulder a joint that turns outwards resists with 8.6 N by its friction; "
+        "measured: at an elbow 0.28 m from its shoulder the joint that turns outwards resists with 8.6 N by friction; "
         "given way to above 3 N, no arm of ten runs was spread at all",
     )
     max_offset: float = quantity(

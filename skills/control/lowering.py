@@ -49,6 +49,19 @@ class LoweringTuning(Quantities):
     edge: float = quantity(
         0.0, "m", "of a resting wrist from the edge of the mattress, at least", "choice: the hand may hang over it"
     )
+    spread: float = quantity(
+        0.0,
+        "rad",
+        "of the wrist away from the body in the end, about the shoulder, if it is not there already and the mattress "
+        "is wide enough",
+        "choice: straight down, unless who asks knows better",
+    )
+    friction: float = quantity(
+        0.0,
+        "N",
+        "pull square to the arm and its way that is borne: the joint that turns outwards resists",
+        "choice: straight down, nothing resists but what has to be given way to",
+    )
     turn_gain: float = quantity(0.6, "1/s", "of the hand's turn to straight down", "choice: turned before it is down")
     turn_rate: float = quantity(0.25, "rad/s", "of that turn, at most", "choice: the turn of a lift takes two seconds")
     slow_from: float = quantity(
@@ -130,14 +143,14 @@ def _along(posture: ArmPosture, place: np.ndarray) -> tuple[float, float]:
 def resting_place(
     skill: Skill, side: Side, posture: ArmPosture, coordinate: float, *, tuning: LoweringTuning = LOWERING
 ) -> np.ndarray:
-    """(3,) where a place of an arm comes to rest: below where it is, about the shoulder, the wrist on the mattress."""
+    """(3,) where a place of an arm comes to rest: about the shoulder, spread as asked, the wrist on the mattress."""
     bed, path = skill.world.room.bed, ArmPath.of(posture)
     shoulder = path.points[0]
     wrist, held = path.points[2] - shoulder, path.point(coordinate) - shoulder
     room = 0.5 * (bed[1, 0] - bed[0, 0]) - tuning.edge - (shoulder - bed.mean(axis=0)) @ outwards(side)
     widest = math.asin(np.clip(room / np.linalg.norm(wrist), 0.0, 1.0))
     wide, heading = (math.atan2(arm @ outwards(side), arm @ -HEADWARD) for arm in (wrist, held))
-    heading -= max(wide - float(widest), 0.0)
+    heading += min(max(wide, tuning.spread), float(widest)) - wide
     reach = float(np.linalg.norm(held))
     rise = float(np.clip(bed[1, 2] + tuning.rest_height - shoulder[2], -0.9 * reach, 0.9 * reach))
     level = math.sin(heading) * outwards(side) - math.cos(heading) * HEADWARD
@@ -171,7 +184,7 @@ def lower_arm(
 
 def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: LoweringTuning) -> Iterator[None]:
     mattress = float(skill.world.room.bed[1, 2])
-    downwards = _about_shoulder(skill, *held, tuning) if held else lambda position: -UP
+    downwards = _about_shoulder(skill, *held, tuning) if held else lambda position: (-UP, np.zeros(3))
     end, window = skill.now() + tuning.timeout, deque[tuple[float, float]]()
     while True:
         pose, load = hand_now(skill, hand), cloth_load(skill, hand)
@@ -189,11 +202,13 @@ def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: Low
             return
         if skill.now() > end:
             raise SkillFailure(Reason.TIMEOUT, f"the hand is {height:.2f} m above the mattress")
-        along = _not_against(downwards(pose[:3, 3]), load, tuning)
+        along, square = downwards(pose[:3, 3])
+        along = _not_against(along, load, tuning)
         against = max(float(load[2]), -float(load @ along))
         ease = float(np.clip((tuning.stop_at - against) / (tuning.stop_at - tuning.slow_from), 0.0, 1.0))
         down = tuning.speed * ease * along
-        linear = down + compliant_velocity(skill, hand, load - (load @ along) * along)
+        borne = float(np.clip(load @ square, -tuning.friction, tuning.friction)) * square
+        linear = down + compliant_velocity(skill, hand, load - (load @ along) * along - borne)
         turn = tuning.turn_gain * np.cross(pose[:3, 2], -UP)
         turn *= min(1.0, tuning.turn_rate / max(float(np.linalg.norm(turn)), 1e-9))
         skill.world.send(HandTwist(side=hand, twist_in_map=np.append(linear, turn)), retreat=True)
@@ -201,16 +216,22 @@ def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: Low
         yield
 
 
-def _about_shoulder(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -> Callable[[np.ndarray], np.ndarray]:
-    """Unit vector (3,) in which a hand at a position (3,) goes: about the shoulder, to where what it holds rests."""
+def _about_shoulder(
+    skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning
+) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """Unit vectors (3,) of a hand at a position (3,): its way about the shoulder, and square to that and the arm.
+
+    It goes to where what it holds rests.
+    """
     posture = posture_in_hand(skill, side, hold)
     assert posture is not None  # of an arm that was never found nobody knows that it is held
     shoulder = posture.points_in_map[0]
     goal = resting_place(skill, side, posture, hold.coordinate, tuning=tuning) - tuning.aim_below * UP - shoulder
 
-    def along(position: np.ndarray) -> np.ndarray:
+    def along(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         arm = unit(position - shoulder)
-        return unit(goal - (goal @ arm) * arm)
+        way = unit(goal - (goal @ arm) * arm)
+        return way, np.cross(arm, way)
 
     return along
 

@@ -64,6 +64,21 @@ def test_an_arm_that_would_reach_over_the_edge_is_drawn_in_until_the_wrist_rests
     assert wrist @ outwards(side) == pytest.approx(0.5, abs=0.03)  # [m], half the bed's width
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_arm_is_spread_as_far_as_asked_and_the_mattress_is_wide(side):
+    def heading(spread):
+        asked = replace(LOWERING, spread=spread)
+        wrist = resting_place(skill(), side, narrow, 2.0, tuning=asked) - narrow.points_in_map[0]
+        return float(np.arctan2(wrist @ outwards(side), wrist @ -HEADWARD))
+
+    narrow = raised(side, aside=-0.10)
+    assert heading(0.0) < 0.4, "straight down"
+    assert heading(0.5) == pytest.approx(0.5)
+    on_the_edge = heading(1.2)
+    assert 0.5 < on_the_edge < 0.8
+    assert heading(0.9) == pytest.approx(on_the_edge)
+
+
 def test_the_arm_that_a_hand_holds_is_the_one_between_its_fingers():
     unseen = PerceptionFailure(Problem.NOTHING_SEEN, "person")
     asks = skill(hands={"left": over_arm(raised("right"), 1.3, 0.0)}, arm=unseen, head=unseen)

@@ -18,6 +18,7 @@ from ....sim.world import SIDES, Side
 from ....skills.carry_sleeve import CarrySleeve
 from ....skills.check_laid_out import CheckLaidOut
 from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
+from ....skills.control.lowering import LoweringTuning
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
 from ....skills.core.scope import Scope
@@ -32,7 +33,7 @@ from ....skills.lower_arm import LowerArm
 from ....skills.navigate import Navigate
 from ....skills.present_sleeve import PresentSleeve
 from ....skills.pull_along_arm import PullAlongArm
-from ....skills.release_arm import ReleaseArm
+from ....skills.release_arm import ReleaseArm, ReleaseArmTuning
 from ....skills.retreat import Retreat
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
@@ -165,6 +166,8 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         return sequence("laid down, and held out again", lay("missed"), opened("present it again", "still folded"))
 
     pull = PullAlongArm("pull over the hand", held, grip_goal=DRESSING.past_wrist)
+    lowering = LoweringTuning(spread=DRESSING.lowered_spread, friction=DRESSING.lowered_friction)
+    spread_out = {"lower": True, "tuning": ReleaseArmTuning(lowering=lowering)}
     return sequence(
         "over the hand",
         Navigate("come to it", arm, goal=stance(arm["side"], "lift")),
@@ -178,9 +181,9 @@ def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:
         RecoverBy("until the hand is inside", pull, {Reason.SLEEVE_MISSED: missed}, attempts=3),
         RecoverBy(
             f"{arm.prefix}until it lies",
-            ReleaseArm("lower it and let go", arm, hand=arm["lifting"], lower=True, ready="if possible"),
+            ReleaseArm("lower it and let go", arm, hand=arm["lifting"], ready="if possible", **spread_out),
             # met by the hand that lowers it, an arm whose sleeve is over the hand is lowered on, not begun again (5)
-            {Reason.FORCE_LIMIT: lambda: ReleaseArm("lower it on", arm, hand=arm["lifting"], lower=True)},
+            {Reason.FORCE_LIMIT: lambda: ReleaseArm("lower it on", arm, hand=arm["lifting"], **spread_out)},
         ),
     )
 

@@ -165,6 +165,19 @@ class DressingTuning(Quantities):
         "arm coordinate of the grip where the lifting hand may let go",
         "measured: at 1.5 the pulling palm stood where the wrist of the hand that lowers the arm had to go (101, 102)",
     )
+    lowered_spread: float = quantity(
+        0.75,
+        "rad",
+        "of the wrist away from the body, to which an arm is spread as it is lowered, its sleeve over the hand",
+        "measured: an armhole stops where arm and trunk part: pulled up arms spread by 0.5, 0.6, 0.75, 0.9 rad and let "
+        "go of, it came to rest at 0.68, 0.75, 0.81, 0.82 of the upper arm (four gowns and persons, both sides)",
+    )
+    lowered_friction: float = quantity(
+        12.0,
+        "N",
+        "that is borne meanwhile, of the joint that turns outwards",
+        "measured: it resists with 8.6 N at the elbow",
+    )
     grip_goal: float = quantity(
         -0.45, "1", "arm coordinate at which the grip ends the pull at the latest", "choice: beyond the shoulder"
     )
