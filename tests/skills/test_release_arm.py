@@ -12,8 +12,9 @@ from caretree.sim.robot.model import READY
 from caretree.sim.world import GripperOpening, HandTwist, JointTrajectory, SensorLost
 from caretree.skills.belief.person_tracking import Watch
 from caretree.skills.control.arm_grip import over_arm
+from caretree.skills.control.lowering import LoweringTuning
 from caretree.skills.core.reasons import Reason
-from caretree.skills.release_arm import ReleaseArm
+from caretree.skills.release_arm import ReleaseArm, ReleaseArmTuning
 from caretree.skills.scripted.scripted_person import lying_posture
 
 from .bench import ARM, CLOTH, LeafBench, above_arm, beside_bed, goes_along, pulls
@@ -72,6 +73,20 @@ def bench(
 def parted(run):
     """Number of ticks until the fingers part."""
     return int(np.argmax(run.openings("left") > run.openings("left")[0] + 0.002))
+
+
+@pytest.mark.parametrize(("aside_first", "friction", "spread"), [(3.0, 12.0, 0.67), (0.0, 0.0, 0.59)])
+def test_an_arm_that_is_to_be_spread_is_although_its_joint_resists(aside_first, friction, spread):
+    lowering = LoweringTuning(spread=0.9, friction=friction, aside_first=aside_first)
+    tuning = ReleaseArmTuning(lowering=lowering)
+    turn = np.array(((np.cos(0.4), -np.sin(0.4), 0.0), (np.sin(0.4), np.cos(0.4), 0.0), (0.0, 0.0, 1.0)))  # 0.4 rad
+    beside = replace(raised(), points_in_map=SHOULDER + (raised().points_in_map - SHOULDER) @ turn.T)
+    run = bench(lower=True, tuning=tuning, posture=beside, load=lambda height: (-9.0, 0.0, -6.0))  # [N], inwards
+    assert run.ended() is None
+    way = run.way("left") - SHOULDER
+    aside = np.arctan2(way[:, 0], way[:, 1])[: parted(run)]  # [rad]
+    assert aside[0] == pytest.approx(0.42, abs=0.02)
+    assert aside[-1] == pytest.approx(spread, abs=0.03)
 
 
 def test_an_arm_is_swung_down_about_its_shoulder_until_it_lies_and_let_go_there():
