@@ -60,7 +60,7 @@ class LiftGoal(Quantities):
         "rad",
         "of the upper arm away from the body in the end, along the bed, if it does not point there already",
         "measured: from 0.64 to 0.72 rad, the gown's pull at the hand went from 1.4 to 3.1 N, and its sleeve missed it "
-        "(149); an armhole is said to go farther up the farther an arm is spread, which it may be once it is in",
+        "(149); an arm that is in its sleeve may be spread farther as it is lowered",
     )
     straight: float = quantity(
         0.99,
