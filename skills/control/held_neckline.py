@@ -34,12 +34,18 @@ class NecklineTuning(Quantities):
         "of the near hand, at least",
         "choice: how it was found is not recorded; nearer, the hand is beside the base",
     )
-    far_lower: float = quantity(
+    lower_by: float = quantity(
         0.45,
         "m",
-        "by which the far end hangs lower than the near one",
+        "by which one end, mostly the far one, hangs lower than the other",
         "measured: far back panels that hung folded over the front fell open on 3 of 4 gowns, by 0.3 m on 2 of 4, "
         "level on none (125, 133, 136, 139)",
+    )
+    behind: float = quantity(
+        0.30,
+        "m",
+        "nearer to the feet, of the near end where that is the one that hangs lower",
+        "choice: drawn towards the head, the panel beside it goes outwards, as the sheet's lower end trails",
     )
     level_from: float = quantity(
         0.83,
@@ -52,7 +58,7 @@ class NecklineTuning(Quantities):
 
 @dataclass
 class HeldNeckline:
-    """Both ends of a neckline in the hands of the robot, the far one lower while the gown hangs.
+    """Both ends of a neckline in the hands of the robot, one of them lower while the gown hangs, mostly the far one.
 
     The back panel beyond an armhole hangs from the end of the neckline beside it, and turns about its edge as a door
     does: folded over the front it stays there, hung lower it falls open.
@@ -62,17 +68,20 @@ class HeldNeckline:
         apart: distance between the hands [m].
         middle: x of the neckline's middle in the map [m].
         tuning: how it is moved.
+        lower: the hand whose end hangs lower.
     """
 
     skill: Skill
     apart: float
     middle: float
     tuning: NecklineTuning
+    lower: Side = FAR_HAND
 
     def to(self, y: float, z: float, share: float = 1.0, *, way: Way = "either") -> Iterator[None]:
         """Both hands to the ends of a neckline at (y, z) [m, map], or a `share` of the `way` there, turned anyhow.
 
-        The height is that of the near end; the far one is lower by `far_lower`, as long as it is above `level_from`.
+        The height is that of the higher end; the other one is lower by `lower_by`, as long as it is above `level_from`,
+        and, if it is the near one, as much nearer to the feet.
         They are `apart` along the neckline: as far apart across the bed, the one end lower, they stretched it by 0.1 m,
         and the cloth by a quarter (173).
 
@@ -95,12 +104,14 @@ class HeldNeckline:
     def _goals(self, y: float, z: float, share: float = 1.0) -> dict[Side, np.ndarray]:
         """Poses (4, 4) of both hands in the map."""
         tuning = self.tuning
-        heights = (z, min(z, max(z - tuning.far_lower, tuning.level_from)))
-        half = math.sqrt(max(self.apart**2 - (heights[0] - heights[1]) ** 2, 0.0)) / 2
+        drop = z - min(z, max(z - tuning.lower_by, tuning.level_from))
+        behind = tuning.behind * drop / tuning.lower_by if self.lower == NEAR_HAND else 0.0
+        half = math.sqrt(max(self.apart**2 - drop**2 - behind**2, 0.0)) / 2
         goals: dict[Side, np.ndarray] = {}
-        for side, sign, height in zip((NEAR_HAND, FAR_HAND), (1.0, -1.0), heights, strict=True):
+        for side, sign in ((NEAR_HAND, 1.0), (FAR_HAND, -1.0)):
             pose = hand_now(self.skill, side)
-            there = np.array((max(self.middle, tuning.min_near_x - half) + sign * half, y, height))
+            across = max(self.middle, tuning.min_near_x - half) + sign * half
+            there = np.array((across, y + sign * behind / 2, z - (drop if side == self.lower else 0.0)))
             pose[:3, 3] += share * (there - pose[:3, 3])
             goals[side] = pose
         return goals

@@ -179,9 +179,10 @@ class ScriptedSenses(Senses):
         return laid_strap(side, frame.stamp)
 
     def sleeve_heading(self, frame: Frame, *, side: Side, near_in_map: np.ndarray) -> SleeveHeading:
-        """Along the hand at rest."""
+        """Along the hand at rest, and up: laid, it stands on the gown; held, it opens towards the hand."""
         _, _, wrist, fingertip = lying_arm(side)
-        return SleeveHeading(stamp=frame.stamp, confidence=0.9, side=side, cuff_from_armhole_in_map=fingertip - wrist)
+        away = fingertip - wrist + (0.0, 0.0, 0.1)
+        return SleeveHeading(stamp=frame.stamp, confidence=0.9, side=side, cuff_from_armhole_in_map=away)
 
     def worn_sleeve(self, frame: Frame, *, side: Side, arm_in_map: np.ndarray) -> WornSleeve:
         """At the shoulder, and round the arm."""

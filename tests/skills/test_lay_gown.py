@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
+from caretree.perception.estimates import SleeveHeading
 from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.robot import model
 from caretree.sim.robot.baxter import BAXTER
@@ -23,6 +24,7 @@ WIDTH = 0.84  # between the hands [m]
 STRAIGHT_AT = 0.42  # x at which the near armhole shows in a gown that lies straight [m]
 START = (0.77, 1.80, -np.pi / 2)  # of the base, where the hem begins to touch the legs [m, m, rad]
 NARROWING = 0.03  # of the hands at once [m]
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cuff")
 
 
 def armhole(x):
@@ -30,16 +32,21 @@ def armhole(x):
     return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
-def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None):
+def heading(up):
+    """A near sleeve whose cuff shows by `up` [m] above its armhole."""
+    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=np.array((0.0, 0.0, up)))
+
+
+def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
     room.waypoints["start"] = START
     world = ScriptedWorld(seed=1, room=room, kinematics=kinematics_of(BAXTER), arm_positions=model.READY)
     guard = GuardedWorld(world)
-    context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen))
+    context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen, sleeve_heading=stands))
     skill = LayGown("lay", context, width=width)
     places = []
-    for _ in range(6000):
+    for _ in range(9000):
         context.lease.advance()
         skill.tick_once()
         world.clock.wait_until(world.clock.now() + 1 / 15)
@@ -125,3 +132,32 @@ def test_the_neckline_is_never_held_farther_apart_than_it_is_long():
     low = np.array(way_down)[:, :, 1].min(axis=1) < 0.9  # [m]: the far end hangs lower by then
     assert np.max(apart[low]) < WIDTH + 0.02
     assert np.min(np.array(across)[low]) < 0.75, "nearer across the bed meanwhile"
+
+
+@pytest.mark.parametrize("stands", [HIDDEN, heading(0.05)])
+def test_a_gown_whose_near_sleeve_stands_or_hides_is_laid_once(stands):
+    way_down = []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down, stands=stands)
+    assert lowerings(way_down) == 1
+
+
+def test_one_whose_near_sleeve_is_tucked_in_is_drawn_over_the_bed_with_its_near_end_lower_and_behind_and_laid_again():
+    way_down = []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down, stands=[heading(-0.02), heading(0.06)])
+    assert lowerings(way_down) == 2
+    near, far = np.moveaxis(np.array(way_down), 1, 0)
+    deepest = int(np.argmax(far[:, 1] - near[:, 1]))
+    assert far[deepest, 1] - near[deepest, 1] == pytest.approx(0.45, abs=0.02)
+    assert near[deepest, 0] - far[deepest, 0] == pytest.approx(0.30, abs=0.02)
+
+
+def test_one_that_is_tucked_in_again_is_let_go_of():
+    way_down = []
+    let_go_at(armhole(STRAIGHT_AT), way_down=way_down, stands=heading(-0.02))
+    assert lowerings(way_down) == 2
+
+
+def lowerings(way_down):
+    """How often both hands came down to the bed."""
+    down = np.array(way_down)[..., 1].max(axis=1) < 0.75
+    return int(down[0]) + int(np.count_nonzero(down[1:] & ~down[:-1]))
