@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -15,7 +15,7 @@ from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across, see_askew
 from .control.hands import hand_now
 from .control.head import look_towards
-from .control.held_neckline import FAR_HAND, NEAR_HAND, NEAR_SLEEVE, HeldNeckline, NecklineTuning
+from .control.held_neckline import NEAR_HAND, NEAR_SLEEVE, HeldNeckline, NecklineTuning
 from .control.leave_gown import LeaveGownTuning, leave_gown
 from .control.together import together
 from .core.ports import Input
@@ -65,12 +65,6 @@ class LayGownTuning(Quantities):
         "choice: as near to the bed, whose top is at 0.58 m, as the hands get straight down",
     )
     middle_x: float = quantity(0.0, "m", "of the middle of the neckline", "design: the middle of the bed")
-    opened_along: tuple[tuple[float, float], ...] = quantity(
-        ((0.80, 1.15), (0.40, 1.10)),
-        "m",
-        "y and height of the far end, to which the gown is drawn with its near end lower, before it is laid once more",
-        "choice: the near panel is drawn over the bed from its foot on, but for its uppermost quarter",
-    )
     near_stands: float = quantity(
         0.03,
         "m",
@@ -78,7 +72,6 @@ class LayGownTuning(Quantities):
         "measured: 0.04 to 0.11 m of 15 gowns whose first sleeve went on, -0.07, -0.02 and 0.00 m of the three whose "
         "near panel was tucked in (120, 124, 129)",
     )
-    times_laid: int = quantity(2, "1", "at most", "choice: each takes 50 s; a second time it lies as the first")
     neckline: NecklineTuning = field(default_factory=NecklineTuning)
     across: DrawAcrossTuning = field(default_factory=DrawAcrossTuning)
     leave: LeaveGownTuning = field(default_factory=LeaveGownTuning)
@@ -90,7 +83,9 @@ class LayGown(Skill):
     """Slides along the bed towards the head while the hands come down, then lets go and withdraws upwards.
 
     The gown is between both hands, its outside towards the robot.  One that was taken askew, with more of it on one
-    side, is laid nearer to the other.
+    side, is laid nearer to the other.  Where the back panel on the robot's side has come to lie under the front, or
+    folded over it, its sleeve does not stand; held still, the gown is then taken up and laid once more, the near end
+    lower and behind, so that the bed draws that panel outwards.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
@@ -108,11 +103,10 @@ class LayGown(Skill):
             with suppress(MotionError):  # the next step may have a way
                 yield from neckline.to(tuning.start_y, tuning.start_height, share)
         yield from self._lay_down(neckline)
-        for _ in range(1, tuning.times_laid):
-            if (yield from self._near_stands()):
-                break
-            self.note("lays it once more, its near panel opened")
-            yield from self._open_near_panel(neckline)
+        if not (yield from self._near_stands()):
+            self.note("lays it once more, the near end lower")
+            yield from self._take_up(neckline)
+            neckline.lower = NEAR_HAND
             yield from self._lay_down(neckline)
         yield from leave_gown(self, tuning.leave)
 
@@ -145,28 +139,14 @@ class LayGown(Skill):
             return True
         return float(seen.cuff_from_armhole_in_map @ UP) >= self.tuning.near_stands
 
-    def _open_near_panel(self, neckline: HeldNeckline) -> Iterator[None]:
-        """Take the gown up again, and draw it over the bed from its foot with the near end lower, and behind.
-
-        The panel beside it, tucked in under the front or folded over it, goes outwards, and stays there as the gown is
-        laid once more.
-        """
-        tuning = self.tuning
-        back = ((tuning.end_y, tuning.descent[1][1]), *tuning.descent[1::-1], (tuning.start_y, tuning.start_height))
-        yield from self._draw(neckline, back)
-        neckline.lower = NEAR_HAND
-        along = ((tuning.start_y, tuning.start_height), *tuning.opened_along)
-        yield from self._draw(neckline, (*along, (along[-1][0], tuning.start_height), along[0]))
-        neckline.lower = FAR_HAND
-
-    def _draw(self, neckline: HeldNeckline, way: Sequence[tuple[float, float]]) -> Iterator[None]:
-        """Bring the neckline along a way of places y and heights [m], up or down first at each of them."""
-        y = way[0][0]
-        for to_y, z in way:
+    def _take_up(self, neckline: HeldNeckline) -> Iterator[None]:
+        """Back to above the feet, the way it came: up first at each place, so that nothing is drawn after the hem."""
+        tuning, y = self.tuning, self.tuning.end_y
+        heights = (tuning.descent[1][1], tuning.descent[0][1], tuning.start_height)
+        for to_y, z in zip((tuning.descent[1][0], tuning.descent[0][0], tuning.start_y), heights, strict=True):
             yield from neckline.to(y, z)
-            if to_y != y:
-                yield from drive_to(self, self._base_for(to_y), speed=self.tuning.base_speed, straight=True)
-                y = to_y
+            yield from drive_to(self, self._base_for(to_y), speed=tuning.base_speed, straight=True)
+            y = to_y
 
     def _base_for(self, y: float) -> np.ndarray:
         """Base pose (3,) in the map from which the hands hold the neckline at `y` [m, m, rad]."""

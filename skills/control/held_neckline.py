@@ -45,7 +45,7 @@ class NecklineTuning(Quantities):
         0.30,
         "m",
         "nearer to the feet, of the near end where that is the one that hangs lower",
-        "choice: drawn towards the head, the panel beside it goes outwards, as the sheet's lower end trails",
+        "choice: the panel beside it trails outwards as the neckline is drawn towards the head",
     )
     level_from: float = quantity(
         0.83,
