@@ -71,7 +71,14 @@ def worn_already(arm: Scope) -> CheckSleeve:
     return CheckSleeve("worn already", arm, must_show=True)
 
 
-def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, name: str | None = None) -> Behaviour:
+def dress_arm(
+    context: Context,
+    side: Side,
+    sleeve: SleeveTuning,
+    *,
+    name: str | None = None,
+    attempts: int = DRESSING.arm_attempts,
+) -> Behaviour:
     """One arm into its `sleeve`, from beside the bed; its leaves are called by the arm, or by `name`."""
     arm = arm_scope(context, name or f"{side} arm", side)
 
@@ -141,7 +148,7 @@ def dress_arm(context: Context, side: Side, sleeve: SleeveTuning, *, name: str |
         **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
     }
-    return RecoverBy(f"dress the {side} arm", once, again, attempts=DRESSING.arm_attempts)
+    return RecoverBy(f"dress the {side} arm", once, again, attempts=attempts)
 
 
 def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:

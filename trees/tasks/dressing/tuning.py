@@ -151,6 +151,9 @@ class DressingTuning(Quantities):
     arm_attempts: int = quantity(
         6, "1", "at one arm, the first one included", "choice: the stage's time ends them; a missed grasp costs 20 s"
     )
+    first_arm_attempts: int = quantity(
+        3, "1", "at the right arm, before the left one is dressed first", "choice: as often as one may fail alike"
+    )
     first_sleeve_up: float = quantity(
         0.45,
         "1",
