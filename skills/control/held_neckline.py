@@ -107,8 +107,9 @@ class HeldNeckline:
         drop = z - min(z, max(z - tuning.lower_by, tuning.level_from))
         behind = tuning.behind * drop / tuning.lower_by if self.lower == NEAR_HAND else 0.0
         half = math.sqrt(max(self.apart**2 - drop**2 - behind**2, 0.0)) / 2
+        ends: dict[Side, float] = {NEAR_HAND: 1.0, FAR_HAND: -1.0}
         goals: dict[Side, np.ndarray] = {}
-        for side, sign in ((NEAR_HAND, 1.0), (FAR_HAND, -1.0)):
+        for side, sign in ends.items():
             pose = hand_now(self.skill, side)
             across = max(self.middle, tuning.min_near_x - half) + sign * half
             there = np.array((across, y + sign * behind / 2, z - (drop if side == self.lower else 0.0)))
