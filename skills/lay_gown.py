@@ -142,8 +142,7 @@ class LayGown(Skill):
     def _take_up(self, neckline: HeldNeckline) -> Iterator[None]:
         """Back to above the feet, the way it came: up first at each place, so that nothing is drawn after the hem."""
         tuning, y = self.tuning, self.tuning.end_y
-        heights = (tuning.descent[1][1], tuning.descent[0][1], tuning.start_height)
-        for to_y, z in zip((tuning.descent[1][0], tuning.descent[0][0], tuning.start_y), heights, strict=True):
+        for to_y, z in (tuning.descent[1], tuning.descent[0], (tuning.start_y, tuning.start_height)):
             yield from neckline.to(y, z)
             yield from drive_to(self, self._base_for(to_y), speed=tuning.base_speed, straight=True)
             y = to_y
