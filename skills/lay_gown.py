@@ -11,8 +11,9 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SensorLost
+from .belief.lying_sleeves import lying_sleeves
 from .control.base import drive_to
-from .control.draw_across import DrawAcrossTuning, draw_across, see_askew
+from .control.draw_across import DrawAcrossTuning, draw_across
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.held_neckline import NEAR_HAND, NEAR_SLEEVE, HeldNeckline, NecklineTuning
@@ -97,7 +98,6 @@ class LayGown(Skill):
         tuning = self.tuning
         self.note("lays the gown on the person")
         neckline = HeldNeckline(self, self.width, tuning.middle_x, tuning.neckline)
-        yield from see_askew(neckline, tuning.across)
         yield from drive_to(self, self._base_for(tuning.start_y), speed=tuning.approach_speed)
         for share in tuning.start_shares:
             with suppress(MotionError):  # the next step may have a way
@@ -108,6 +108,7 @@ class LayGown(Skill):
             yield from self._take_up(neckline)
             neckline.lower = NEAR_HAND
             yield from self._lay_down(neckline)
+            yield from self._near_stands()
         yield from leave_gown(self, tuning.leave)
 
     def _lay_down(self, neckline: HeldNeckline) -> Iterator[None]:
@@ -129,15 +130,21 @@ class LayGown(Skill):
         yield from self._lower(neckline, tuning.end_y, tuning.end_heights)
 
     def _near_stands(self) -> Generator[None, None, bool]:
-        """Look whether the near sleeve stands on the gown, its cuff above its armhole; one that does not show may."""
+        """Look whether the near sleeve stands on the gown, its cuff above its armhole.
+
+        It is remembered, for whoever chooses which arm comes first.  One that does not show may stand, unless it was
+        seen not to before it was laid once more.
+        """
+        lying = lying_sleeves(self.context)
         yield from look_towards(self, hand_now(self, NEAR_HAND)[:3, 3])
-        try:
+        with suppress(PerceptionFailure, SensorLost):
             seen = self.context.senses.sleeve_heading(
                 self.world.look("head"), side=NEAR_SLEEVE, near_in_map=hand_now(self, NEAR_HAND)[:3, 3]
             )
-        except (PerceptionFailure, SensorLost):
-            return True
-        return float(seen.cuff_from_armhole_in_map @ UP) >= self.tuning.near_stands
+            lying.discard(NEAR_SLEEVE)
+            if float(seen.cuff_from_armhole_in_map @ UP) < self.tuning.near_stands:
+                lying.add(NEAR_SLEEVE)
+        return NEAR_SLEEVE not in lying
 
     def _take_up(self, neckline: HeldNeckline) -> Iterator[None]:
         """Back to above the feet, the way it came: up first at each place, so that nothing is drawn after the hem."""

@@ -1,4 +1,4 @@
-"""See that a gown was taken askew, as it hangs between the hands and once it is on the bed, and lay it even."""
+"""See that a gown was taken askew, and lay it even."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 
 from ...perception.errors import PerceptionFailure
 from ...sim.quantity import Quantities, quantity
-from ...sim.world import SIDES, SensorLost, Side
+from ...sim.world import SIDES, SensorLost
 from ..motion.errors import MotionError
 from .hands import cloth_load, hand_now
 from .head import look_towards
-from .held_neckline import FAR_HAND, FAR_SLEEVE, NEAR_HAND, NEAR_SLEEVE, HeldNeckline
+from .held_neckline import NEAR_HAND, NEAR_SLEEVE, HeldNeckline
 
 
 @dataclass(frozen=True, kw_only=True)
 class DrawAcrossTuning(Quantities):
-    """When a gown hangs or lies askew, and how far it is drawn."""
+    """When a gown lies askew, and how far it is drawn."""
 
     overhang: float = quantity(
         0.04,
@@ -39,23 +39,6 @@ class DrawAcrossTuning(Quantities):
         "by which the far side is longer before the gown is drawn across",
         "choice: less is within the error of what is seen",
     )
-    hangs_low: float = quantity(
-        0.22,
-        "m",
-        "below its hand, from which an armhole of the hanging gown is that of an end that was taken too far out",
-        "measured: 0.25 to 0.30 m at one hand of four gowns, which came to lie off the hands' middle, by 0.09 and 0.13 "
-        "m to the other side where it was the near hand (135, 193), 0.03 and 0.09 m where it was the far one (188, "
-        "178); 0.06 to 0.16 m at all other hands (13 gowns, of which two lay 0.11 and 0.13 m off)",
-    )
-    hanging_shift: float = quantity(
-        0.06,
-        "m",
-        "of the hands to that side",
-        "measured: by 0.066 m one came to lie even, by 0.12 m one 0.12 m off to the other side (193, 135)",
-    )
-    by_hand: float = quantity(
-        0.45, "m", "from a hand to the middle of the armhole below it, at most", "choice: more is another one"
-    )
     max_shift: float = quantity(0.12, "m", "of the hands towards the near side", "choice: within the arms' reach")
     slack_load: float = quantity(
         0.5, "N", "pull of the neckline on a hand below which it is slack", "choice: above the noise"
@@ -69,28 +52,6 @@ class DrawAcrossTuning(Quantities):
     max_narrowings: int = quantity(
         5, "1", "times that they do so", "choice: a gown that still pulls then is let go of as it is"
     )
-
-
-def see_askew(neckline: HeldNeckline, tuning: DrawAcrossTuning) -> Iterator[None]:
-    """Look at both armholes of a gown that hangs between the hands; one that hangs low is laid farther out.
-
-    A neckline that was taken too far out at one end lies off the hands' middle, over the edge of the bed on the other
-    side: the first sleeve of one did not reach the person's hand (193).
-
-    Args:
-        neckline: in both hands; its middle on the bed is moved.
-        tuning: when, and how far.
-    """
-    skill = neckline.skill
-    near, far = (hand_now(skill, hand)[:3, 3] for hand in (NEAR_HAND, FAR_HAND))
-    yield from look_towards(skill, (near + far) / 2)
-    sleeves: dict[Side, tuple[np.ndarray, float]] = {NEAR_SLEEVE: (near, 1.0), FAR_SLEEVE: (far, -1.0)}
-    for side, (hand, outwards) in sleeves.items():
-        with suppress(PerceptionFailure, SensorLost):
-            seen = skill.context.senses.sleeve_opening(skill.world.look("head"), side=side, near_in_map=hand)
-            place = np.median(seen.armhole_points_in_map, axis=0)
-            if hand[2] - place[2] > tuning.hangs_low and np.linalg.norm(place - hand) < tuning.by_hand:
-                neckline.middle += outwards * tuning.hanging_shift
 
 
 def draw_across(neckline: HeldNeckline, y: float, z: float, tuning: DrawAcrossTuning) -> Iterator[None]:

@@ -20,7 +20,6 @@ from .hands import Way, collision_checker, hand_now, move_hands
 NEAR_HAND: Side = "left"  # the hand nearer to the robot's edge of the bed
 FAR_HAND: Side = "right"
 NEAR_SLEEVE: Side = "right"  # the wearer's side of the sleeve that the near hand holds
-FAR_SLEEVE: Side = "left"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from caretree.sim.robot import model
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
+from caretree.skills.belief.lying_sleeves import lying_sleeves
 from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
 from caretree.skills.lay_gown import LayGown
@@ -37,7 +38,7 @@ def heading(up):
     return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=np.array((0.0, 0.0, up)))
 
 
-def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN):
+def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN, skills=None):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
     room.waypoints["start"] = START
@@ -45,6 +46,8 @@ def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, sta
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen, sleeve_heading=stands))
     skill = LayGown("lay", context, width=width)
+    if skills is not None:
+        skills.append(skill)
     places = []
     for _ in range(9000):
         context.lease.advance()
@@ -70,22 +73,6 @@ def test_a_gown_that_is_longer_on_the_far_side_is_drawn_across(askew, shift):
     near, far = let_go_at(armhole(STRAIGHT_AT + askew))
     assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
     assert near - far == pytest.approx(WIDTH, abs=0.01)
-
-
-@pytest.mark.parametrize(
-    ("near_below", "far_below", "shift"), [(0.12, 0.14, 0.0), (0.30, 0.14, 0.06), (0.12, 0.25, -0.06), (0.3, 0.3, 0.0)]
-)
-def test_a_gown_that_was_taken_too_far_out_at_one_end_is_laid_farther_to_that_side(near_below, far_below, shift):
-    below = [near_below, far_below]
-
-    def under_its_hand(frame, *, side, near_in_map):
-        if not below:
-            raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")  # on the bed
-        points = np.tile(near_in_map - (0.0, 0.0, below.pop(0)), (5, 1))
-        return replace(laid_strap(side), armhole_points_in_map=points)
-
-    near, far = let_go_at(under_its_hand)
-    assert (near + far) / 2 == pytest.approx(shift, abs=0.01)
 
 
 def test_the_ends_of_the_neckline_are_drawn_low_along_the_bed_and_down_before_they_are_let_go_of():
@@ -149,6 +136,21 @@ def test_one_whose_near_sleeve_is_tucked_in_is_drawn_over_the_bed_with_its_near_
     deepest = int(np.argmax(far[:, 1] - near[:, 1]))
     assert far[deepest, 1] - near[deepest, 1] == pytest.approx(0.45, abs=0.02)
     assert near[deepest, 0] - far[deepest, 0] == pytest.approx(0.30, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("stands", "lying"),
+    [
+        (HIDDEN, set()),
+        ([heading(-0.02), heading(0.06)], set()),
+        ([heading(-0.02), HIDDEN], {"right"}),
+        (heading(-0.02), {"right"}),
+    ],
+)
+def test_it_is_remembered_whether_the_near_sleeve_stands(stands, lying):
+    skills = []
+    let_go_at(armhole(STRAIGHT_AT), stands=stands, skills=skills)
+    assert lying_sleeves(skills[0].context) == lying
 
 
 def test_one_that_is_tucked_in_again_is_let_go_of():

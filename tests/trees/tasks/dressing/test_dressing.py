@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills import CarrySleeve, CheckSleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat, StretchNeckline
+from caretree.skills.belief.lying_sleeves import lying_sleeves
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
@@ -114,7 +115,10 @@ def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_
     assert all(isinstance(branch.children[-1], Retreat) for branch in safe.children[3:]), "no arm is owed at any price"
 
 
-def test_the_left_arm_is_dressed_first_where_the_right_one_does_not_come_into_its_sleeve(monkeypatch):
+@pytest.mark.parametrize(("lying", "tries"), [(set(), 3), ({"left"}, 3), ({"right"}, 0)])
+def test_the_left_arm_is_dressed_first_where_the_right_sleeve_lies_or_its_arm_does_not_come_in(
+    monkeypatch, lying, tries
+):
     present, check = PresentSleeve.steps, CheckSleeve.steps
 
     def caught(self):
@@ -137,9 +141,10 @@ def test_the_left_arm_is_dressed_first_where_the_right_one_does_not_come_into_it
 
     world, senses = task.scripted(1)
     run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    lying_sleeves(run.context).update(lying)
     assert run.run().outcome == "success"
     lifts = [name for name in done if name.endswith("/lift")]
-    assert lifts == [*["right arm/lift"] * 3, "left 2nd/lift", "right 2nd/lift"]
+    assert lifts == [*["right arm/lift"] * tries, "left 2nd/lift", "right 2nd/lift"]
     assert done.index("front/draw flat") > done.index("right 2nd/pull up")
 
 
