@@ -39,7 +39,7 @@ from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy
 from .check_over_hand import CheckOverHand
-from .draw_flat import DrawFlat
+from .draw_flat import FLAT, DrawFlat, DrawFlatTuning
 from .patience import FOR_A_MOMENT, patient, sight_again, unhurried
 from .take_down import fingers_closed
 from .tuning import DRESSING, SECOND_SLEEVE, SleeveTuning
@@ -375,9 +375,9 @@ def carried_across(name: str, scope: Scope, side: Side, *, own_side: bool = Fals
     return sequence(f"{scope.prefix}{name} to its side", patient(scope, across), back_off(f"{clear} {name}", scope))
 
 
-def flat(front: Scope) -> Behaviour:
+def flat(front: Scope, tuning: DrawFlatTuning = FLAT) -> Behaviour:
     """From beside an arm, draw folds out of the gown's front; where it cannot be done, the rest may do."""
-    draw = DrawFlat("draw flat", front, hand=front["pulling"])
+    draw = DrawFlat("draw flat", front, hand=front["pulling"], tuning=tuning)
     drawn = sequence(f"{front.prefix}draw it flat", draw, back_off("off the front", front))
     return fallback(f"{front.prefix}no folds", patient(front, drawn), back_off("leave the front", front))
 

@@ -30,17 +30,17 @@ from .arm import (
     not_slipped,
     worn_already,
 )
+from .draw_flat import NEARER_THE_CHEST
 from .tuning import DRESSING, FIRST_SLEEVE, SECOND_SLEEVE
 
 
 def dress(context: Context) -> Stage:
     """The stage `dress`."""
-    bed, front = Scope(context, "bed"), arm_scope(context, "front", "left")
+    bed = Scope(context, "bed")
     return timed_stage(
         "dress",
         Retreat("bring the arms back", bed, hand_distance=DRESSING.arms_back),
-        fallback("both arms dressed", right_then_left(context, bed), left_then_right(context, front)),
-        flat(front),
+        fallback("both arms dressed", right_then_left(context, bed), left_then_right(context)),
         seconds=DRESSING.dress_timeout,
     )
 
@@ -62,6 +62,7 @@ def right_then_left(context: Context, bed: Scope) -> Behaviour:
         Navigate("go round to the left side", bed, goal="bed_left"),
         at_hand(arm_scope(context, "second sleeve", "left")),
         dress_arm(context, "left", SECOND_SLEEVE),
+        flat(arm_scope(context, "front", "left")),
     )
 
 
@@ -74,7 +75,7 @@ def right_sleeve_stands(context: Context) -> bool:
     return "right" not in lying_sleeves(context)
 
 
-def left_then_right(context: Context, front: Scope) -> Behaviour:
+def left_then_right(context: Context) -> Behaviour:
     """Put down what is held at either arm, and dress the left arm first, or the one that is not in its sleeve yet.
 
     A gown that hangs over the far edge stops 0.2 to 0.3 m short of the right hand, six times alike (126, 129).
@@ -88,7 +89,7 @@ def left_then_right(context: Context, front: Scope) -> Behaviour:
         "left, then right",
         *(node for side in SIDES[::-1] for node in freed(side)),
         on_their_arms(context, "yet", "2nd"),
-        Navigate("go where it is drawn flat", front, goal="bed_left"),
+        flat(arm_scope(context, "its front", "right"), NEARER_THE_CHEST),
     )
 
 

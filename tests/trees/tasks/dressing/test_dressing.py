@@ -145,7 +145,8 @@ def test_the_left_arm_is_dressed_first_where_the_right_sleeve_lies_or_its_arm_do
     assert run.run().outcome == "success"
     lifts = [name for name in done if name.endswith("/lift")]
     assert lifts == [*["right arm/lift"] * tries, "left 2nd/lift", "right 2nd/lift"]
-    assert done.index("front/draw flat") > done.index("right 2nd/pull up")
+    assert done.index("its front/draw flat") > done.index("right 2nd/pull up")
+    assert "front/draw flat" not in done, "from the side of the arm that came last"
 
 
 def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
