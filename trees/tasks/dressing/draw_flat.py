@@ -21,7 +21,7 @@ from ....skills.control.head import look_towards
 from ....skills.control.take_from_above import FromAbove, take_from_above, within_reach
 from ....skills.control.withdraw import withdraw
 from ....skills.core.ports import Input
-from ....skills.core.reasons import Reason
+from ....skills.core.reasons import Reason, SkillFailure
 from ....skills.core.skill import Skill
 from ....skills.core.tries import Tries
 from ....skills.geometry.arm_path import UP
@@ -52,6 +52,9 @@ class DrawFlatTuning(Quantities):
     stand: BaseTuning = field(default_factory=lambda: BaseTuning(ease=(0.82, 0.22)))
     # twice as fast, the hand, which may come down beside the leg, met it with 113 N, not 88 N (147)
     grasp: FromAbove = field(default_factory=lambda: FromAbove(speed=0.1))
+    attempts: int = quantity(
+        2, "1", "at taking the cloth, each elsewhere", "choice: a hand that missed it once drew no fold out (135)"
+    )
     lift: float = quantity(0.08, "m", "of the cloth before it is drawn", "choice: along the body it would slip back")
     laid_height: float = quantity(0.02, "m", "of the hand over where it took it", "choice: clear of the leg")
     laying_speed: float = quantity(0.05, "m/s", "of the hand on its way down", "choice: it may meet the leg")
@@ -63,7 +66,7 @@ FLAT = DrawFlatTuning()
 # Where the right arm is dressed last, the fold runs from its shoulder and lies higher.  Taken there, of 19 and 30 % of
 # the chest under three layers 2 and 10 % are left (135, 193); drawn as usual from there 14 % of 19, and taken above the
 # thigh, on either side, drawn as usual or by 0.10 and 0.15 m, 16 to 19 % of 19, 27 and 28 % of 30.
-NEARER_THE_CHEST = DrawFlatTuning(places=((0.20, 0.50), (0.10, 0.50)), way=(0.25, 0.10))
+NEARER_THE_CHEST = DrawFlatTuning(places=((0.20, 0.50), (0.10, 0.50), (0.20, 0.60)), way=(0.25, 0.10))
 
 
 class DrawFlat(Skill):
@@ -90,21 +93,29 @@ class DrawFlat(Skill):
     )
 
     def steps(self) -> Iterator[None]:
-        """Look, stand near, take, lift, draw, lay down, let go."""
+        """Look, stand near, take, lift, draw, lay down, let go; cloth that was missed is taken at the next place."""
         self.note("looks at the front")
-        out = outwards(self.side)
-        place = yield from self._place(out)
-        yield from while_person_rests(self, self._draw(place, out))
+        out, places = outwards(self.side), self.tuning.places
+        for left in reversed(range(self.tuning.attempts)):
+            place, places = yield from self._place(out, places)
+            try:
+                yield from while_person_rests(self, self._draw(place, out))
+                return
+            except SkillFailure as failure:
+                if failure.reason != Reason.GRASP_MISSED or not left or not places:
+                    raise
 
-    def _place(self, out: np.ndarray) -> Generator[None, None, GraspPoint]:
-        """Where to take the front; the robot stands where its hand gets there.
+    def _place(
+        self, out: np.ndarray, places: tuple[tuple[float, float], ...]
+    ) -> Generator[None, None, tuple[GraspPoint, tuple[tuple[float, float], ...]]]:
+        """Where to take the front, and the places after it; the robot stands where its hand gets there.
 
         Raises:
             PerceptionFailure: no collar is seen, or no cloth at the last of the places.
             Unreachable: there is cloth at the last of them, where the hand does not get to.
         """
         tuning, middle, tries = self.tuning, between_shoulders(self), Tries(PerceptionFailure, Unreachable)
-        for outward, footward in tuning.places:
+        for n, (outward, footward) in enumerate(places):
             aim = middle + outward * out - footward * HEADWARD
             yield from stand_for(self, self.hand, aim, tuning=tuning.stand)
             yield from look_towards(self, middle)
@@ -112,7 +123,7 @@ class DrawFlat(Skill):
                 away = aim - look_at_collar(self, middle).position_in_map
                 place = look_at_collar(self, middle, (float(away[0]), float(away[1])))
                 within_reach(self, self.hand, place, out, tuning.grasp)
-                return place
+                return place, places[n + 1 :]
         raise tries.last
 
     def _draw(self, place: GraspPoint, out: np.ndarray) -> Iterator[None]:

@@ -8,7 +8,7 @@ from caretree.sim.world import SIDES
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import PULLING, stance
 from caretree.skills.scripted.scripted_person import lying_posture
-from caretree.trees.tasks.dressing.draw_flat import DrawFlat
+from caretree.trees.tasks.dressing.draw_flat import FLAT, DrawFlat, DrawFlatTuning
 
 from ....skills.bench import LeafBench, beside_bed
 
@@ -18,7 +18,7 @@ HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "cloth")
 HELD = Estimate(stamp=0.0, confidence=0.9)
 
 
-def bench(side, *, hem=0.9, high=0.9, cloth=HELD):
+def bench(side, *, hem=0.9, high=0.9, cloth=HELD, tuning=FLAT):
     """Beside the bed on a side; the gown reaches down to `hem` [m], and is out of reach from `high` [m] on."""
 
     def collar(frame, *, near_in_map, away=(0.0, 0.0)):
@@ -34,7 +34,7 @@ def bench(side, *, hem=0.9, high=0.9, cloth=HELD):
         )
 
     return LeafBench(
-        lambda context: DrawFlat("draw flat", context, side=side, hand=PULLING[side]),
+        lambda context: DrawFlat("draw flat", context, side=side, hand=PULLING[side], tuning=tuning),
         beside_bed(
             stand=stance(side, "shoulder"),
             collar_middle=collar,
@@ -74,7 +74,26 @@ def test_a_front_that_does_not_show_is_left_alone():
     assert run.openings(PULLING["left"]).min() > 0.03
 
 
-def test_a_hand_that_closed_on_nothing_opens_again():
+def test_a_hand_that_closed_on_nothing_opens_again_and_takes_it_at_the_next_place_once():
     run = bench("left", cloth=HIDDEN)
     assert run.ended() == Reason.GRASP_MISSED
     assert run.seen[-1].gripper_opening.min() > 0.03
+    assert taken_at(run) == pytest.approx([0.80, 0.65], abs=0.03)
+
+    run = bench("left", cloth=[HIDDEN, HELD])
+    assert run.ended() is None
+    assert taken_at(run) == pytest.approx([0.80, 0.65], abs=0.03)
+
+
+def test_one_that_was_missed_at_the_only_place_is_left():
+    run = bench("left", cloth=HIDDEN, tuning=DrawFlatTuning(places=((0.20, 0.65),)))
+    assert run.ended() == Reason.GRASP_MISSED
+    assert len(taken_at(run)) == 1
+
+
+def taken_at(run):
+    """How far footward of the shoulders the fingers closed, each time [m]."""
+    hand = PULLING["left"]
+    shut = run.openings(hand) < 0.005
+    first = shut & ~np.roll(shut, 1)
+    return list(run.way(hand)[first][:, 1] - MIDDLE[1])
