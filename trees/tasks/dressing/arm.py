@@ -78,8 +78,12 @@ def dress_arm(
     *,
     name: str | None = None,
     attempts: int = DRESSING.arm_attempts,
+    worth: Callable[[], Behaviour] | None = None,
 ) -> Behaviour:
-    """One arm into its `sleeve`, from beside the bed; its leaves are called by the arm, or by `name`."""
+    """One arm into its `sleeve`, from beside the bed; its leaves are called by the arm, or by `name`.
+
+    It is begun again where it is `worth` it, of which nobody is asked where the person has moved.
+    """
     arm = arm_scope(context, name or f"{side} arm", side)
 
     def grasp_again() -> Behaviour:
@@ -144,8 +148,13 @@ def dress_arm(
     once = sequence(
         f"{side} arm once", fallback(f"{side} hand inside", as_it_is, over_hand(arm, sleeve)), far, away, lies, inside
     )
+
+    def missed() -> Behaviour:
+        anew = begin_again(Scope(arm, "again"), laid_back)
+        return anew if worth is None else sequence(f"{side} arm worth another try", worth(), anew)
+
     again: dict[Reason, Callable[[], Behaviour]] = {
-        **dict.fromkeys(MISSES, lambda: begin_again(Scope(arm, "again"), laid_back)),
+        **dict.fromkeys(MISSES, missed),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
     }
     return RecoverBy(f"dress the {side} arm", once, again, attempts=attempts)
