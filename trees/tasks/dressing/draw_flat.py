@@ -66,7 +66,9 @@ FLAT = DrawFlatTuning()
 # Where the right arm is dressed last, the fold runs from its shoulder and lies higher.  Taken there, of 19 and 30 % of
 # the chest under three layers 2 and 10 % are left (135, 193); drawn as usual from there 14 % of 19, and taken above the
 # thigh, on either side, drawn as usual or by 0.10 and 0.15 m, 16 to 19 % of 19, 27 and 28 % of 30.
-NEARER_THE_CHEST = DrawFlatTuning(places=((0.20, 0.50), (0.10, 0.50), (0.20, 0.60)), way=(0.25, 0.10))
+NEARER_THE_CHEST = DrawFlatTuning(
+    places=((0.20, 0.50), (0.10, 0.50), (0.20, 0.60), (0.10, 0.60), (0.20, 0.65)), way=(0.25, 0.10)
+)
 
 
 class DrawFlat(Skill):
