@@ -98,6 +98,7 @@ class LayGown(Skill):
         tuning = self.tuning
         self.note("lays the gown on the person")
         neckline = HeldNeckline(self, self.width, tuning.middle_x, tuning.neckline)
+        lying_sleeves(self.context).clear()  # of a gown that was laid before
         yield from drive_to(self, self._base_for(tuning.start_y), speed=tuning.approach_speed)
         for share in tuning.start_shares:
             with suppress(MotionError):  # the next step may have a way
@@ -132,7 +133,7 @@ class LayGown(Skill):
     def _near_stands(self) -> Generator[None, None, bool]:
         """Look whether the near sleeve stands on the gown, its cuff above its armhole.
 
-        It is remembered, for whoever chooses which arm comes first.  One that does not show may stand, unless it was
+        It is remembered, for whoever dresses the arms.  One that does not show may stand, unless it was
         seen not to before it was laid once more.
         """
         lying = lying_sleeves(self.context)

@@ -1,4 +1,4 @@
-"""Which sleeves of a gown that was laid on the person do not stand: their arms are not dressed first."""
+"""Which sleeves of a gown that was laid on the person do not stand: such a one goes on at the first try, or not yet."""
 
 from __future__ import annotations
 

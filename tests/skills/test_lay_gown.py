@@ -38,7 +38,7 @@ def heading(up):
     return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=np.array((0.0, 0.0, up)))
 
 
-def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN, skills=None):
+def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN, skills=None, lying=()):
     """The places x of both hands when the first one opens [m]; each is drawn inwards while they are farther apart."""
     room = scripted_room()
     room.waypoints["start"] = START
@@ -46,6 +46,7 @@ def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, sta
     guard = GuardedWorld(world)
     context = Context(world=guard, guard=guard, seed=1, senses=fake_senses(sleeve_opening=seen, sleeve_heading=stands))
     skill = LayGown("lay", context, width=width)
+    lying_sleeves(context).update(lying)
     if skills is not None:
         skills.append(skill)
     places = []
@@ -151,6 +152,12 @@ def test_it_is_remembered_whether_the_near_sleeve_stands(stands, lying):
     skills = []
     let_go_at(armhole(STRAIGHT_AT), stands=stands, skills=skills)
     assert lying_sleeves(skills[0].context) == lying
+
+
+def test_how_a_gown_lay_before_is_forgotten():
+    skills = []
+    let_go_at(armhole(STRAIGHT_AT), stands=HIDDEN, skills=skills, lying={"left", "right"})
+    assert lying_sleeves(skills[0].context) == set()
 
 
 def test_one_that_is_tucked_in_again_is_let_go_of():
