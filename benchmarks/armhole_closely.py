@@ -22,7 +22,7 @@ from caretree.perception.errors import PerceptionFailure
 from caretree.perception.estimates import SleeveProfile
 from caretree.perception.sleeve.sleeve_profile import reach_of, rim_features, sleeve_profile
 from caretree.sim.render.camera import CAMERA_VIEWS, camera_intrinsics, looking_at
-from caretree.sim.render.raster import add_sensor_noise
+from caretree.sim.render.camera_noise import add_sensor_noise
 from caretree.sim.render.recorded_room import RecordedRoom
 from caretree.sim.world import SIDES, Frame
 from caretree.skills.geometry.arm_path import UP

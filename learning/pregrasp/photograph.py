@@ -7,8 +7,9 @@ import numpy as np
 from ...sim.pregrasp.numbers import ACTION, VIEWS, ViewNumbers
 from ...sim.pregrasp.views import Views, camera_pose, lens
 from ...sim.render.camera import CLOTH_ID, Renderer
+from ...sim.render.camera_noise import add_sensor_noise
 from ...sim.render.looks import FABRICS
-from ...sim.render.raster import Light, add_sensor_noise
+from ...sim.render.raster import Light
 from ...sim.render.solids import box_mesh
 from ...sim.robot.hand_boxes import local_boxes
 from .hung_state import HungState

@@ -11,9 +11,9 @@ from ...sim.bullet.backdrop import Backdrop
 from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.render.appearance import Appearance
 from ...sim.render.camera import CAMERA_VIEWS, camera_intrinsics, looking_at
+from ...sim.render.camera_noise import add_sensor_noise
 from ...sim.render.diorama import along
 from ...sim.render.looks import PLAIN, PRINTED, RANDOM, TAPED, draw_look
-from ...sim.render.raster import add_sensor_noise
 from ...sim.render.solids import capsule_mesh
 from ...sim.robot.baxter import BAXTER
 from ...sim.scene.person_spec import Capsule, trunk_capsules

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import CaretreeError
-from .raster import DOTS, Light, Picture, Print, Triangles, add_sensor_noise, rasterise
+from .camera_noise import add_sensor_noise
+from .raster import DOTS, NEAR, Light, Picture, Print, Triangles, rasterise
 
 CLOTH_ID = 0
 FIELD_OF_VIEW = np.deg2rad(69.0)  # horizontal, of the hand cameras and the video
@@ -75,6 +76,8 @@ class Renderer:
         self._faces: dict[str, np.ndarray] = {}  # of each body alone
         self._poses: dict[str, np.ndarray] = {}
         self._slices: dict[str, slice] = {}
+        self._closed: list[bool] = []  # of each body
+        self._bounds: dict[str, np.ndarray] = {}  # (2, 3) of each body in its own frame [m]
         self._parts: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []  # vertices, faces, colours
         self._rigid: Triangles | None = None
         self._cloth: tuple[np.ndarray, ...] | None = None
@@ -97,7 +100,8 @@ class Renderer:
         vertices, faces = np.asarray(vertices, dtype=float), np.asarray(faces, dtype=np.int64)
         start = sum(len(v) for v, _, _ in self._parts)
         self._slices[name] = slice(start, start + len(vertices))
-        self._local[name], self._faces[name] = vertices, faces
+        self._local[name], self._faces[name], self._bounds[name] = vertices, faces, _bounds(vertices)
+        self._closed.append(_is_closed(vertices, faces))
         self._poses[name] = np.eye(4)
         self.ids[name] = len(self.ids) + 1
         colours = np.broadcast_to(np.asarray(colour, dtype=float), (len(faces), 3))
@@ -124,6 +128,7 @@ class Renderer:
         """
         if name in self._local:
             self._local[name] = np.asarray(vertices, dtype=float)
+            self._bounds[name] = _bounds(self._local[name])
         self.set_pose(name, self._poses.get(name, np.eye(4)))
 
     def remove_cloth(self) -> None:
@@ -191,7 +196,19 @@ class Renderer:
     ) -> Picture:
         """Draw a noiseless picture; default intrinsics are `intrinsics_of(size)`."""
         lens = intrinsics or intrinsics_of(size)
-        return rasterise(self.triangles(), self.light, lens, pose_camera_in_map, size, self.on_cloth)
+        corner = NEAR * math.hypot(1.0, lens[2] / lens[0], lens[3] / lens[1])  # of the near plane, from the camera [m]
+        hidden = self._far_sides_hidden(pose_camera_in_map[:3, 3], corner)
+        return rasterise(self.triangles(), self.light, lens, pose_camera_in_map, size, self.on_cloth, hidden)
+
+    def _far_sides_hidden(self, eye: np.ndarray, cut: float) -> np.ndarray:
+        """(bodies,) bool by id: closed ones farther from `eye` (3,) than `cut` [m], where no near plane opens them."""
+        hidden = np.zeros(len(self.ids) + 1, dtype=bool)
+        if self.ids:
+            poses, bounds = np.array(list(self._poses.values())), np.array(list(self._bounds.values()))
+            local = np.einsum("bji,bj->bi", poses[:, :3, :3], eye - poses[:, :3, 3])
+            away = local - np.clip(local, bounds[:, 0], bounds[:, 1])
+            hidden[1:] = self._closed & (np.einsum("bi,bi->b", away, away) > cut**2)
+        return hidden
 
     def photograph(
         self, camera: str, pose_camera_in_map: np.ndarray, rng: np.random.Generator
@@ -231,3 +248,19 @@ class Renderer:
     def _place(self, name: str, into: np.ndarray) -> None:
         pose = self._poses[name]
         into[self._slices[name]] = self._local[name] @ pose[:3, :3].T + pose[:3, 3]
+
+
+def _bounds(vertices: np.ndarray) -> np.ndarray:
+    """(2, 3) least and largest of vertices (n, 3) [m]."""
+    return np.array((vertices.min(axis=0), vertices.max(axis=0)))
+
+
+def _is_closed(vertices: np.ndarray, faces: np.ndarray) -> bool:
+    """Whether each edge of faces (m, 3) that wind one way is one of another face the other way.
+
+    Vertices (n, 3) at one place [m] are one: edges that are to be drawn sharp have their own on either side.
+    """
+    one = np.unique(vertices.round(6), axis=0, return_inverse=True)[1].ravel()[faces]
+    edges = np.concatenate((one[:, :2], one[:, 1:], one[:, ::-2]))
+    there, back = (np.sort(edges @ np.array(code)) for code in ((len(vertices), 1), (1, len(vertices))))
+    return np.array_equal(there, back)

@@ -128,7 +128,7 @@ def _vertex_light(vertices, faces, lamp, ambient, intensity):
 def _clip_near(points, uv, light, faces, f, shade, near, closed, corner):
     """Clip face `f` against the near plane into `corner`; returns how many corners it has then: 0, 3 or 4."""
     count = 0
-    if closed and shade == 1:  # the far side of a closed body
+    if closed and shade == 1:  # the far side of a closed body: what is in front of it hides it
         return count
     for k in range(3):
         i, j = faces[f, k], faces[f, (k + 1) % 3]
@@ -192,7 +192,7 @@ def _draw(
     height, width = depth.shape
     corner = np.empty((4, 6))  # x, y, z, u, v, light of the clipped polygon
     pixel = np.empty((4, 2))
-    for f in range(faces.shape[0]):
+    for f in range(faces.shape[0] - 1, -1, -1):  # rooms are added first: what stands in them hides them undrawn
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
         vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
@@ -202,7 +202,7 @@ def _draw(
         shade = 0 if outside else 1
         norm = np.sqrt(nx * nx + ny * ny + nz * nz)
         distance = abs(towards) / (norm + 1e-15)  # from the camera to the plane of the face
-        count = _clip_near(points, uv, light, faces, f, shade, near, closed * ids[f], corner)
+        count = _clip_near(points, uv, light, faces, f, shade, near, closed[ids[f]], corner)
         for k in range(count):
             pixel[k, 0] = fx * corner[k, 0] / corner[k, 2] + cx
             pixel[k, 1] = fy * corner[k, 1] / corner[k, 2] + cy
@@ -257,7 +257,7 @@ def rasterise(
     pose_camera_in_map: np.ndarray,
     size: tuple[int, int],
     on_cloth: Print = DOTS,
-    closed: bool = False,
+    closed: bool | np.ndarray = False,
 ) -> Picture:
     """Draw `triangles` as a pinhole camera sees them.
 
@@ -268,10 +268,13 @@ def rasterise(
         pose_camera_in_map: (4, 4), optical frame: x right, y down, z forward.
         size: (width, height) [px].
         on_cloth: the print.
-        closed: all but body 0, the cloth, are closed bodies: their far sides need not be drawn.
+        closed: (bodies,) bool by id, those whose far sides nobody can see: they need not be drawn.  True for all but
+            body 0, the cloth.
     """
     width, height = size
     fx, fy, cx, cy = intrinsics
+    if isinstance(closed, bool):
+        closed = closed & (np.arange(triangles.ids.max(initial=0) + 1) > 0)
     vertices = np.ascontiguousarray(triangles.vertices, dtype=np.float64)
     faces = np.ascontiguousarray(triangles.faces, dtype=np.int64)
     rotation, origin = pose_camera_in_map[:3, :3], pose_camera_in_map[:3, 3]
@@ -311,28 +314,3 @@ def rasterise(
         cosine,
     )
     return Picture(rgb=rgb, depth=depth, ids=ids, cosine=cosine)
-
-
-def add_sensor_noise(
-    picture: Picture, rng: np.random.Generator, depth_sigma: float = 0.002, rgb_sigma: float = 2.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """What a consumer RGB-D camera would have delivered of `picture`.
-
-    Args:
-        picture: the noiseless picture.
-        rng: the only source of randomness.
-        depth_sigma: standard deviation of the depth at 1 m [m]; it grows with the square of the distance.
-        rgb_sigma: standard deviation of each colour channel, 0-255.
-
-    Returns:
-        rgb (H, W, 3) uint8 and depth (H, W) float32 [m], with holes (0) where the surface is seen at a
-        grazing angle.
-    """
-    shape = picture.depth.shape
-    noise = rng.standard_normal(shape, dtype=np.float32)
-    depth = picture.depth + depth_sigma * picture.depth**2 * noise
-    chance = np.clip((0.20 - picture.cosine) / 0.15, 0.0, 1.0)  # no return below 3 degrees, sure above 12
-    depth[(rng.random(shape, dtype=np.float32) < chance) | (picture.depth <= 0)] = 0
-    grain = rng.standard_normal((*shape, 3), dtype=np.float32) * rgb_sigma
-    rgb = np.clip(picture.rgb + grain, 0, 255).astype(np.uint8)
-    return rgb, depth.astype(np.float32)

@@ -128,14 +128,16 @@ def test_tape_that_hardly_shows_still_reaches_its_neighbours():
 
 def test_tape_that_is_folded_under_does_not_show(scenes):
     scene = scenes.lying(1)
-    middle = corner_places(scene).mean(axis=0)
-    frame = scene.frame()
-    whole = collar_middle(frame, middle)
-    points = points_in_map(frame)
-    under = np.abs(points[..., 0] - whole.position_in_map[0]) < 0.08
-    rest = collar_middle(replace(frame, depth=np.where(under, 0.0, frame.depth)), middle)
-    assert rest.confidence == pytest.approx(whole.confidence - 0.10 / GOWN.neckline_length, abs=0.05)
-    assert rest.position_in_map[0] == pytest.approx(whole.position_in_map[0], abs=0.03)
+    middle, aside = corner_places(scene).mean(axis=0), []
+    for seed in range(8):  # of the noise, with which what is left of the tape tells its middle by 0.01 m more or less
+        frame = scene.frame(seed)
+        whole = collar_middle(frame, middle)
+        points = points_in_map(frame)
+        under = np.abs(points[..., 0] - whole.position_in_map[0]) < 0.08
+        rest = collar_middle(replace(frame, depth=np.where(under, 0.0, frame.depth)), middle)
+        assert rest.confidence == pytest.approx(whole.confidence - 0.10 / GOWN.neckline_length, abs=0.05)
+        aside.append(rest.position_in_map[0] - whole.position_in_map[0])
+    assert np.mean(aside) == pytest.approx(0.0, abs=0.03)
 
 
 def test_no_neckline_far_from_the_person(scenes):

@@ -5,6 +5,7 @@ import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.render.appearance import draw_appearance, gown_colours
 from caretree.sim.render.camera import CAMERA_VIEWS, CLOTH_ID, Renderer, intrinsics_of, looking_at
+from caretree.sim.render.raster import rasterise
 from caretree.sim.render.solids import box_mesh, capsule_mesh, cylinder_mesh, join_meshes, sphere_mesh
 from caretree.sim.scene.gown import GOWNS, build_gown
 
@@ -57,6 +58,23 @@ def test_bodies_move_and_names_are_checked():
         renderer.set_pose("cube", pose)
     with pytest.raises(CaretreeError, match="already"):
         renderer.add_rigid("ball", *sphere_mesh((0, 0, 0), 0.1), (255, 0, 0))
+
+
+def test_far_sides_are_left_out_only_where_nobody_sees_them():
+    renderer = Renderer(draw_appearance(np.random.default_rng(0)).light)
+    sheet = np.array(((-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)), float)
+    renderer.add_rigid("ball", *sphere_mesh((0, 0, 1), 0.2), (255, 0, 0))
+    renderer.add_rigid("sheet", sheet, np.array(((0, 1, 2), (0, 2, 3))), (0, 255, 0))
+    size, lens = (64, 48), intrinsics_of((64, 48))
+    for away in (0.0, 0.15, 0.21, 0.24, 1.0):  # inside of the ball, cut open by the near plane, and outside
+        pose = looking_at(np.array((away, 0.0, 1.0)), np.array((-1.0, 0.0, 1.0)))
+        whole = rasterise(renderer.triangles(), renderer.light, lens, pose, size)
+        drawn = renderer.render(pose, size, lens)
+        assert (drawn.ids == renderer.ids["ball"]).any()
+        for picture in ("rgb", "depth", "ids", "cosine"):
+            assert (getattr(drawn, picture) == getattr(whole, picture)).all()
+    below = renderer.render(looking_at((0.0, 0.0, -1.0), (0.0, 0.0, 0.0)), size, lens)
+    assert below.ids[24, 32] == renderer.ids["sheet"]
 
 
 def test_cloth_moves_and_shows_two_sides():

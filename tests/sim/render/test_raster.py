@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from caretree.sim.render import raster
-from caretree.sim.render.raster import Light, Triangles, add_sensor_noise, rasterise
+from caretree.sim.render.raster import Light, Triangles, rasterise
 
 LIGHT = Light(direction_in_map=np.array((0.0, 0.0, -1.0)))
 INTRINSICS = (200.0, 200.0, 79.5, 59.5)
@@ -96,24 +96,6 @@ def test_print_shows_on_the_front_only():
     back = rasterise(quad(SQUARE, printed=True), LIGHT, INTRINSICS, np.eye(4), SIZE)
     assert len(np.unique(front.rgb[45:75, 45:115, 0])) == 2
     assert len(np.unique(back.rgb[45:75, 45:115, 1])) == 1
-
-
-def test_sensor_noise_has_the_promised_spread_and_holes():
-    picture = rasterise(quad([(x * 2, y * 2, 2.0) for x, y, _ in SQUARE]), LIGHT, INTRINSICS, np.eye(4), SIZE)
-    rgb, depth = add_sensor_noise(picture, np.random.default_rng(0))
-    seen = picture.depth > 0
-    assert (depth[~seen] == 0).all()
-    assert np.std(depth[seen] - 2.0) == pytest.approx(0.002 * 4, rel=0.1)
-    grazing = [(-0.5, 0.1, 0.5), (0.5, 0.1, 0.5), (0.5, 0.12, 5.0), (-0.5, 0.12, 5.0)]
-    picture = rasterise(quad(grazing), LIGHT, INTRINSICS, np.eye(4), SIZE)
-    far = picture.depth > 2.0
-    _, depth = add_sensor_noise(picture, np.random.default_rng(0))
-    assert far.any()
-    assert (depth[far] == 0).mean() > 0.9
-    again, _ = add_sensor_noise(picture, np.random.default_rng(5))
-    once, _ = add_sensor_noise(picture, np.random.default_rng(5))
-    assert (again == once).all()
-    assert rgb.dtype == np.uint8
 
 
 def any_triangles(rng, size):
