@@ -117,6 +117,7 @@ class WornSleeve(Estimate):
         cuff_at: the same of the cuff's.
         reach: how far up the upper arm the whole armhole is taken to be, 0 elbow to 1 shoulder: its hidden side too.
         round_arm: share of the directions off the arm's axis in which the cuff shows.
+        inside_out: share of the fabric between both bindings that shows the gown's inside; 0 where too little shows.
     """
 
     side: Side
@@ -124,6 +125,7 @@ class WornSleeve(Estimate):
     cuff_at: float
     reach: float
     round_arm: float
+    inside_out: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

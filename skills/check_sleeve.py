@@ -13,6 +13,7 @@ from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
 from .belief.close_look import SleeveSeen, sleeve_seen
 from .belief.person_tracking import watch_arm
+from .belief.pulled_sleeves import pull_loads
 from .core.ports import Input, Output
 from .core.reasons import Reason, SkillFailure
 from .core.skill import Skill
@@ -71,6 +72,32 @@ class CheckSleeveTuning(Quantities):
         "design: a cuff beside the arm lies within half of the directions off its axis.  Measured: 95 % of sleeves "
         "that sit do (four development seeds); from beside alone, 2 of 22 of them showed 0.42 (137, 128)",
     )
+    max_inside_out: float = quantity(
+        0.75,
+        "1",
+        "of the fabric between its bindings that shows the gown's inside, where one that was drawn up is on its arm",
+        "measured: of 159 told to be on their arms, drawn again from beside, 0.63 and less of 151 that are, 0.86 and "
+        "more of three of 8 that are not: the arm had come into a sleeve turned over from its wrong end, or beside it",
+    )
+    pulled_reach: float = quantity(
+        0.45,
+        "1",
+        "of the upper arm, where a sleeve that was drawn up has its armhole at least",
+        "measured: of 163 that were told to be on their arms (34 development seeds) 155 are at 0.52 and more; of the 8 "
+        "below five lay beside their arm or the wrong way round it, and three were at 0.23 of it at most",
+    )
+    free_load: float = quantity(
+        2.4,
+        "N",
+        "of a strap in the end of its way, below which what it drew up goes freely",
+        "measured: 1.5 to 2.1 N with no arm in the sleeve (138, 193), in 1 of 47 with one less than 2.6 N, 1.9 N",
+    )
+    free_reach: float = quantity(
+        0.65,
+        "1",
+        "of the upper arm, where such a sleeve has its armhole at least",
+        "measured: 0.52 and 0.59 with no arm in it (138, 193), 0.75 and more with one (0)",
+    )
     before_counts: float = quantity(
         0.7,
         "1",
@@ -110,6 +137,9 @@ class CheckSleeve(Skill):
         default=0.0,
         doc="in the place of all of these, where it was looked at closely; 0: this look alone tells",
     )
+    pulled = Input(
+        bool, default=False, doc="whether the sleeve was drawn up just now: how hard and how far tells, and its side"
+    )
     must_show = Input(bool, default=False, doc="whether one of which too little shows fails, as before a claim")
     tuning = Input(CheckSleeveTuning, default=CheckSleeveTuning(), doc="numbers of this skill")
     reach = Output(float, unit="1", doc="how far up the upper arm the armhole is seen; 0 where it does not show")
@@ -142,6 +172,8 @@ class CheckSleeve(Skill):
                 f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
                 f"{seen.round_arm:.0%} of the way round it",
             )
+        if self.pulled and seen.inside_out > self.tuning.max_inside_out:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"{seen.inside_out:.0%} of the sleeve shows the gown's inside")
         self._see_outer_side(arm, seen.armhole_at, seen.cuff_at)
         self._ask(*self._told(seen.reach, closely))
         self.reach = seen.reach if closely is None else closely.reach
@@ -153,10 +185,17 @@ class CheckSleeve(Skill):
             return closely.reach, self.min_closely
         if now < self.min_now:
             return now, self.min_now
+        if self.pulled:
+            return now, self._least_pulled()
         if self.seen_before > 0.0:
             counts = self.tuning.before_counts
             return counts * self.seen_before + (1.0 - counts) * now, self.min_together
         return now, self.min_reach
+
+    def _least_pulled(self) -> float:
+        """Where an armhole that was drawn up just now is at least, if there is an arm in it."""
+        load = pull_loads(self.context).get(self.side, np.inf)
+        return self.tuning.free_reach if load < self.tuning.free_load else self.tuning.pulled_reach
 
     def _ask(self, reach: float, least: float) -> None:
         """The armhole is as far up as is asked for.

@@ -14,6 +14,7 @@ from ..sim.world import SIDES, BaseVelocity, HandTwist, Observation
 from .belief.armhole_watch import ARMHOLE_WATCH, ArmholeWatch
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import careful, watch_arm
+from .belief.pulled_sleeves import pull_loads
 from .belief.strap_turn import turned_strap
 from .control.compliant_hold import ease_hold, while_holding
 from .control.hands import hand_now, move_hands, until_load
@@ -219,6 +220,7 @@ class PullAlongArm(Skill):
     def _pull(self) -> Iterator[None]:
         """Steer anew on every tick."""
         self.note(f"pulls the {self.grip.arm} sleeve up")
+        pull_loads(self.context).pop(self.grip.arm, None)
         arm = ArmPath.of(watch_arm(self, self.grip.arm, hold=self.hold))
         ahead = 0.5 * (arm.coordinate_of(hand_now(self, self.grip.hand)[:3, 3]) + self.grip_goal)
         yield from while_holding(self, self.hold, look_towards(self, arm.point(ahead)))
@@ -245,6 +247,8 @@ class PullAlongArm(Skill):
             yield
         if self.grip_goal > ELBOW:  # the pull ends on the forearm
             yield from self._see_arm_inside(pull.armhole)
+        else:
+            pull_loads(self.context)[self.grip.arm] = now.size
 
     def _observe(self, pull: _Pull) -> _Now:
         """Arm, hand and load of this tick; counts the way that the hand has come."""

@@ -12,7 +12,7 @@ from ..errors import PerceptionFailure, Problem
 from ..estimates import WornSleeve
 from ..image.surfaces import Surface
 from .armhole_reach import armhole_reach
-from .cuff_round_arm import share_round, tape_near
+from .cuff_round_arm import CuffTuning, share_round, tape_near
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +24,11 @@ class WornSleeveTuning(Quantities):
     )
     min_points: int = quantity(15, "1", "of either tape", "choice: fewer are noise")
     full_points: int = quantity(100, "1", "of the smaller one that make it certain", "choice: seen from close by")
+    fabric_near: float = quantity(
+        0.12, "m", "of fabric between both tapes from the arm's axis", "choice: a loose sleeve's, not the gown's front"
+    )
+    fabric_part: float = quantity(0.8, "1", "of the way between both that is looked at", "choice: clear of both tapes")
+    min_fabric: int = quantity(50, "1", "points of fabric that tell which side they show", "choice: fewer are noise")
 
 
 DEFAULT = WornSleeveTuning()
@@ -56,4 +61,16 @@ def worn_sleeve(frame: Frame, side: Side, arm_in_map: np.ndarray, tuning: WornSl
         cuff_at=cuff_at,
         reach=armhole_reach(armhole, cuff, arm_in_map, frame.pose_camera_in_map[:3, 3]),
         round_arm=share_round(cuff, line),
+        inside_out=_inside_out(frame, line, shoulder + np.outer((armhole_at, cuff_at), along), tuning),
     )
+
+
+def _inside_out(frame: Frame, line: np.ndarray, between: np.ndarray, tuning: WornSleeveTuning) -> float:
+    """Share of the fabric near a line (2, 3), between two places (2, 3) on it, that shows the gown's inside."""
+    way = between[1] - between[0]
+    counts = []
+    for surface in (Surface.OUTSIDE, Surface.INSIDE):
+        points = tape_near(frame, surface, line, CuffTuning(max_distance=tuning.fabric_near))
+        share = (points - between[0]) @ way / (way @ way)
+        counts.append(int((np.abs(share - 0.5) < 0.5 * tuning.fabric_part).sum()))
+    return counts[1] / sum(counts) if sum(counts) >= tuning.min_fabric else 0.0

@@ -39,6 +39,7 @@ from .sleep import Sleep
 TIME_STEP = 0.0025  # of the room [s]
 ROBOT_STEPS = 2  # room steps per robot step
 CONTROL_STEPS = 4  # room steps between two looks at the fingers
+LOAD_STEPS = 8  # room steps between two readings of what hangs on them: PyBullet takes 0.1 ms to say where a cloth is
 
 
 class CoupledRoom:
@@ -186,12 +187,12 @@ class CoupledRoom:
     def _update_fingers(self, reading: JointReading) -> None:
         """Let closed fingers take, opened fingers release, loads be felt."""
         squeeze = self._contact.squeeze(self._hands)
-        if self._fingers.holding():
+        if self._steps % LOAD_STEPS == 0 and self._fingers.holding():
             cloth = self._hook.holds or any(grip.kind == "cloth" for grip in self._grips)
             vertices = self._vertices_now() if cloth else self._sleep.vertices
             self._fingers.watch(self._cloth, vertices)
             held = self._fingers.held().get(self._cloth.body, ())
-            self._hook.watch(CONTROL_STEPS * TIME_STEP, held, vertices)
+            self._hook.watch(LOAD_STEPS * TIME_STEP, held, vertices)
         if self._fingers.meet(self._robot, reading, self._hands, squeeze, self._cloths, self._catches):
             self._wake()
 

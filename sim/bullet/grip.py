@@ -31,7 +31,7 @@ CLOSED = 0.010  # opening at which cloth is held [m]
 REOPENED = 0.020  # opening at which it is let go [m]
 FRICTION_CLOTH = 0.6  # rubber pads on cotton
 FRICTION_SKIN = 0.6  # rubber pads on vinyl skin
-SMOOTHING = 0.3  # share of a new load reading, taken every 10 ms
+SMOOTHING = 0.5  # share of a new load reading, taken every 20 ms
 CATCH = 0.020  # an arm whose axis is this near to the grip is centred by the closing fingers [m]
 STEP = 0.003  # a command to close by more is no step of a slow closing [m]
 TOUCH = 0.003  # fingers at most this much further apart than an arm is wide touch it [m]
@@ -250,7 +250,7 @@ class Grip:
         return self._cloth_load.copy() if self.kind == "cloth" else np.zeros(3)
 
     def watch(self, vertices: np.ndarray, force: float) -> None:
-        """Feel the load; lose the hold when it passes the pads' friction or the arm has slid out: each control step."""
+        """Feel the load; lose the hold when it passes the pads' friction or the arm has slid out: every 20 ms."""
         if self.kind == "cloth":
             self._cloth_load += SMOOTHING * (self.cloth.load(self._held, vertices) - self._cloth_load)
             if float(np.linalg.norm(self._cloth_load)) > 2 * FRICTION_CLOTH * force:

@@ -7,6 +7,7 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover, WornSleeve
 from caretree.skills.belief.close_look import CloseLook, SleeveSeen
+from caretree.skills.belief.pulled_sleeves import pull_loads
 from caretree.skills.check_sleeve import CheckSleeve
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import outwards
@@ -16,10 +17,9 @@ from py_trees.common import Status
 from .bench import LeafBench, beside_bed
 
 
-def worn(cuff_at=0.5, round_arm=0.7, reach=0.8):
-    return WornSleeve(
-        stamp=0.0, confidence=0.9, side="left", armhole_at=0.2, cuff_at=cuff_at, reach=reach, round_arm=round_arm
-    )
+def worn(cuff_at=0.5, reach=0.8, **seen):
+    shows = {"side": "left", "armhole_at": 0.2, "round_arm": 0.7, "inside_out": 0.1} | seen
+    return WornSleeve(stamp=0.0, confidence=0.9, cuff_at=cuff_at, reach=reach, **shows)
 
 
 HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
@@ -73,6 +73,40 @@ def test_two_looks_from_different_places_are_told_by_their_mean(before, now, sta
     skill = ran(worn(reach=now), min_reach=0.75, seen_before=before, min_together=0.71)
     assert skill.status == status
     assert (skill.reach == now) if status == Status.SUCCESS else (skill.failure.reason == Reason.SLEEVE_LOW)
+
+
+@pytest.mark.parametrize(
+    ("load", "reach", "status"),
+    [
+        (3.5, 0.52, Status.SUCCESS),
+        (3.5, 0.40, Status.FAILURE),  # caught, or beside the arm
+        (None, 0.52, Status.SUCCESS),  # the pull did not come to its end
+        (None, 0.40, Status.FAILURE),
+        (1.9, 0.59, Status.FAILURE),  # it came freely, and not far
+        (1.9, 0.75, Status.SUCCESS),
+    ],
+)
+def test_a_sleeve_that_was_drawn_up_is_where_a_pull_with_that_load_brings_it(load, reach, status):
+    def skill(context):
+        pull_loads(context).update({} if load is None else {"left": load})
+        return CheckSleeve("inside", context, side="left", pulled=True)
+
+    covered = Cover(stamp=0.0, confidence=1.0, share=1.0)
+    run = LeafBench(skill, beside_bed(worn_sleeve=worn(reach=reach), arm=lying_posture("left"), skin_cover=covered))
+    run.ended(seconds=1.0)
+    assert run.skill.status == status
+    assert status == Status.SUCCESS or run.skill.failure.reason == Reason.SLEEVE_LOW
+    assert ran(worn(reach=reach)).status == Status.SUCCESS, "of one that nobody has drawn up just now nothing is asked"
+
+
+@pytest.mark.parametrize(
+    ("inside_out", "pulled", "status"),
+    [(0.6, True, Status.SUCCESS), (0.9, True, Status.FAILURE), (0.9, False, Status.SUCCESS)],
+)
+def test_a_sleeve_that_was_drawn_up_and_shows_its_inside_has_no_arm_in_it(inside_out, pulled, status):
+    skill = ran(worn(inside_out=inside_out), pulled=pulled)
+    assert skill.status == status
+    assert status == Status.SUCCESS or skill.failure.reason == Reason.SLEEVE_MISSED
 
 
 def test_a_sleeve_that_does_not_show_counts_as_not_seen():

@@ -8,6 +8,7 @@ from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.estimates import Cover
 from caretree.sim.world import HandTwist
 from caretree.skills.belief.armhole_watch import ARMHOLE_WATCH
+from caretree.skills.belief.pulled_sleeves import pull_loads
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.hold import Hold
 from caretree.skills.geometry.stances import outwards
@@ -84,9 +85,14 @@ def test_a_sleeve_that_pulls_hard_by_the_shoulder_is_on_as_far_as_it_goes():
     hard = bench(load=6.5, begin=0.6, goal=-0.5)  # [N]
     assert hard.ended() is None
     assert coordinates(hard)[-1] == pytest.approx(0.3, abs=0.05)
+    assert pull_loads(hard.context) == {"right": pytest.approx(6.5, abs=0.5)}
     slides = bench(load=SLIDES, begin=0.6, goal=-0.5)
     assert slides.ended() is None
     assert coordinates(slides)[-1] < 0.0
+    assert pull_loads(slides.context) == {"right": pytest.approx(SLIDES, abs=0.5)}
+    on_the_forearm = bench(load=SLIDES)
+    assert on_the_forearm.ended() is None
+    assert pull_loads(on_the_forearm.context) == {}, "it did not come to the shoulder"
 
 
 @pytest.mark.parametrize(("load", "reason"), [(6.0, Reason.SLEEVE_CAUGHT), (4.0, Reason.MOTION_BLOCKED)])

@@ -10,6 +10,7 @@ from caretree.sim.world import Frame
 
 DOWN = np.array(((1.0, 0.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, -1.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
 MAGENTA, GREEN = (180, 40, 110), (40, 150, 80)
+BLUE, PALE = (100, 160, 220), (190, 200, 225)
 ARM = np.array(((-0.30, 0.0, 1.0), (0.0, 0.0, 1.0), (0.25, 0.0, 1.0), (0.40, 0.0, 1.0)))  # along the picture's rows
 
 
@@ -34,6 +35,19 @@ def picture(armhole, cuff, rows=(50, 70)):
 def test_bindings_along_the_upper_arm(armhole, cuff, places):
     seen = worn_sleeve(picture(armhole, cuff), "right", ARM)
     assert (seen.armhole_at, seen.cuff_at) == pytest.approx(places, abs=0.06)
+
+
+@pytest.mark.parametrize(("outside", "inside_out"), [(0, 1.0), (3, 0.25), (4, 0.0)])
+def test_fabric_between_the_bindings_tells_whether_it_shows_its_inside(outside, inside_out):
+    frame = picture((30, 34), (60, 64))
+    for n in range(4):  # stripes along the arm, of which so many show the outside
+        frame.rgb[52 + 4 * n : 56 + 4 * n, 34:60] = BLUE if n < outside else PALE
+    frame.rgb[60:100, 64:120] = PALE  # elsewhere it counts for nothing
+    assert worn_sleeve(frame, "right", ARM).inside_out == pytest.approx(inside_out, abs=0.05)
+
+
+def test_no_fabric_tells_nothing():
+    assert worn_sleeve(picture((30, 34), (60, 64)), "right", ARM).inside_out == 0.0
 
 
 def test_the_other_sleeve_does_not_count():

@@ -52,6 +52,7 @@ MISSES = (
     *FOR_A_MOMENT,
     Reason.SLEEVE_MISSED,
     Reason.SLEEVE_FOLDED,
+    Reason.SLEEVE_LOW,
     Reason.TIMEOUT,
     Reason.PERSON_MOVED,
 )
@@ -137,11 +138,12 @@ def dress_arm(
     )
     # seen to be beside its arm from where the robot drew back to, one that was on it was taken off again (195); from
     # beside the shoulder all of 161 that sat on their arms were told.  One that did not show at all lay beside its arm
-    # under a fold, and ten rounds of the last stage never saw it (185)
-    doubtful = (Reason.SLEEVE_MISSED, Reason.NOTHING_SEEN)
+    # under a fold, and ten rounds of the last stage never saw it (185); one that came up freely, and not far, had no
+    # arm in it (138, 193)
+    doubtful = (Reason.SLEEVE_MISSED, Reason.NOTHING_SEEN, Reason.SLEEVE_LOW)
     inside = RecoverBy(
         f"{side} arm inside its sleeve",
-        patient(arm, CheckSleeve("is inside", arm, must_show=True)),
+        patient(arm, CheckSleeve("is inside", arm, must_show=True, pulled=True)),
         dict.fromkeys(doubtful, lambda: sequence(f"{side} arm once more", *go_beside(Scope(arm, "surely"), side))),
     )
     lies = patient(arm, put_down("in the end", arm))
