@@ -130,12 +130,7 @@ def dress_arm(
     # an arm that is inside a sleeve that goes no farther is not begun again: the last stage draws it up (279)
     far = fallback(f"{side} sleeve as far as it goes", up, let_go(Scope(arm, "so far")))
     # a hand that met the arm as it drew back is no reason to take the sleeve off again (291)
-    on = Scope(arm, "on")
-    away = fallback(
-        f"{side} arm left alone",
-        back_off("back off", arm, DRESSING.back_off_distance),
-        back_off("back off", on, DRESSING.back_off_distance),
-    )
+    away = surely_back("back off", arm, DRESSING.back_off_distance)
     # seen to be beside its arm from where the robot drew back to, one that was on it was taken off again (195); from
     # beside the shoulder all of 161 that sat on their arms were told.  One that did not show at all lay beside its arm
     # under a fold, and ten rounds of the last stage never saw it (185); one that came up freely, and not far, had no
@@ -401,3 +396,9 @@ def grasp_worn(name: str, arm: Scope) -> GraspSleeve:
 def back_off(name: str, scope: Scope, distance: float = 0.0) -> Retreat:
     """Let go, draw back by `distance` [m], arms ready if a way to that posture is found."""
     return Retreat(name, scope, base_distance=distance, ready="if possible")
+
+
+def surely_back(name: str, scope: Scope, distance: float = 0.0) -> Behaviour:
+    """The same, and on, where a hand meets the person as it draws back: left low, it met the shoulder again (193)."""
+    here, on = (back_off(name, inner, distance) for inner in (scope, Scope(scope, "on")))
+    return fallback(f"{scope.prefix}{name}, surely", here, on)

@@ -26,7 +26,7 @@ from ....skills.spread import Spread
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Stage, timed_stage
-from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down
+from .arm import FROM_HEAD, arm_scope, back_off, flat, go_beside, not_slipped, put_down, surely_back
 from .check_collar import CheckCollar, CheckCollarTuning
 from .check_face import CheckFace
 from .check_worn import CheckWorn
@@ -155,7 +155,7 @@ def surely_up(context: Context, bed: Scope, side: Side) -> Behaviour:
 def drawn_alone(gown: Scope, side: Side) -> Behaviour:
     """Draw up one sleeve; where it gets no farther, it may do."""
     seat = (SeatSleeves("seat", gown, side=side), back_off("draw back from it", gown))
-    left = back_off("leave it as it is", gown)
+    left = surely_back("leave it as it is", gown)
     return fallback(f"{gown.prefix}as far as it goes", sequence(f"{gown.prefix}draw it up", *seat), left)
 
 
@@ -264,7 +264,7 @@ def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
     drawn = sequence(f"{gown.prefix}draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
-    return fallback(f"{gown.prefix}over the middle", drawn, back_off("leave it there", gown))
+    return fallback(f"{gown.prefix}over the middle", drawn, surely_back("leave it there", gown))
 
 
 def seated(bed: Scope) -> Behaviour:
@@ -273,7 +273,7 @@ def seated(bed: Scope) -> Behaviour:
     # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
     draw = SeatSleeves("seat", gown, up=DRESSING.armhole_closely)
     seat = (go_up(gown), over(gown), draw, back_off("clear the view", gown))
-    left = sequence("left as they are", back_off("leave them", gown), go_up(Scope(gown, "left")))
+    left = sequence("left as they are", surely_back("leave them", gown), go_up(Scope(gown, "left")))
     return fallback("as far as they go", sequence("draw them up", *seat), left)
 
 
@@ -297,7 +297,7 @@ def straight(gown: Scope, neat: CheckCollarTuning = NEAT) -> Behaviour:
 
     lies = sequence(f"{gown.prefix}lies", *closely(gown, "lies straight", neat))
     laid = RecoverBy(f"{gown.prefix}until it is straight", lies, {Reason.COLLAR_ASIDE: straighten}, attempts=3)
-    return fallback(f"{gown.prefix}as straight as may be", laid, back_off("leave it", gown))
+    return fallback(f"{gown.prefix}as straight as may be", laid, surely_back("leave it", gown))
 
 
 def shown(context: Context, name: str, side: Side, seen: Key) -> Behaviour:

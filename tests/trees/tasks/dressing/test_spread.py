@@ -7,8 +7,11 @@ import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.sleeve.sleeve_profile import DEFAULT
 from caretree.sim.world import SIDES
+from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.stances import stance_at_head
+from caretree.skills.retreat import Retreat
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
+from caretree.skills.seat_sleeves import SeatSleeves
 from caretree.trees.run.runner import run
 from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import prepare_stage
@@ -190,6 +193,27 @@ def test_the_first_sleeve_is_gone_to_only_where_it_is_not_seen_up_from_the_head_
     rehearsed((0.85, right), on_progress=lambda progress: leaves.append(progress.name))
     assert "left sleeve/go round to its side" in leaves
     assert ("right sleeve/go round to its side" in leaves) == gone
+
+
+def test_a_hand_that_meets_the_person_as_it_draws_back_from_a_sleeve_draws_back_once_more(monkeypatch):
+    def meets(skill, leaf):
+        steps = skill.steps
+
+        def once(self):
+            if self.name == leaf and leaf not in met:
+                met.append(leaf)
+                raise SkillFailure(Reason.FORCE_LIMIT, "")
+            yield from steps(self)
+
+        monkeypatch.setattr(skill, "steps", once)
+
+    met, went = [], []
+    meets(SeatSleeves, SEATED)
+    meets(Retreat, "gown/sleeves/leave them")
+    ends = rehearsed(0.65, on_progress=lambda progress: went.append(progress.name))
+    assert ends == ("success", ["seat"])
+    back = went.index("gown/sleeves/on/leave them")
+    assert went.index("gown/sleeves/leave them") < back < went.index("gown/sleeves/left/go up")
 
 
 @pytest.mark.parametrize("side", SIDES)
