@@ -98,6 +98,12 @@ class CheckSleeveTuning(Quantities):
         "of the upper arm, where such a sleeve has its armhole at least",
         "measured: 0.52 and 0.59 with no arm in it (138, 193), 0.75 and more with one (0)",
     )
+    least_load: float = quantity(
+        1.7,
+        "N",
+        "of a strap in the end of its way, below which no arm is in what it drew up, wherever that is seen",
+        "measured: 1.4 N with no arm in it, the armhole seen at 0.81 (141); the least with one is 1.9 N (0)",
+    )
     before_counts: float = quantity(
         0.7,
         "1",
@@ -172,8 +178,8 @@ class CheckSleeve(Skill):
                 f"the cuff is at {seen.cuff_at:.2f} of the upper arm and shows "
                 f"{seen.round_arm:.0%} of the way round it",
             )
-        if self.pulled and seen.inside_out > self.tuning.max_inside_out:
-            raise SkillFailure(Reason.SLEEVE_MISSED, f"{seen.inside_out:.0%} of the sleeve shows the gown's inside")
+        if self.pulled:
+            self._see_pulled(seen.inside_out)
         self._see_outer_side(arm, seen.armhole_at, seen.cuff_at)
         self._ask(*self._told(seen.reach, closely))
         self.reach = seen.reach if closely is None else closely.reach
@@ -192,10 +198,24 @@ class CheckSleeve(Skill):
             return counts * self.seen_before + (1.0 - counts) * now, self.min_together
         return now, self.min_reach
 
+    def _see_pulled(self, inside_out: float) -> None:
+        """A sleeve that was drawn up just now pulled back, and shows its outside.
+
+        Raises:
+            SkillFailure: SLEEVE_MISSED.
+        """
+        if self._load() < self.tuning.least_load:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"it came up freely, with {self._load():.1f} N")
+        if inside_out > self.tuning.max_inside_out:
+            raise SkillFailure(Reason.SLEEVE_MISSED, f"{inside_out:.0%} of the sleeve shows the gown's inside")
+
     def _least_pulled(self) -> float:
         """Where an armhole that was drawn up just now is at least, if there is an arm in it."""
-        load = pull_loads(self.context).get(self.side, np.inf)
-        return self.tuning.free_reach if load < self.tuning.free_load else self.tuning.pulled_reach
+        return self.tuning.free_reach if self._load() < self.tuning.free_load else self.tuning.pulled_reach
+
+    def _load(self) -> float:
+        """With which the strap pulled back in the end [N]; infinite where it did not come to its goal."""
+        return pull_loads(self.context).get(self.side, np.inf)
 
     def _ask(self, reach: float, least: float) -> None:
         """The armhole is as far up as is asked for.

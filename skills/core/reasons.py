@@ -21,6 +21,7 @@ class Reason(enum.Enum):
     SLEEVE_MISSED = "The sleeve is not over the person's hand."
     SLEEVE_FOLDED = "The sleeve does not open towards the person's hand."
     SLEEVE_LOW = "The sleeve does not reach far enough up the person's arm."
+    SLEEVE_BESIDE = "The sleeve lies beside the person's arm."
     COLLAR_ASIDE = "The collar does not lie in the middle between the person's shoulders."
     FACE_COVERED = "The gown lies over the person's face."
     SLEEVE_CAUGHT = "The sleeve is caught on the person's arm."

@@ -12,7 +12,7 @@ What is owed whenever a stage fails is in safe.py, every number in tuning.py.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from py_trees.behaviour import Behaviour
 
@@ -39,7 +39,7 @@ from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
 from .look_at_sleeves import LookAtSleeves as LookAtSleeves
 from .safe import make_safe
-from .spread import chest_covered, none_seen_low, outside_out, spread
+from .spread import chest_covered, none_seen_beside, none_seen_low, outside_out, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
 from .tuning import DRESSING
 
@@ -60,6 +60,7 @@ CONDITIONS = (
     holds_gown_with,
     is_down,
     outside_out,
+    none_seen_beside,
     none_seen_low,
     right_sleeve_stands,
 )
@@ -87,8 +88,8 @@ def until_worn(context: Context, last: Behaviour) -> RecoverBy:
     def anew() -> Behaviour:
         return dressed_anew(context)
 
-    missed: dict[Reason, Callable[[], Behaviour]] = {Reason.SLEEVE_MISSED: anew, Reason.NOTHING_SEEN: anew}
-    return RecoverBy("until it is worn", last, missed, attempts=DRESSING.dressed_attempts)
+    missed = (Reason.SLEEVE_MISSED, Reason.SLEEVE_BESIDE, Reason.NOTHING_SEEN)
+    return RecoverBy("until it is worn", last, dict.fromkeys(missed, anew), attempts=DRESSING.dressed_attempts)
 
 
 def scripted(seed: int, robot: RobotModel | None = None) -> tuple[World, ScriptedSenses]:

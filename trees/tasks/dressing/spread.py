@@ -198,8 +198,9 @@ def neaten(context: Context, bed: Scope) -> Behaviour:
     flat_first = Condition("no fold shows", outside_out, Reason.WRONG_SIDE)
     flat_now = Condition("nothing is folded over", outside_out, Reason.WRONG_SIDE)
     face_free = CheckFace("the face is free", bed)
-    closer = look_at_sleeves(bed)
-    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, closer, *sleeves, *middle, flat_now)
+    # drawn up, a sleeve beside its arm stays there, and takes the collar along (141): that arm is dressed again
+    closer = (look_at_sleeves(bed), Condition("no sleeve beside its arm", none_seen_beside, Reason.SLEEVE_BESIDE))
+    seen = sequence("seen to be neat", go_up(bed), face_free, flat_first, *closer, *sleeves, *middle, flat_now)
 
     def set_right() -> Behaviour:
         return sequence("draw up and straighten", seated(bed), straight(Scope(bed, "then")))
@@ -264,7 +265,7 @@ def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
     drawn = sequence(f"{gown.prefix}draw it over", DrawOver("draw over", gown), back_off("clear the view", gown))
-    return fallback(f"{gown.prefix}over the middle", drawn, surely_back("leave it there", gown))
+    return fallback(f"{gown.prefix}over the middle", drawn, surely_back("leave it", gown))
 
 
 def seated(bed: Scope) -> Behaviour:
@@ -383,6 +384,12 @@ def none_seen_low(context: Context) -> bool:
     """No close look since the gown was touched has told that a sleeve is low: what else is seen of them tells."""
     seen = context.memory.of(CloseLook, CloseLook).sleeves.values()
     return all(sleeve.reach >= DRESSING.armhole_closely for sleeve in seen)
+
+
+def none_seen_beside(context: Context) -> bool:
+    """No close look since the gown was touched has told that a cuff has no arm in it."""
+    seen = context.memory.of(CloseLook, CloseLook).sleeves.values()
+    return all(sleeve.round_arm >= DRESSING.cuff_beside for sleeve in seen)
 
 
 def _cover(context: Context) -> ChestCover:

@@ -210,6 +210,13 @@ class DressingTuning(Quantities):
         "deviation of 0.037, 97 are told so, 7 of them wrongly, 0.68 at least; from 0.69 on 107 and 9, from 0.73 on 61 "
         "and 3, where 99 are up (benchmarks/armhole_closely.py)",
     )
+    cuff_beside: float = quantity(
+        0.25,
+        "1",
+        "of the way round, but for the widest gap, below which a cuff seen closely has no arm in it",
+        "measured: 0.04 and 0.17 of one that lay beside its arm (141); of 374 looks at sleeves that were on, 0.33 and "
+        "more but for one that had slipped to 0.27 of the upper arm (149)",
+    )
     armhole_may_sit: float = quantity(
         0.62,
         "1",

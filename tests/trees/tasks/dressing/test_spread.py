@@ -35,6 +35,7 @@ class WornGown(ScriptedSenses):
         pulled: how much farther up a sleeve is after it was pulled by its strap.
         hidden: side of the sleeve that does not show.
         comes_on: whether it shows once that arm is dressed again.
+        beside: side of the sleeve that the hands see beside its arm, until that arm is dressed again.
         near: how much higher the hands' cameras see an armhole than it is; None: it does not show to them.
         lower: how much lower an armhole is seen from the head of the bed, not from beside.
     """
@@ -54,9 +55,10 @@ class WornGown(ScriptedSenses):
         comes_on=False,
         lower=0.0,
         near=None,
+        beside=None,
     ):
         super().__init__(world)
-        self.near = near
+        self.near, self.beside = near, beside
         self.pulled, self.hidden, self.comes_on, self.lower = pulled, hidden, comes_on, lower
         self.outside, self.shown, self.closely = outside, shown, closely
         self.stands = []
@@ -67,7 +69,8 @@ class WornGown(ScriptedSenses):
             raise PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
         at_head = abs(self._world.observe().pose_base_in_map[0]) < 0.5
         seen = super().worn_sleeve(frame, side=side, arm_in_map=arm_in_map)
-        return replace(seen, reach=self.low[side] - at_head * self.lower)
+        seen = replace(seen, reach=self.low[side] - at_head * self.lower)
+        return replace(seen, round_arm=0.2) if side == self.beside else seen
 
     def sleeve_profile(self, frame, *, side, arm_in_map):
         """None shows to the hands, unless they see it at its place but for an error of `near`."""
@@ -76,13 +79,19 @@ class WornGown(ScriptedSenses):
         base, *changes = DEFAULT.from_mean
         at = 1.0 - (self.low[side] + self.near - base - changes[1]) / changes[0]
         seen = super().sleeve_profile(frame, side=side, arm_in_map=arm_in_map)
-        return replace(seen, armhole_at=np.full(24, at), cuff_at=np.full(24, at + 0.5))
+        cuff = np.full(24, at + 0.5)
+        if side == self.beside:
+            cuff[:-4] = np.nan
+        return replace(seen, armhole_at=np.full(24, at), cuff_at=cuff)
 
     def drawn(self, progress):
         """Told of what goes on: what was drawn up is higher up, what was laid straight lies there."""
         if progress.status == "success" and self.hidden and progress.name == f"{self.hidden} new/pull up":
             self.done.append(progress.name)
             self.hidden = None if self.comes_on else self.hidden
+        if progress.status == "success" and self.beside and progress.name == f"{self.beside} new/pull up":
+            self.done.append(progress.name)
+            self.beside = None
         if progress.status == "success" and progress.name in PULLED and self.pulled:
             self.done.append(progress.name)
             self.low[PULLED[progress.name]] += self.pulled
@@ -224,6 +233,13 @@ def test_a_sleeve_that_does_not_show_is_not_claimed(side):
 @pytest.mark.parametrize("side", SIDES)
 def test_an_arm_whose_sleeve_does_not_show_is_dressed_again(side):
     assert rehearsed(0.85, hidden=side, comes_on=True) == ("success", [f"{side} new/pull up"])
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("reach", [0.80, 0.66])
+def test_an_arm_whose_sleeve_lies_beside_it_as_seen_closely_is_dressed_again_and_not_drawn_up(side, reach):
+    done = [f"{side} new/pull up"] if reach > 0.7 else [f"{side} new/pull up", "seat"]
+    assert rehearsed(reach, near=0.0, beside=side) == ("success", done)
 
 
 @pytest.mark.parametrize("off", [(0.14, 0.0), (-0.14, 0.0), (0.0, -0.18)])
