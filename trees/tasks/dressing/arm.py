@@ -399,6 +399,6 @@ def back_off(name: str, scope: Scope, distance: float = 0.0) -> Retreat:
 
 
 def surely_back(name: str, scope: Scope, distance: float = 0.0) -> Behaviour:
-    """The same, and on, where a hand meets the person as it draws back: left low, it met the shoulder again (193)."""
+    """As `back_off`, once more where a hand meets the person: left low, it met the shoulder again (193)."""
     here, on = (back_off(name, inner, distance) for inner in (scope, Scope(scope, "on")))
     return fallback(f"{scope.prefix}surely back", here, on)
