@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..effects.cloth.gown_patch import gown_effects
-from ..effects.dressing.dressing_model import changed_scene, load_cell_bias
+from ..effects.dressing.dressing_model import changed_scene, changed_sensors
 from ..effects.effect import EffectError
 from ..effects.model_file import EffectModel, load_model
 from ..errors import CaretreeError
 from ..scene.scene import Scene
+from ..sensors.sensor_changes import SensorChanges
 
 
-def with_model(given: str | EffectModel, scene: Scene) -> tuple[EffectModel | None, Scene, np.ndarray | None]:
-    """Effects on the gown, the scene as the model has it, and (2, 3) what the hands' sensors add [N].
+def with_model(given: str | EffectModel, scene: Scene) -> tuple[EffectModel | None, Scene, SensorChanges | None]:
+    """Effects on the gown, the scene as the model has it, and what it makes of the sensors.
 
     Args:
         given: the model, or its file.
@@ -27,6 +26,6 @@ def with_model(given: str | EffectModel, scene: Scene) -> tuple[EffectModel | No
         if model.system != "dressing" and isinstance(given, str):
             return gown_effects(given), scene, None
         model.require("dressing")
-        return None, changed_scene(scene, model), load_cell_bias(model)
+        return None, changed_scene(scene, model), changed_sensors(model)
     except EffectError as error:
         raise CaretreeError(f"--model {error}") from None

@@ -55,7 +55,7 @@ class Proprioception:
             wrench[n, :3] = self._grips[n].load
         wrench += self._contact.wrench(hands)
         wrench += WRENCH_NOISE * self._noise.standard_normal((2, 6))
-        wrench = self._errors.wrench(wrench, hands, told_hands)
+        wrench = self._errors.wrench(wrench, hands, told_hands, time)
         force = np.maximum(told.gripper_force, self._contact.squeeze(hands))
         return Observation(
             time=time,

@@ -10,6 +10,7 @@ few iterations, and how the friction of an arm's joints shares a hand's load bet
 
 from __future__ import annotations
 
+import math
 from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
@@ -34,6 +35,7 @@ STILL = 2e-3  # a robot whose joints are slower stands [rad/s, m/s]
 CALM = 1.0  # what it holds then comes to rest in this time [s]
 CLOSING = 1.0  # the fingers were at their widest within this time before they took hold [s]
 EARLY = 0.2  # fingers may meet what they hold this long before the record has them hold it [s]
+DRAGGING = 0.3  # in which fingers that have taken hold pull an arm to themselves [s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,13 +46,19 @@ class Answer:
     arms: np.ndarray
 
 
-def replayed(stretch: Stretch, model: EffectModel | None = None) -> Answer:
+def replayed(stretch: Stretch, model: EffectModel | None = None, drag: float = 0.0) -> Answer:
     """What the dressing world, with the effects of a model for it, has in a stretch.
+
+    Args:
+        stretch: of a record.
+        model: effects on the world.
+        drag: how far the closing fingers pull the arm along their closing axis as they take hold, beside what the
+            model has of it [m].  It differs from grip to grip, and strains the arm's joints until they slip.
 
     Raises:
         CaretreeError: the model cannot be loaded into this world.
     """
-    with closing(ReplayWorld(stretch, model)) as world:
+    with closing(ReplayWorld(stretch, model, drag)) as world:
         return world.follow()
 
 
@@ -60,10 +68,12 @@ class ReplayWorld(BulletWorld):
     Args:
         stretch: of the record.
         model: effects on it.
+        drag: of the hand whose load is looked at, see `replayed` [m].
     """
 
-    def __init__(self, stretch: Stretch, model: EffectModel | None = None) -> None:
+    def __init__(self, stretch: Stretch, model: EffectModel | None = None, drag: float = 0.0) -> None:
         self._stretch, self._places = stretch, _Places(stretch.robot)
+        self._drag, self._taken = drag, math.inf  # when that hand took hold [s]
         self._start = float(stretch.robot.t[0])
         super().__init__(
             seed=stretch.scene.seed,
@@ -124,6 +134,16 @@ class ReplayWorld(BulletWorld):
         self._led.reading = self._reading = reading = self._places.at(time)
         self._contact.watch(time, reading)
         self._hands = self._led.poses_hands_in_map(reading)
+        if self._drag:
+            self._pull_aside()
+
+    def _pull_aside(self) -> None:
+        """A hand that is aside of where it was as it takes hold, and then comes there, drags what it holds along."""
+        n, now = self._stretch.hand, self.time.time
+        if self._grips[n].kind == "arm":
+            self._taken = min(self._taken, now)
+        left = 1.0 - min(max((now - self._taken) / DRAGGING, 0.0), 1.0)
+        self._hands[n, :3, 3] -= left * self._drag * self._hands[n, :3, 1]
 
     def _update_fingers(self, reading: JointReading) -> None:
         """Let the fingers close and open when they did."""

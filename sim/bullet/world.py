@@ -88,7 +88,7 @@ class BulletWorld(CoupledRoom, World):
             raise CaretreeError(f"--model needs the engine {BULLET}: on {engine} no effects act")
         appearance = draw_look(look, np.random.default_rng([seed, 1]))
         scene = draw_scene(seed, gown, person, WorldKind.named(kind))
-        effects, scene, bias = (None, scene, None) if model is None else with_model(model, scene)
+        effects, scene, sensors = (None, scene, None) if model is None else with_model(model, scene)
         if scene.gown.air_drag > 0 and moved_by.soft_bodies:  # springs have air of their own
             effects = with_air(effects, scene.gown.air_drag)
         self.room = room_map()
@@ -97,7 +97,7 @@ class BulletWorld(CoupledRoom, World):
             scene, effects, engine=moved_by, robot=robot, stands=self.room.waypoints["start"], time=self.clock
         )
         self._noise = np.random.default_rng([seed, 2])
-        self._errors = SensorErrors(seed, scene.kind, bias=bias, joints=robot.commanded_joints)
+        self._errors = SensorErrors(seed, scene.kind, changes=sensors, joints=robot.commanded_joints)
         self._thinking = ThinkingTime(seed, scene.kind, head_joint=robot.head_joint)
         self._proprioception = Proprioception(self._grips, self._contact, self._fingers, self._errors, self._noise)
         self._backdrop = Backdrop(self.scene, appearance, self._person, self.kinematics)

@@ -18,8 +18,11 @@ from .measured import Measured, read_measured
 from .record import RUN_FILE, TRUTH_FILE, read_finished_run
 from .stored_arrays import stored_arrays
 
-BEFORE = 0.5  # a stretch begins so long before the hand takes hold, at rest [s]
+BEFORE = 2.0  # a stretch begins so long before the hand takes hold [s]
+EMPTY = 1.0  # until so long before it, an open hand touches nothing [s]
 MOVED = 0.015  # a hand that holds an arm has turned its joints by what friction gives before it slips [m]
+OPENING = 0.2  # before the hand has let go, its fingers open [s]
+FIRM = 31.0  # load from which an arm slips in fingers that hold it with 30 N; what comes then is not looked at [N]
 SHORTEST = 1.0  # of a stretch that says something [s]
 NEEDED = ("t", "arms", "holds_arm", "gripper_closed", "person_force", "vertices")
 
@@ -49,7 +52,8 @@ class Stretch:
         hand: 0 left, 1 right: the one whose load is looked at.
         arms: (2, 4, 3) of the person where it begins [m].
         vertices: (V, 3) of the gown there [m]; None where no hand holds it.
-        looked_at: (T,) bool, samples at which model and measurement are compared.
+        looked_at: (T,) bool, samples at which model and measurement are compared: while the hand moves what it holds
+            and, where the record is long enough and no time was given, before, while it holds nothing.
     """
 
     scene: Scene
@@ -61,6 +65,12 @@ class Stretch:
     arms: np.ndarray
     vertices: np.ndarray | None
     looked_at: np.ndarray
+
+    @property
+    def held_arm(self) -> int:
+        """The person's arm that the hand holds in it: 0 left, 1 right, -1 none."""
+        part = int(self.held.part[:, self.hand].max(initial=-1))
+        return -1 if part < 0 else int(part >= arm_part(1, 0))
 
 
 def read_stretch(
@@ -81,18 +91,20 @@ def read_stretch(
     truth = stored_arrays(directory / TRUTH_FILE, NEEDED, ": it tells where arms and gown were")
     frame = np.clip(np.searchsorted(truth["t"], measured.t, side="right") - 1, 0, None)
     held = _held(truth, frame)
-    hold = _first_hold(directory, measured.t, held, (t0, t1), hand)
-    first = int(np.searchsorted(measured.t, hold.start - BEFORE))
-    last = int(np.searchsorted(measured.t, min(hold.end, np.inf if t1 is None else t1), side="right"))
-    rows = slice(first, last)
-    t, place = measured.t[rows], measured.pose_hand[rows, hold.hand, :3]
-    taken = int(np.searchsorted(t, hold.start))
-    moved = np.linalg.norm(place - place[taken], axis=1) > (MOVED if hold.arm else 0.0)
-    looked_at = np.arange(len(t)) >= (np.flatnonzero(moved & (t > hold.start))[:1].tolist() or [len(t)])[0]
-    looked_at &= t >= (-np.inf if t0 is None else t0)
-    if not looked_at.any() or np.ptp(t[looked_at]) < SHORTEST:
-        raise RecordError(f"{directory}: the {SIDES[hold.hand]} hand hardly moves what it holds at {hold.start:.1f} s")
+    holds = _holds_of(directory, measured.t, held, (t0, t1), hand)
+    for hold in holds:
+        first = int(np.searchsorted(measured.t, hold.start - BEFORE))
+        last = int(np.searchsorted(measured.t, min(hold.end, np.inf if t1 is None else t1), side="right"))
+        rows = slice(first, last)
+        looked_at = _moving(_cut(measured, rows), hold, t0)
+        if looked_at.any() and np.ptp(measured.t[rows][looked_at]) >= SHORTEST:
+            break
+    else:
+        when = ", ".join(f"the {SIDES[h.hand]} hand at {h.start:.1f} s" for h in holds)
+        raise RecordError(f"{directory}: what is held hardly moves within {FIRM:g} N ({when})")
     part, cloth = held.part[rows], held.cloth[rows]
+    if t0 is None:
+        looked_at |= (measured.t[rows] <= hold.start - EMPTY) & (part[:, hold.hand] < 0) & ~cloth[:, hold.hand]
     return Stretch(
         scene=scene,
         gown=gown,
@@ -118,10 +130,23 @@ class _Hold:
         return min(self.end, np.inf if t1 is None else t1) - max(self.start, -np.inf if t0 is None else t0)
 
 
-def _first_hold(
+def _moving(robot: Measured, hold: _Hold, t0: float | None) -> np.ndarray:
+    """(T,) samples from which on the hand moves what it holds, until its fingers open or what it holds may slip."""
+    t, place = robot.t, robot.pose_hand[:, hold.hand, :3]
+    taken = int(np.searchsorted(t, hold.start))
+    moved = np.linalg.norm(place - place[taken], axis=1) > (MOVED if hold.arm else 0.0)
+    since = (np.flatnonzero(moved & (t > hold.start))[:1].tolist() or [len(t)])[0]
+    out = (np.arange(len(t)) >= since) & (t >= (-np.inf if t0 is None else t0)) & (t < hold.end - OPENING)
+    if hold.arm:
+        load = np.linalg.norm(robot.wrench_hand[:, hold.hand, :3], axis=1)
+        out &= np.maximum.accumulate(np.where(t < hold.start, 0.0, load)) < FIRM
+    return out
+
+
+def _holds_of(
     directory: Path, t: np.ndarray, held: Held, span: tuple[float | None, float | None], hand: Side | None
-) -> _Hold:
-    """The first time that a hand holds an arm, or in a given span anything, for long enough."""
+) -> list[_Hold]:
+    """The times that a hand holds an arm, or in a given span anything, for long enough; one of an arm first."""
     t0, t1 = span
     hands = range(2) if hand is None else (SIDES.index(hand),)
     holds = [h for n in hands for h in _holds(t, held, n)]
@@ -133,7 +158,7 @@ def _first_hold(
         there = ", ".join(f"{SIDES[h.hand]} {h.start:.1f} to {h.end:.1f} s" for h in holds) or "none"
         what = "an arm" if t0 is None and t1 is None else "anything"
         raise RecordError(f"{directory}: no hand holds {what} for {SHORTEST:g} s{when} (holds: {there})")
-    return min(wanted, key=lambda h: (not h.arm, h.start))
+    return sorted(wanted, key=lambda h: (not h.arm, h.start))
 
 
 def _holds(t: np.ndarray, held: Held, hand: int) -> list[_Hold]:

@@ -15,11 +15,15 @@ from .camera_extrinsics import camera_errors
 from .depth_noise import disturbed_depth
 from .encoders import Encoders
 from .late_images import LateImages
+from .late_wrenches import LateWrenches
 from .localisation import Localisation
+from .sensor_changes import SensorChanges
 from .wrist_sensors import WristSensors
 
 if TYPE_CHECKING:
     from ..robot.body import JointReading
+
+HEAD = "head"  # the camera that a model file may move
 
 
 class SensorErrors:
@@ -29,7 +33,7 @@ class SensorErrors:
         seed: of the run; each difficulty draws from a stream of its own.
         kind: of the world.
         sizes: of the difficulties.
-        bias: (2, 3) what the force sensors of both hands add besides, along the hands' axes [N].
+        changes: what a model file adds, or None.
         joints: of two arms and the head, as trajectories name them; Baxter's by default.
 
     Attributes:
@@ -41,7 +45,7 @@ class SensorErrors:
         seed: int,
         kind: WorldKind,
         sizes: Sizes = SIZES,
-        bias: np.ndarray | None = None,
+        changes: SensorChanges | None = None,
         joints: tuple[str, ...] = COMMANDED_JOINTS,
     ) -> None:
         def drawn(difficulty: str) -> np.random.Generator | None:
@@ -56,9 +60,15 @@ class SensorErrors:
         self._wrists = WristSensors.drawn(rng, sizes.wrench_bias) if (rng := drawn("wrench_bias")) else None
         if self._wrists is None and (self._encoders or self._localisation):
             self._wrists = WristSensors()  # the orientation that they are told is off
-        if bias is not None and bias.any():
+        changes = changes or SensorChanges()
+        if changes.bias.any():
             wrists = self._wrists or WristSensors()
-            self._wrists = replace(wrists, bias=wrists.bias + np.pad(bias, ((0, 0), (0, 3))))
+            self._wrists = replace(wrists, bias=wrists.bias + np.pad(changes.bias, ((0, 0), (0, 3))))
+        self._late_wrenches = LateWrenches(changes.delay) if changes.delay else None
+        if changes.camera.any():
+            moved = np.eye(4)
+            moved[:3, 3] = changes.camera
+            self._cameras = {**self._cameras, HEAD: self._cameras.get(HEAD, np.eye(4)) @ moved}
 
     def joints(self, reading: JointReading, time: float) -> JointReading:
         """What the robot reads at `time` [s] of joints and base that stand as in `reading`."""
@@ -68,13 +78,17 @@ class SensorErrors:
             reading = replace(reading, pose_base_in_map=self._localisation.measured(reading.pose_base_in_map, time))
         return reading
 
-    def wrench(self, wrench_in_map: np.ndarray, poses: np.ndarray, measured_poses: np.ndarray) -> np.ndarray:
-        """(2, 6) load on the hands as reported; see `WristSensors.measured`."""
+    def wrench(
+        self, wrench_in_map: np.ndarray, poses: np.ndarray, measured_poses: np.ndarray, time: float
+    ) -> np.ndarray:
+        """(2, 6) load on the hands as reported at `time` [s]; see `WristSensors.measured`."""
+        if self._late_wrenches:
+            wrench_in_map = self._late_wrenches.measured(wrench_in_map, time)
         return self._wrists.measured(wrench_in_map, poses, measured_poses) if self._wrists else wrench_in_map
 
     def pose_camera(self, camera: str, pose_taken: np.ndarray) -> np.ndarray:
         """(4, 4) where a camera is that ought to be at `pose_taken` (4, 4)."""
-        return pose_taken @ self._cameras[camera] if self._cameras else pose_taken
+        return pose_taken @ self._cameras[camera] if camera in self._cameras else pose_taken
 
     def depth(self, depth: np.ndarray) -> np.ndarray:
         """(H, W) float32 depth as delivered, 0 where there is none [m]."""

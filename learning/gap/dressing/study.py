@@ -14,7 +14,7 @@ from ..errors import GapError
 from ..measurement import Episode, MeasurementSet
 from ..own.naming import Found
 from ..own.study import OwnStudy
-from .loads import LoadPredictions
+from .loads import Predictions
 from .system import DressingSystem, entries
 
 ROUNDS = 4
@@ -38,7 +38,7 @@ class DressingStudy(OwnStudy):
             if "stretch" not in e.settings:
                 raise GapError(f"{e.name}: system dressing takes records of runs, given as `run: FOLDER`")
             stretches.append(e.settings["stretch"])
-        self.predictions = LoadPredictions(cache)
+        self.predictions = Predictions(cache)
         numbered = tuple(_numbered(e, k) for k, e in enumerate(measured.episodes))
         system = DressingSystem(stretches, self.predictions)
         super().__init__(replace(measured, episodes=numbered), alpha, system, "")

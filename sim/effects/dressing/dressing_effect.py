@@ -1,16 +1,15 @@
-"""An effect on the dressing world as a whole: it changes the scene that is drawn, or what the wrists' sensors say."""
+"""An effect on the dressing world as a whole: it changes the scene that is drawn, or what sensors say."""
 
 from __future__ import annotations
 
 import abc
 from typing import TYPE_CHECKING, ClassVar
 
-import numpy as np
-
 from ..effect import EffectError, Parameter, check_values
 
 if TYPE_CHECKING:
     from ...scene.scene import Scene
+    from ...sensors.sensor_changes import SensorChanges
 
 
 class DressingEffect(abc.ABC):
@@ -25,9 +24,9 @@ class DressingEffect(abc.ABC):
         """The scene with the effect."""
         return scene
 
-    def bias(self, target: str, values: dict[str, float]) -> np.ndarray:
-        """(2, 3) what it adds to the force that each hand feels, along the hand's own axes [N]."""
-        return np.zeros((2, 3))
+    def sensors(self, sensors: SensorChanges, target: str, values: dict[str, float]) -> SensorChanges:
+        """The sensors with the effect."""
+        return sensors
 
     def check(self, target: str, values: dict[str, float]) -> None:
         """Refuse what this effect cannot have.

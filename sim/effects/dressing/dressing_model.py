@@ -1,10 +1,9 @@
-"""What a model file for dressing makes of a scene and of the hands' force sensors."""
+"""What a model file for dressing makes of a scene and of the robot's sensors."""
 
 from __future__ import annotations
 
-import numpy as np
-
 from ...scene.scene import Scene
+from ...sensors.sensor_changes import SensorChanges
 from ..model_file import EffectModel
 from .dressing_registry import DRESSING_EFFECTS
 
@@ -16,7 +15,9 @@ def changed_scene(scene: Scene, model: EffectModel) -> Scene:
     return scene
 
 
-def load_cell_bias(model: EffectModel) -> np.ndarray:
-    """(2, 3) what the sensors of both hands add along the hands' axes under such a file [N]."""
-    entries = (*model.recalibration, *model.effects)
-    return sum((DRESSING_EFFECTS[e.name].bias(e.target, e.parameters) for e in entries), np.zeros((2, 3)))
+def changed_sensors(model: EffectModel) -> SensorChanges:
+    """What such a file makes of the sensors."""
+    sensors = SensorChanges()
+    for entry in (*model.recalibration, *model.effects):
+        sensors = DRESSING_EFFECTS[entry.name].sensors(sensors, entry.target, entry.parameters)
+    return sensors

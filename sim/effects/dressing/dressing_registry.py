@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from .arm_weight import ArmWeight
+from .camera_offset import CameraOffset
 from .dressing_effect import DressingEffect
 from .fabric_stretch import FabricStretch
 from .joint_damping import JointDamping
 from .joint_friction import JointFriction
 from .joint_stiffness import JointStiffness
 from .load_cell_bias import LoadCellBias
+from .load_delay import LoadDelay
 from .sleeve_friction import SleeveFriction
 
 DRESSING_EFFECTS: dict[str, DressingEffect] = {
@@ -21,5 +23,7 @@ DRESSING_EFFECTS: dict[str, DressingEffect] = {
         SleeveFriction(),
         FabricStretch(),
         LoadCellBias(),
+        LoadDelay(),
+        CameraOffset(),
     )
 }

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ...sensors.sensor_changes import SensorChanges
 from ...world import SIDES
 from ..effect import Parameter
 from .dressing_effect import DressingEffect
@@ -18,8 +21,8 @@ class LoadCellBias(DressingEffect):
     targets = tuple(f"{side}_hand" for side in SIDES)
     parameters = tuple(Parameter(name=f"f{a}", unit="N", lower=-MOST, upper=MOST, typical=0.5) for a in "xyz")
 
-    def bias(self, target: str, values: dict[str, float]) -> np.ndarray:
-        """See `DressingEffect.bias`."""
-        out = np.zeros((2, 3))
-        out[self.targets.index(target)] = [values[p.name] for p in self.parameters]
-        return out
+    def sensors(self, sensors: SensorChanges, target: str, values: dict[str, float]) -> SensorChanges:
+        """See `DressingEffect.sensors`."""
+        more = np.zeros((2, 3))
+        more[self.targets.index(target)] = [values[p.name] for p in self.parameters]
+        return replace(sensors, bias=sensors.bias + more)

@@ -9,6 +9,7 @@ from caretree.sim.bullet import replay_world
 from caretree.sim.bullet.replay_world import ReplayWorld, replayed
 from caretree.sim.effects.model_file import EffectEntry, EffectModel
 from caretree.sim.record.recorded_stretch import read_stretch
+from scipy.spatial.transform import Rotation
 
 from ..record.recorded_lift import write_record
 from ..record.test_measured import ARMS
@@ -49,3 +50,14 @@ def test_a_heavier_arm_weighs_more(stretch):
     ]  # at first, and at rest, dry friction may carry it
     more = np.mean((plain.load - heavy.load)[rises, 0, 2])
     assert 0.5 * 0.3 * 9.81 < more < 2.0 * 0.3 * 9.81
+
+
+def test_fingers_that_drag_the_arm_along_strain_its_joints_either_way(stretch):
+    plain, one, other = (replayed(stretch, drag=drag).load[:, 0] for drag in (0.0, 0.002, -0.002))
+    turn = np.array([0.0, 1.0, 0.0])  # along the closing fingers, in the hand's frame
+    closing = Rotation.from_quat(stretch.robot.pose_hand[-1, 0, 3:]).apply(turn)
+    held = stretch.looked_at & (stretch.held.part[:, 0] >= 0)
+    assert np.mean((one - plain)[held] @ closing) < -0.5
+    assert np.mean((other - plain)[held] @ closing) > 0.5
+    before = stretch.held.part[:, 0] < 0
+    assert not one[before][:-3].any()

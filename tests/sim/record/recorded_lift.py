@@ -12,20 +12,20 @@ from caretree.sim.scene.scene import room_map
 from scipy.spatial.transform import Rotation
 
 RATE = 15.0
-WAIT, CLOSE, LIFT, HOLD = 1.0, 0.2, 1.6, 0.5  # [s]
+WAIT, CLOSE, LIFT, HOLD = 1.0, 0.2, 1.6, 0.8  # [s]
 HEIGHT = 0.08  # [m]
 
 
-def hand_path(elbow, along):
+def hand_path(elbow, along, wait=WAIT):
     """Times (T,), poses (T, 4, 4) of a hand from above that holds an arm which points along `along`, openings (T,)."""
-    t = np.arange(0.0, WAIT + CLOSE + LIFT + HOLD, 1.0 / RATE) + 5.0
-    share = np.clip((t - 5.0 - WAIT - CLOSE) / LIFT, 0.0, 1.0)
+    t = np.arange(0.0, wait + CLOSE + LIFT + HOLD, 1.0 / RATE) + 5.0
+    share = np.clip((t - 5.0 - wait - CLOSE) / LIFT, 0.0, 1.0)
     poses = np.tile(np.eye(4), (len(t), 1, 1))
     across = np.array((-along[1], along[0], 0.0)) / np.hypot(*along[:2])
     down = np.array((0.0, 0.0, -1.0))
     poses[:, :3, :3] = np.column_stack((np.cross(across, down), across, down))
     poses[:, :3, 3] = elbow + np.outer(HEIGHT * (3.0 - 2.0 * share) * share**2, (0.0, 0.0, 1.0))
-    opening = np.interp(t, (5.0 + WAIT, 5.0 + WAIT + CLOSE), (0.085, 0.0735))
+    opening = np.interp(t, (5.0 + wait, 5.0 + wait + CLOSE), (0.085, 0.0735))
     return t, poses, opening
 
 
@@ -53,10 +53,12 @@ def _joints(pose, base, q, rounds):
     return None
 
 
-def write_record(folder, arms, seed=100, load=None):
+def write_record(folder, arms, seed=100, load=None, wait=WAIT):
     """Write run.json, truth.npz and measured.npz of the lift; `load` (T, 3) is what the left hand felt [N]."""
     upper = arms[1, 1] - arms[1, 0]
-    t, poses, opening = hand_path(arms[1, 1] - 0.01 * upper / np.linalg.norm(upper), upper / np.linalg.norm(upper))
+    t, poses, opening = hand_path(
+        arms[1, 1] - 0.01 * upper / np.linalg.norm(upper), upper / np.linalg.norm(upper), wait
+    )
     base = np.array(room_map().waypoints["bed_right"])
     left = joints_for(poses, base)
     right = kinematics_of(BAXTER).pose_hand_in_map("right", READY[1], base)
@@ -81,7 +83,7 @@ def write_record(folder, arms, seed=100, load=None):
     run = {"task": "lift", "seed": seed, "world": "bullet", "outcome": "success", "parameters": {"world_kind": "easy"}}
     (folder / "run.json").write_text(json.dumps(run))
     held = np.full((len(t), 2), -1)
-    held[t >= 5.0 + WAIT + CLOSE, 0] = 1
+    held[t >= 5.0 + wait + CLOSE, 0] = 1
     force = np.zeros((len(t), 9))
     force[held[:, 0] >= 0, 4] = 10.0
     np.savez(

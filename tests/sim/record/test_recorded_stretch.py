@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 from caretree.sim.errors import RecordError
-from caretree.sim.record.recorded_stretch import MOVED, read_stretch
+from caretree.sim.record.recorded_stretch import EMPTY, FIRM, MOVED, read_stretch
 
 from .recorded_lift import CLOSE, WAIT, write_record
 from .test_measured import ARMS
@@ -23,10 +23,29 @@ def test_a_stretch_begins_at_rest_and_is_looked_at_once_the_hand_has_moved(recor
     assert stretch.held.part.max() == 4  # the right upper arm, which bears the load
     assert (stretch.held.part[stretch.robot.t < TAKEN - 1e-6] == -1).all()
     place = stretch.robot.pose_hand[:, 0, :3]
-    first = int(np.flatnonzero(stretch.looked_at)[0])
+    first = int(np.flatnonzero(stretch.looked_at & (stretch.robot.t > TAKEN))[0])
     assert np.linalg.norm(place[first] - place[0]) > MOVED
     assert np.linalg.norm(place[first - 1] - place[0]) <= MOVED
     assert stretch.vertices is None
+
+
+def test_before_it_an_empty_hand_is_looked_at_where_there_is_time(tmp_path):
+    stretch = read_stretch(write_record(tmp_path, ARMS, wait=1.9))
+    t, taken = stretch.robot.t, TAKEN + 0.9
+    before = stretch.looked_at & (t < taken)
+    assert t[before][0] == t[0]
+    assert t[before][-1] == pytest.approx(taken - EMPTY, abs=0.07)
+    assert not stretch.looked_at[(t > taken - EMPTY + 0.07) & (t < taken)].any()
+    assert stretch.held_arm == 1
+
+
+def test_a_load_under_which_an_arm_slips_ends_what_is_looked_at(tmp_path):
+    load = np.zeros((200, 3))
+    load[42:] = (0.0, 0.0, -FIRM - 1.0)
+    stretch = read_stretch(write_record(tmp_path, ARMS, load=load))
+    held = stretch.looked_at & (stretch.robot.t > TAKEN)
+    assert held.any()
+    assert stretch.robot.t[held][-1] < 5.0 + 42 / 15.0
 
 
 def test_a_span_limits_what_is_looked_at(record):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from caretree.sim.robot.body import JointReading
+from caretree.sim.sensors.sensor_changes import SensorChanges
 from caretree.sim.sensors.sensor_errors import SensorErrors
 from caretree.sim.world import BaseVelocity, HandTwist, JointTrajectory
 from caretree.sim.world_kind import DIFFICULTIES, EASY_KIND, WorldKind
@@ -33,7 +34,7 @@ def senses(seed, kind):
     return {
         "encoders": np.append(reading.arm_positions, reading.head_pan),
         "localisation": reading.pose_base_in_map,
-        "wrench_bias": errors.wrench(np.zeros((2, 6)), POSES, POSES),
+        "wrench_bias": errors.wrench(np.zeros((2, 6)), POSES, POSES, 2.0),
         "camera_extrinsics": errors.pose_camera("head", np.eye(4)),
         "depth_noise": errors.depth(DEPTH),
         "late_images": errors.late and list(errors.late.latency.values()),
@@ -43,7 +44,7 @@ def senses(seed, kind):
 def test_the_easy_world_passes_everything_through_untouched():
     errors, wrench, pose = SensorErrors(100, EASY_KIND), np.zeros((2, 6)), np.eye(4)
     assert errors.joints(READING, 1.0) is READING
-    assert errors.wrench(wrench, POSES, POSES) is wrench
+    assert errors.wrench(wrench, POSES, POSES, 1.0) is wrench
     assert errors.pose_camera("head", pose) is pose
     assert errors.depth(DEPTH) is DEPTH
     assert errors.late is None
@@ -80,4 +81,27 @@ def test_orientation_that_is_off_turns_the_wrench():
     turned = POSES.copy()
     turned[:, :2, :2] = ((0.0, -1.0), (1.0, 0.0))  # taken to be turned left by 90 degrees
     pull = np.tile((1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (2, 1))
-    np.testing.assert_allclose(errors.wrench(pull, POSES, turned)[:, :3], ((0.0, 1.0, 0.0),) * 2, atol=1e-12)
+    np.testing.assert_allclose(errors.wrench(pull, POSES, turned, 1.0)[:, :3], ((0.0, 1.0, 0.0),) * 2, atol=1e-12)
+
+
+def test_a_model_files_offset_moves_the_heads_camera_along_its_own_axes_in_any_world():
+    taken = np.eye(4)
+    taken[:3, :3] = [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]  # looks along x
+    changes = SensorChanges(camera=np.array((0.01, 0.0, 0.03)))
+    for kind in ("easy", "hard"):
+        plain, moved = (
+            SensorErrors(100, WorldKind.named(kind)),
+            SensorErrors(100, WorldKind.named(kind), changes=changes),
+        )
+        there = plain.pose_camera("head", taken)
+        away = moved.pose_camera("head", taken)[:3, 3] - there[:3, 3]
+        np.testing.assert_allclose(away, there[:3, :3] @ changes.camera, atol=1e-12)
+        np.testing.assert_array_equal(moved.pose_camera("left_hand", taken), plain.pose_camera("left_hand", taken))
+
+
+def test_a_late_wrench_is_what_pulled_a_while_ago_straight_between_samples():
+    errors = SensorErrors(100, EASY_KIND, changes=SensorChanges(delay=0.15))
+    told = [
+        errors.wrench(np.full((2, 6), 10.0 * time), POSES, POSES, time)[0, 0] for time in (0.0, 0.1, 0.1, 0.2, 0.3, 0.4)
+    ]
+    assert told == pytest.approx((0.0, 0.0, 0.0, 0.5, 1.5, 2.5))

@@ -6,21 +6,25 @@ import numpy as np
 import pytest
 import yaml
 from caretree.learning.gap.dressing import study as studied
-from caretree.learning.gap.dressing.loads import LoadPredictions
+from caretree.learning.gap.dressing.loads import SEEN_LOW, Predictions
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import load_set, set_of
 from caretree.learning.gap.open_study import open_study
 from caretree.sim.effects.model_file import load_model, save_model
+from caretree.sim.mechanics.kinematics import kinematics_of
 from caretree.sim.record.recorded_stretch import read_stretch
+from caretree.sim.robot.baxter import BAXTER
 from scipy.spatial.transform import Rotation
 
 from ....sim.record.recorded_lift import write_record
 from ....sim.record.test_measured import ARMS
 
 LENGTH, ARM = 0.28, 0.9  # [m], [kg]
+WRIST = np.array((0.3, -0.1, 0.7))  # it stays where it is [m]
+FACING = kinematics_of(BAXTER).pose_camera_in_map("head", np.array((1.0, 0.0, np.pi)), np.zeros((2, 7)), 0.0)[:3, :3]
 
 
-def load_of(t, values, quirk):
+def load_of(t, values, quirk, drag=0.0):
     """(T, 3) load of an arm that is swung up and down again: weight, friction, damping and a spring."""
     rate = np.cos(2 * np.pi * (t - t[0]) / 8.0)
     angle = np.sin(2 * np.pi * (t - t[0]) / 8.0)
@@ -29,16 +33,17 @@ def load_of(t, values, quirk):
     turn += (4.0 + values.get("damping", 0.0)) * 0.3 * rate + values.get("stiffness", 0.0) * angle
     across = -turn / LENGTH * (1.0 + 0.1 * mass)  # not quite straight in all of it
     up = -0.6 * mass * 9.81 * np.cos(0.6 * angle)
-    return np.column_stack((0.3 * across, quirk * np.sin(5 * t), up + across * np.cos(0.6 * angle)))
+    aside = quirk * np.sin(5 * t) + 2000.0 * np.clip(drag, -0.002, 0.002)
+    return np.column_stack((0.3 * across, aside, up + across * np.cos(0.6 * angle)))
 
 
-class HandWritten(LoadPredictions):
+class HandWritten(Predictions):
     """A world without physics."""
 
-    def _found(self, stretch, effects, key):
+    def _found(self, stretch, effects, drag, key):
         self.simulated += 1
         values = {name: x for e in effects for name, x in e.parameters.items()}
-        return load_of(stretch.robot.t, values, 0.0)[stretch.looked_at]
+        return np.hstack((load_of(stretch.robot.t, values, 0.0, drag), WRIST * np.ones((len(stretch.robot.t), 3))))
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +51,7 @@ def lift(tmp_path_factory):
     return read_stretch(write_record(tmp_path_factory.mktemp("lift"), ARMS))
 
 
-def measured(lift, values, bias=(0.0, 0.0, 0.0), quirk=0.0):
+def measured(lift, values, bias=(0.0, 0.0, 0.0), quirk=0.0, drags=(0.0, 0.0, 0.0, 0.0), camera=(0.0, 0.0, 0.0)):
     """Four recordings of 16 s, as a set of system dressing."""
     from caretree.learning.gap.dressing.loads import columns_of
 
@@ -55,10 +60,23 @@ def measured(lift, values, bias=(0.0, 0.0, 0.0), quirk=0.0):
         rng, t = np.random.default_rng([100, k]), 5.0 + np.arange(240) / 15.0
         turn = Rotation.from_euler("xyz", np.column_stack((0.6 * np.sin(t), 0.3 * np.cos(t + k), 0.0 * t)))
         wrench = np.zeros((len(t), 2, 6))
-        wrench[:, 0, :3] = load_of(t, values, quirk) + turn.apply(bias) + 0.1 * rng.normal(size=(len(t), 3))
+        wrench[:, 0, :3] = load_of(t, values, quirk, drags[k]) + turn.apply(bias) + 0.1 * rng.normal(size=(len(t), 3))
         pose = np.zeros((len(t), 2, 7))
         pose[:, :, 3:] = turn.as_quat()[:, None]
-        robot = replace(lift.robot, t=t, wrench_hand=wrench, pose_hand=pose)
+        seen = np.tile(lift.robot.arm_points[:1], (len(t), 1, 1))
+        seen[:, 2] = WRIST - (0.0, 0.0, SEEN_LOW) - FACING @ camera + 0.002 * rng.normal(size=(len(t), 3))
+        robot = replace(
+            lift.robot,
+            t=t,
+            wrench_hand=wrench,
+            pose_hand=pose,
+            arm_positions=np.tile(lift.robot.arm_positions[:1], (len(t), 1, 1)),
+            head_pan=np.zeros(len(t)),
+            pose_base=np.tile((1.0, 0.0, np.pi), (len(t), 1)),
+            arm_t=t,
+            arm_side=np.ones(len(t), int),
+            arm_points=seen,
+        )
         held = replace(lift.held, part=np.full((len(t), 2), (4, -1)), cloth=np.zeros((len(t), 2), bool))
         stretch = replace(lift, robot=robot, held=held, looked_at=np.ones(len(t), bool))
         episodes.append(columns_of(stretch) | {"stretch": stretch})
@@ -70,7 +88,7 @@ def measured(lift, values, bias=(0.0, 0.0, 0.0), quirk=0.0):
 
 @pytest.fixture(autouse=True)
 def without_physics(monkeypatch):
-    monkeypatch.setattr(studied, "LoadPredictions", HandWritten)
+    monkeypatch.setattr(studied, "Predictions", HandWritten)
 
 
 def test_nothing_hidden_is_adequate(lift):
@@ -114,6 +132,32 @@ def test_a_load_cells_bias_is_told_hand_by_hand_and_costs_no_simulation_of_its_o
     assert [p.value for p in v.effects[0].parameters] == pytest.approx((0.8, -1.0, 1.2), abs=0.1)
     save_model(tmp_path / "model.yaml", study.patch())
     assert set(load_model(tmp_path / "model.yaml").effects[0].parameters) == {"fx", "fy", "fz"}
+
+
+def test_what_the_fingers_drag_is_each_recordings_own_and_no_finding(lift):
+    study = open_study(measured(lift, {"mass": 0.3}, drags=(0.0015, -0.0008, 0.0, -0.0015)))
+    v = study.conclude()
+    assert [f.name for f in v.effects] == ["arm_weight"]
+    assert v.gap.channels["fy"]["before"] < 1.0, "of its floor"
+    own = [study.sim.own(r, study.found.point.values)["grip_drag"] for r in study.sim.recordings]
+    assert own == pytest.approx((0.002, -0.0008, 0.0), abs=1e-4), "0.0015, as far as straight lines tell"
+
+
+def test_loads_that_are_told_late_are_named(lift):
+    lifted = measured(lift, {})
+    late = [
+        replace(e, columns={**e.columns, **{c: np.interp(e.t - 0.3, e.t, e.columns[c]) for c in ("fx", "fy", "fz")}})
+        for e in lifted.episodes
+    ]
+    v = open_study(replace(lifted, episodes=tuple(late))).conclude()
+    assert [f.name for f in v.effects] == ["load_delay"]
+    assert v.effects[0].parameters[0].value == pytest.approx(0.3, abs=0.03)
+
+
+def test_a_camera_that_sits_elsewhere_is_told_along_its_own_axes(lift):
+    v = open_study(measured(lift, {}, camera=(0.02, -0.01, 0.015))).conclude()
+    assert [(f.name, f.target) for f in v.effects] == [("camera_offset", "head_camera")]
+    assert [p.value for p in v.effects[0].parameters] == pytest.approx((0.02, -0.01, 0.015), abs=2e-3)
 
 
 def test_what_no_effect_makes_is_unknown(lift):

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caretree.sim.effects.dressing.dressing_model import changed_scene, load_cell_bias
+from caretree.sim.effects.dressing.dressing_model import changed_scene, changed_sensors
 from caretree.sim.effects.dressing.dressing_registry import DRESSING_EFFECTS
 from caretree.sim.effects.effect import EffectError
 from caretree.sim.effects.model_file import EffectEntry, EffectModel, load_model, save_model
@@ -27,11 +27,15 @@ def traits(scene):
     )
 
 
+def numbers(sensors):
+    return np.concatenate((sensors.bias.ravel(), [sensors.delay], sensors.camera))
+
+
 @pytest.mark.parametrize(("effect", "target"), ALL)
 def test_an_effect_of_size_zero_changes_nothing(effect, target):
     scene = draw_scene(100)
     assert traits(changed_scene(scene, model(effect, target, 0.0))) == pytest.approx(traits(scene))
-    assert not load_cell_bias(model(effect, target, 0.0)).any()
+    assert not numbers(changed_sensors(model(effect, target, 0.0))).any()
 
 
 @pytest.mark.parametrize(("effect", "target"), ALL)
@@ -39,14 +43,17 @@ def test_an_effect_adds_its_number_to_one_trait_alone(effect, target):
     scene = draw_scene(100)
     given = model(effect, target, 1.0)
     more = np.subtract(traits(changed_scene(scene, given)), traits(scene))
-    bias = load_cell_bias(given)
-    if effect.name == "load_cell_bias":
+    sensors = changed_sensors(given)
+    typical = [p.typical for p in effect.parameters]
+    told = numbers(sensors)
+    if effect.name in ("load_cell_bias", "load_delay", "camera_offset"):
         assert not more.any()
-        assert bias[effect.targets.index(target)] == pytest.approx([p.typical for p in effect.parameters])
-        assert np.count_nonzero(bias) == 3
+        assert told[told != 0.0] == pytest.approx(typical)
     else:
-        assert more[np.abs(more) > 1e-9] == pytest.approx([effect.parameters[0].typical])
-        assert not bias.any()
+        assert more[np.abs(more) > 1e-9] == pytest.approx(typical)
+        assert not told.any()
+    if effect.name == "load_cell_bias":
+        assert sensors.bias[effect.targets.index(target)] == pytest.approx(typical)
 
 
 @pytest.mark.parametrize(("effect", "target"), [pair for pair in ALL if pair[0].parameters[0].lower < 0])
