@@ -19,10 +19,11 @@ from ....sim.effects.model_file import EffectEntry
 from ....sim.record.recorded_stretch import Stretch
 from ....sim.world import SIDES
 from ..own.system import Columns, Effect, System
-from .loads import CAMERA, CHANNELS, HAND, SEEN, TURN, Predictions, last_look
+from .loads import CAMERA, CHANNELS, DELAY, HAND, SEEN, TURN, Predictions, last_look
 
 STEP = 0.5  # of the typical size, from the values found so far upwards
 BIAS, OFFSET = "load_cell_bias", "camera_offset"  # the prediction is linear in these
+PULLED = 0.05  # what the replay leaves along an axis where a sleeve is pulled, nothing is missing and no arm held [N]
 DRAG = Parameter(name="grip_drag", unit="m", lower=-0.003, upper=0.003, typical=0.001)  # of the closing fingers
 DRAGS = (-0.003, -0.001, 0.0, 0.001, 0.003)  # that are simulated; an arm's joints slip from 1 to 2 mm on [m]
 
@@ -65,7 +66,7 @@ class DressingSystem(System):
     # [N]: of 24 records without any effect the replay leaves 0.03 to 0.3 an axis, median 0.05, upwards 0.12; it has a
     # tenth too much there of what grows with speed, as no servo shakes it.  [m]: in eight such records wrists are seen
     # 0 to 4 mm off along an axis (docs/close-a-gap.md)
-    model_error: ClassVar = {"fx": 0.15, "fy": 0.15, "fz": 0.25, **dict.fromkeys(SEEN, 0.004)}
+    model_error: ClassVar = {"fx": 0.15, "fy": 0.15, "fz": 0.3, **dict.fromkeys(SEEN, 0.004)}
     effects: tuple[Effect, ...] = ()
 
     def __init__(self, stretches: Sequence[Stretch], predictions: Predictions) -> None:
@@ -75,11 +76,13 @@ class DressingSystem(System):
         seen = all(last_look(s) is not None for s in stretches)
         if not seen:
             self.channels = dict.fromkeys(CHANNELS, "N")  # type: ignore[misc] - a class's for other systems
+        if not with_arm:
+            self.model_error = dict.fromkeys(CHANNELS, PULLED)  # type: ignore[misc]
         self.effects = tuple(  # type: ignore[misc] - a class's for other systems
             self._effect(name, target)
             for name, effect in DRESSING_EFFECTS.items()
             for target in effect.targets
-            if name == BIAS or (seen if name == OFFSET else with_cloth if effect.on_cloth else with_arm)
+            if name in (BIAS, DELAY) or (seen if name == OFFSET else with_cloth if effect.on_cloth else with_arm)
         )
         self.start = (DRAG,) if with_arm else ()  # type: ignore[misc]
         self._simulated = [e for e in self.effects if e.regressor is None]

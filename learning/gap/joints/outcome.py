@@ -71,7 +71,7 @@ def judge(
     left = unexplained(named, logs)
     broad = [log.wide() for log in logs]
     wide = unexplained(named, broad)
-    found = _contact_bursts(logs, broad, wide, left)
+    found = [b for b in _contact_bursts(logs, broad, wide, left) if b.load**2 > error2[b.channel]]
     calm, calm_wide = _without(logs, left, found), _without(logs, wide, found)
     remainders = tuple(leftover(logs, calm, calm_wide, c, named.blocks) for c in range(left[0].shape[1]))
     total = np.mean(np.concatenate([log.residual[log.inner] for log in logs]) ** 2, axis=0)

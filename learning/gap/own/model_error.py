@@ -61,3 +61,21 @@ def least_sure(blocks: Sequence[Block], theta: np.ndarray, sd: np.ndarray) -> in
     if not ratios or min(ratios) >= SURE:
         return None
     return int(np.argmin(ratios))
+
+
+def faintest(blocks: Sequence[Block], theta: np.ndarray, logs: list[JointLog], model_error: np.ndarray) -> int | None:
+    """The effect that changes the predictions least, if it changes none by more than the model errs by itself.
+
+    Args:
+        blocks: columns of the effects.
+        theta: their values, one after the other.
+        logs: the recordings.
+        model_error: (C,) root mean square; where it is 0 for a channel, any effect on that counts.
+    """
+    sizes, at = [], 0
+    for block in blocks:
+        own = theta[at : at + len(block.parameters)]
+        at += len(own)
+        moved = np.sqrt(np.mean(np.concatenate([block.build(log) @ own for log in logs]) ** 2, axis=0))
+        sizes.append(float(np.max(moved / np.maximum(model_error[list(block.channels)], 1e-30))))
+    return int(np.argmin(sizes)) if sizes and min(sizes) < 1.0 else None

@@ -13,7 +13,7 @@ from ..joints.noise import NoiseModel, estimate_noise
 from ..joints.search import Search
 from ..joints.workflow import Named, first_noise
 from .fitting import Fit, best_start, first_set, fit, rows_of, squares
-from .model_error import deviations, least_sure
+from .model_error import deviations, faintest, least_sure
 from .simulation import Simulation
 from .system import Effect
 from .working_point import WorkingPoint
@@ -67,6 +67,8 @@ def name_own(sim: Simulation) -> Found:
     while named.chosen:
         sd = deviations(named.blocks, named.search.weight, point.logs, sim.model_error)
         if (doubtful := least_sure(named.blocks, named.theta, sd)) is None:
+            doubtful = faintest(named.blocks, named.theta, point.logs, sim.model_error)
+        if doubtful is None:
             break
         chosen = named.chosen[:doubtful] + named.chosen[doubtful + 1 :]
         now, point = _moved(sim, named.search, chosen, noise, now)
