@@ -29,6 +29,12 @@ class RetreatTuning(Quantities):
     arm_opening: float = quantity(
         0.06, "m", "of fingers, below which no arm is between them", "choice: an adult's forearm is thicker"
     )
+    pressed_load: float = quantity(
+        12.0, "N", "on a hand, from which it rests on something: cloth pulls with less", "measured: at most 10 N"
+    )
+    eased: float = quantity(
+        0.02, "m", "such a hand goes back before its fingers open", "choice: they spread by 2 cm each, and push with it"
+    )
     base_speed: float = quantity(0.3, "m/s", "of the base as it backs off", "choice: slow beside the bed")
     ready_speed: float = quantity(
         0.5, "m/s", "of the hands on their way to the ready posture, away from the person", "choice: quick in the open"
@@ -63,10 +69,21 @@ class Retreat(Skill):
             return max(now, FINGERS.cloth_opening)
         return self.world.robot.gripper.stroke
 
+    def _rests(self, side: Side) -> bool:
+        """Whether a hand that holds no arm rests on something.
+
+        One that had seated a sleeve with 21 N pressed the trunk with 88 N as its fingers opened (193).
+        """
+        seen, n = self.world.observe(), SIDES.index(side)
+        load = float(np.linalg.norm(seen.wrench_hand_in_map[n, :3]))
+        return load > self.tuning.pressed_load and float(seen.gripper_opening[n]) < self.tuning.arm_opening
+
     def _back(self, ready: bool) -> Iterator[None]:
         tuning = self.tuning
         sides: list[Side] = [side for side in SIDES if self.hands in (side, "both")]
         self.note("lets go and draws back")
+        if self.hand_distance > 0.0 and (pressed := [side for side in sides if self._rests(side)]):
+            yield from withdraw(self, pressed, tuning.eased, tuning.withdraw)
         for side in sides:
             yield from open_gripper(self, side, self._first_opening(side))
         if self.hand_distance > 0.0:

@@ -106,3 +106,15 @@ def test_a_command_that_is_lost_is_told(deaf_to, moves):
     run = bench(deaf_to=(deaf_to,), base_distance=0.4)
     assert run.ended() == Reason.COMMAND_LOST
     assert bool(np.ptp(run.way("left")[:, 2]) > 0.05) == moves, "no hand draws back before it is open"
+
+
+@pytest.mark.parametrize(("load", "before"), [(15.0, 0.02), (8.0, 0.0)])
+def test_a_hand_that_rests_on_the_person_goes_back_before_its_fingers_open(load, before):
+    """Of one that stood on a shoulder with 21 N they pressed the trunk with 88 N (193)."""
+    hands = {"right": hand_pose(np.array((0.40, -0.20, 0.85)), POINTS, HEADWARD)}
+    room = beside_bed(stand=STAND, hands=hands, held={"right": CLOTH}, load={"right": (0.0, 0.0, load)})
+    run = LeafBench(lambda context: Retreat("retreat", context, hands="right", ready="never"), room)
+    assert run.ended() is None
+    opened = int(np.argmax(run.openings("right") > 0.02))
+    way = (run.way("right")[opened] - run.start.pose_hand_in_map[1, :3, 3]) @ -POINTS
+    assert way == pytest.approx(before, abs=0.012)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.notebook import run
-from caretree.learning.gap.own.model_error import deviations, least_sure
+from caretree.learning.gap.own.model_error import deviations, faintest, least_sure
 from caretree.learning.gap.own.system import check_system
 
 from .slider import Plain, pushes
@@ -96,6 +96,33 @@ def test_what_is_well_above_it_is_named_with_an_interval_that_knows_of_it():
     assert value.low < 0.2 < value.high
     (narrow,) = (f for f in asked(Plain, {"size": 0.2}).effects if f.name == "ripple")
     assert value.high - value.low > narrow.parameters[0].high - narrow.parameters[0].low
+
+
+def test_what_moves_less_than_the_model_errs_is_no_finding_however_fast_it_is():
+    assert [f.name for f in asked(Plain, {"size": 0.03}).effects][-1] == "ripple"
+    found = asked(Drifting, {"size": 0.03})
+    assert (found.verdict, found.effects) == ("adequate", ())
+
+
+def test_the_faintest_goes_first_where_no_channel_shows_it():
+    blocks = [block(COLUMNS[0]), block(COLUMNS[2])]
+    assert faintest(blocks, np.array((0.9, 1.0)), logs(2), np.array((1.0,))) == 1
+    assert faintest(blocks, np.array((0.9, 2.0)), logs(2), np.array((1.0,))) == 0
+    assert faintest(blocks, np.array((1.1, 2.0)), logs(2), np.array((1.0,))) is None
+    assert faintest(blocks, np.array((1e-9, 2.0)), logs(2), np.zeros(1)) is None
+    assert faintest([], np.zeros(0), logs(2), np.ones(1)) is None
+
+
+def test_a_burst_is_one_only_above_what_the_model_leaves():
+    def bump(size):
+        return lambda log, k: size * (np.abs(log["t"] - 3.0) < 0.3) * (k == 0)
+
+    def verdict(size):
+        *fit, held = pushes(4, kind=Drifting, extra=bump(size))
+        return run(Drifting, fit=fit, heldout=[held]).verdict.verdict
+
+    assert verdict(0.02) == "adequate"
+    assert verdict(0.2) == "unknown"
 
 
 def test_what_one_recording_alone_shows_and_those_held_out_do_not_is_given_up():
