@@ -39,6 +39,7 @@ SEEDS = 100  # that go round
 RUN = (sys.executable, "-u", "-m", "caretree.trees.cli", "run")
 GRASP, PULL = "grasp the sleeve", "pull over the hand"  # names of leaves
 BEYOND = 1.5  # before a pull ends the hand touches the person's own, which is not compared [s]
+FRICTIONS = ("joint_friction", "sleeve_friction")
 LEAST, MOST = 0.8, 1.2  # of its size, an effect is drawn from
 
 
@@ -217,7 +218,20 @@ def main() -> None:
         before, after = _load_gap(row["gap"])
         closed = f"load's gap {before:.2f} to {after:.2f} of its floor"
         print(f"{case.name}: {row['verdict']}, {said}; {held}; {closed}, {row['seconds']:.0f} s", flush=True)
-    print("\n".join(side_by_side([rows])))
+    print("\n".join([*side_by_side([rows]), *_in_short(rows)]))
+
+
+def _in_short(rows: list[dict[str, Any]]) -> list[str]:
+    """How much of the load's gap was closed, and how near frictions are."""
+    closed = []
+    for row in rows:
+        if row["kind"] == "single" and row["gap"]:
+            before, after = _load_gap(row["gap"])
+            if before > 1.0:
+                closed.append(min((before - after) / (before - 1.0), 1.0))
+    off = [abs(i["value"] / i["truth"] - 1.0) for r in rows for i in r["intervals"] if i["effect"] in FRICTIONS]
+    out = [f"the load's gap above its floor, closed: median {np.median(closed):.2f} of {len(closed)}"] if closed else []
+    return [*out, f"frictions within 20 %: {sum(x <= 0.2 for x in off)} of {len(off)}"]
 
 
 if __name__ == "__main__":

@@ -184,8 +184,11 @@ def _held(truth: dict[str, np.ndarray], frame: np.ndarray) -> Held:
 
 
 def _cut(measured: Measured, rows: slice) -> Measured:
+    """Those samples; the base's yaw without jumps by a whole turn, as it is interpolated."""
     names = ("t", "pose_hand", "wrench_hand", "gripper_opening", "arm_positions", "head_pan", "pose_base")
-    return replace(measured, **{name: getattr(measured, name)[rows] for name in names})
+    cut = {name: getattr(measured, name)[rows] for name in names}
+    x, y, yaw = cut["pose_base"].T
+    return replace(measured, **{**cut, "pose_base": np.column_stack((x, y, np.unwrap(yaw)))})
 
 
 def _scene(directory: Path) -> tuple[Scene, str | None, str | None]:

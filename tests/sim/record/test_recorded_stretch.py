@@ -74,3 +74,11 @@ def test_a_record_of_another_world_or_without_truth_is_told(record):
     (record / "truth.npz").unlink()
     with pytest.raises(RecordError, match=r"holds no truth.npz"):
         read_stretch(record)
+
+
+def test_a_base_that_faces_180_degrees_does_not_jump_by_a_turn(record):
+    with np.load(record / "measured.npz") as file:
+        columns = dict(file)
+    columns["pose_base"][:, 2] = np.pi * np.where(np.arange(len(columns["t"])) % 2, -1.0, 1.0)
+    np.savez(record / "measured.npz", **columns)
+    assert not np.ptp(read_stretch(record).robot.pose_base[:, 2])
