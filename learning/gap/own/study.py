@@ -84,8 +84,13 @@ class OwnStudy(Study):
         return found
 
     def _left_of_heldout(self, found: Found) -> float:
-        """Mean square that a set leaves of the held-out recordings, each channel over its scale."""
-        return float(np.mean(np.concatenate(self._before_and_after(found)[1]) ** 2))
+        """Mean square that a set leaves of the held-out recordings, each channel over the model's own error.
+
+        Over its gap, a channel that nothing changes would count as much as those that an effect closes.
+        """
+        error = np.where(self.sim.model_error > 0.0, self.sim.model_error, self.sim.scale)
+        left = np.concatenate(self._before_and_after(found)[1]) * self.sim.scale / error
+        return float(np.mean(left**2))
 
     @property
     def found(self) -> Found:

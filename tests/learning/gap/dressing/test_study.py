@@ -160,6 +160,23 @@ def test_a_camera_that_sits_elsewhere_is_told_along_its_own_axes(lift):
     assert [p.value for p in v.effects[0].parameters] == pytest.approx((0.02, -0.01, 0.015), abs=2e-3)
 
 
+def test_a_tracker_that_slips_for_a_second_is_no_burst(lift):
+    def seen_low(episode, k):
+        low = 0.11 * ((episode.t > episode.t[8]) & (episode.t < episode.t[8] + 1.3)) * (k == 0)
+        return replace(episode, columns={**episode.columns, "wz": episode.columns["wz"] - low})
+
+    for bias in ((0.0, 0.0, 0.0), (0.8, -1.0, 1.2)):
+        given = measured(lift, {}, bias=bias)
+        slipped = replace(given, episodes=tuple(seen_low(e, k) for k, e in enumerate(given.episodes)))
+        assert open_study(slipped).conclude().verdict == ("effects" if any(bias) else "adequate")
+
+
+def test_an_effect_on_loads_alone_is_borne_out_however_well_the_arm_is_seen(lift):
+    """Beside three channels that nothing changes, a friction closed 11 % of what counted, and was given up."""
+    v = open_study(measured(lift, {"torque": -1.2}, drags=(0.0, 0.0, 0.0, 0.0015))).conclude()
+    assert [f.name for f in v.effects] == ["joint_friction"]
+
+
 def test_what_no_effect_makes_is_unknown(lift):
     assert open_study(measured(lift, {}, quirk=1.5)).conclude().verdict == "unknown"
 
