@@ -16,7 +16,7 @@ from ..own.naming import Found
 from ..own.simulation import Recording, recording
 from ..own.study import OwnStudy
 from .loads import CHANNELS, SEEN, Predictions
-from .system import DressingSystem, entries
+from .system import DRAG, DressingSystem, entries
 
 ROUNDS = 4
 SLIP = 0.03  # an arm seen so far from where it is seen otherwise, against the model's, is a slip of the tracker [m]
@@ -66,20 +66,28 @@ class DressingStudy(OwnStudy):
     def _searched(self) -> tuple[Found, str]:
         """The search's result where the world was simulated at the values found."""
         at = dict.fromkeys((p.name for e in self.system.effects for p in e.parameters), 0.0)
-        searched = None
+        drags, searched = [0.0] * len(self.measured.episodes), None
         for _ in range(ROUNDS):
-            self.system.move_to(at)
+            self.system.move_to(at, drags)
             vars(self).pop("sim", None)  # what it keeps was the world elsewhere
             searched = OwnStudy._searched.func(self)
             found = searched[0].point.values
             simulated = [p for e in self.system.effects if not e.regressor for p in e.parameters]
-            if all(abs(found[p.name] - at[p.name]) < CLOSE * p.typical for p in simulated):
+            before, drags = drags, self._drags(searched[0])
+            still = np.allclose(before, drags, atol=CLOSE * DRAG.typical)
+            if still and all(abs(found[p.name] - at[p.name]) < CLOSE * p.typical for p in simulated):
                 break
             at = {**at, **found}
         else:
             self.notes.append(f"The values had not come to rest after {ROUNDS} rounds of simulation.")
         assert searched is not None
         return searched
+
+    def _drags(self, found: Found) -> list[float]:
+        """How far the fingers dragged the arm along, by the recordings' own numbers, in their order [m]."""
+        recordings = {int(r.columns["window"][0]): r for r in (*self._recordings[0], *self._recordings[1])}
+        own = (self.sim.own(recordings[k], found.point.values) for k in range(len(recordings)))
+        return [round(x.get(DRAG.name, 0.0), 5) for x in own]
 
     def patch(self) -> dict[str, Any]:
         """See `Study.patch`."""

@@ -63,10 +63,12 @@ class OwnStudy(Study):
     def _searched(self) -> tuple[Found, str]:
         """The search's result, and what it had named where that made the held-out recordings worse."""
         found = name_own(self.sim)
+        if self.sim.model_error.any():
+            found = self._borne_out(found)
         if found.named.blocks and farther(*self._before_and_after(found), found.named.noise.rms / self.sim.scale):
             worse = " and ".join(f"{b.name} on {b.target}" for b in found.named.blocks)
             return none_of(found, self.sim), worse
-        return (self._borne_out(found) if self.sim.model_error.any() else found), ""
+        return found, ""
 
     def _borne_out(self, found: Found) -> Found:
         """Those effects that the held-out recordings bear out, where the model errs by itself.
