@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..sim.quantity import Quantities, quantity
-from ..sim.world import SIDES, Hands, Side
+from ..sim.world import SIDES, Hands, Observation, Side
 from .belief.person_tracking import careful
 from .control.base import drive_to
 from .control.fingers import FINGERS, open_gripper
@@ -59,22 +59,22 @@ class Retreat(Skill):
         """Open, draw back, back off, ready."""
         yield from ready_or_not(self, self.ready, self._back)
 
-    def _first_opening(self, side: Side) -> float:
+    def _first_opening(self, seen: Observation, side: Side) -> float:
         """Just enough for cloth to slip out; fingers that are open already stay so: beside the person they would push.
 
         Opened wide where the hand had met a leg with 93 N, they pushed it with 145 N (147).
         """
-        tuning, now = self.tuning, float(self.world.observe().gripper_opening[SIDES.index(side)])
+        tuning, now = self.tuning, float(seen.gripper_opening[SIDES.index(side)])
         if self.hand_distance > 0.0 and now < tuning.arm_opening:
             return max(now, FINGERS.cloth_opening)
         return self.world.robot.gripper.stroke
 
-    def _rests(self, side: Side) -> bool:
+    def _rests(self, seen: Observation, side: Side) -> bool:
         """Whether a hand that holds no arm rests on something.
 
         One that had seated a sleeve with 21 N pressed the trunk with 88 N as its fingers opened (193).
         """
-        seen, n = self.world.observe(), SIDES.index(side)
+        n = SIDES.index(side)
         load = float(np.linalg.norm(seen.wrench_hand_in_map[n, :3]))
         return load > self.tuning.pressed_load and float(seen.gripper_opening[n]) < self.tuning.arm_opening
 
@@ -82,10 +82,11 @@ class Retreat(Skill):
         tuning = self.tuning
         sides: list[Side] = [side for side in SIDES if self.hands in (side, "both")]
         self.note("lets go and draws back")
-        if self.hand_distance > 0.0 and (pressed := [side for side in sides if self._rests(side)]):
-            yield from withdraw(self, pressed, tuning.eased, tuning.withdraw)
         for side in sides:
-            yield from open_gripper(self, side, self._first_opening(side))
+            seen = self.world.observe()
+            if self.hand_distance > 0.0 and self._rests(seen, side):
+                yield from withdraw(self, [side], tuning.eased, tuning.withdraw)
+            yield from open_gripper(self, side, self._first_opening(seen, side))
         if self.hand_distance > 0.0:
             yield from withdraw(self, sides, self.hand_distance, tuning.withdraw)
         for side in sides:
