@@ -63,6 +63,19 @@ def least_sure(blocks: Sequence[Block], theta: np.ndarray, sd: np.ndarray) -> in
     return int(np.argmin(ratios))
 
 
+def size_in_errors(block: Block, theta: np.ndarray, logs: list[JointLog], model_error: np.ndarray) -> float:
+    """How much an effect changes the predictions, root mean square over the model's own error, where it does most.
+
+    Args:
+        block: columns of the effect.
+        theta: its values.
+        logs: the recordings.
+        model_error: (C,) root mean square; where it is 0 for a channel, anything on that is infinitely much.
+    """
+    moved = np.sqrt(np.mean(np.concatenate([block.build(log) @ theta for log in logs]) ** 2, axis=0))
+    return float(np.max(moved / np.maximum(model_error[list(block.channels)], 1e-30)))
+
+
 def faintest(blocks: Sequence[Block], theta: np.ndarray, logs: list[JointLog], model_error: np.ndarray) -> int | None:
     """The effect that changes the predictions least, if it changes none by more than the model errs by itself.
 
@@ -70,12 +83,11 @@ def faintest(blocks: Sequence[Block], theta: np.ndarray, logs: list[JointLog], m
         blocks: columns of the effects.
         theta: their values, one after the other.
         logs: the recordings.
-        model_error: (C,) root mean square; where it is 0 for a channel, any effect on that counts.
+        model_error: (C,) as in `size_in_errors`.
     """
-    sizes, at = [], 0
-    for block in blocks:
-        own = theta[at : at + len(block.parameters)]
-        at += len(own)
-        moved = np.sqrt(np.mean(np.concatenate([block.build(log) @ own for log in logs]) ** 2, axis=0))
-        sizes.append(float(np.max(moved / np.maximum(model_error[list(block.channels)], 1e-30))))
+    ends = np.cumsum([len(block.parameters) for block in blocks])
+    sizes = [
+        size_in_errors(block, theta[end - len(block.parameters) : end], logs, model_error)
+        for block, end in zip(blocks, ends, strict=True)
+    ]
     return int(np.argmin(sizes)) if sizes and min(sizes) < 1.0 else None

@@ -22,7 +22,7 @@ from ..measurement import MeasurementSet, require_columns
 from ..pictures import Curve
 from ..study import Study
 from .equals import equals, separating
-from .model_error import SURE, deviations
+from .model_error import SURE, deviations, size_in_errors
 from .naming import Found, name_own, none_of, without
 from .simulation import Recording, Simulation, recording
 from .system import System
@@ -184,7 +184,7 @@ class OwnStudy(Study):
             equivalent=tuple(" + ".join(e.names) for e in others),
             experiment=experiment,
             size=float(np.max(np.sqrt(np.mean(moved**2, axis=0)) / self.outcome.floor)),
-            smallest=smallest_found(named.search, named.chosen, named.chosen[k], theta),
+            smallest=self._smallest(named.chosen[k], theta),
             confidence=float(self.kept[k]),
         )
 
@@ -233,10 +233,17 @@ class OwnStudy(Study):
             p = block.parameters[0]
             unit = np.zeros(len(block.parameters))
             unit[0] = p.typical if p.upper > 0.0 else -p.typical
-            factor = smallest_found(search, chosen, i, unit)
+            factor = self._smallest(i, unit)
             least = factor * p.typical if np.isfinite(factor) else 4.0 * p.typical
             out[f"{block.name} on {block.target}"] = f"{'' if np.isfinite(factor) else 'not even '}{least:.3g} {p.unit}"
         return out
+
+    def _smallest(self, i: int, theta: np.ndarray) -> float:
+        """Part of `theta` (p,) of block `i` that would have been named: above the noise, and the model's own error."""
+        search = self.found.named.search
+        size = size_in_errors(search.blocks[i], theta, self.found.point.logs, self.sim.model_error)
+        seen = smallest_found(search, self.found.named.chosen, i, theta)
+        return max(seen, 1.0 / size) if size > 0.0 else seen
 
     def curves(self) -> list[Curve]:
         """The channels with the largest gap, on the first held-out recording."""

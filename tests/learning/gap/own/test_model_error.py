@@ -104,6 +104,13 @@ def test_what_moves_less_than_the_model_errs_is_no_finding_however_fast_it_is():
     assert (found.verdict, found.effects) == ("adequate", ())
 
 
+def test_the_report_says_that_what_is_below_it_would_not_have_been_named():
+    """Of a swing of 1 by a sine, 0.03 of a metre are root mean square from an amplitude of about 0.042 on."""
+    *fit, held = pushes(4, kind=Drifting, extra=drift)
+    told = run(Drifting, fit=fit, heldout=[held]).verdict.detectable["ripple on system"]
+    assert float(told.split()[0]) > 0.03
+
+
 def test_the_faintest_goes_first_where_no_channel_shows_it():
     blocks = [block(COLUMNS[0]), block(COLUMNS[2])]
     assert faintest(blocks, np.array((0.9, 1.0)), logs(2), np.array((1.0,))) == 1
