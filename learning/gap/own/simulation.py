@@ -93,7 +93,7 @@ class Simulation:
 
     @cached_property
     def _usual(self) -> np.ndarray:
-        """(C,) by which channels count where a recording's own numbers are fitted: the model's own error, where it errs.
+        """(C,) what channels count by where a recording's own numbers are fitted: the model's own error, if any.
 
         Over the gap, a channel that is predicted well would outweigh the one that those numbers are about.
         """

@@ -2,10 +2,11 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from caretree.gap import Effect, Parameter, System
 from caretree.learning.gap.errors import GapError
 from caretree.learning.gap.measurement import set_of
 from caretree.learning.gap.own.simulation import Simulation, recording
+
+from caretree.gap import Effect, Parameter, System
 
 from .slider import Slider, pushes
 
