@@ -150,7 +150,7 @@ class Grip:
             return False
         if opening > 2 * self.person.spec.arm_radii.max() + TOUCH:
             return False
-        found = self._arm_between(pose_hand_in_map, only)
+        found = self._arm_between(pose_hand_in_map, opening, only)
         if found is None or opening > 2 * found[3] + TOUCH:
             return False
         arm, part, point, radius = found
@@ -268,11 +268,17 @@ class Grip:
             if np.linalg.norm(np.subtract(held, self.handle.position())) > ARM_SLIP:
                 self.release()
 
-    def _arm_between(self, pose_hand_in_map: np.ndarray, only: int | None) -> tuple[int, int, np.ndarray, float] | None:
-        """(arm, part, point on its axis, radius) of the arm part between the fingers."""
+    def _arm_between(
+        self, pose_hand_in_map: np.ndarray, opening: float, only: int | None
+    ) -> tuple[int, int, np.ndarray, float] | None:
+        """(arm, part, point on its axis, radius) of the arm part between the fingers.
+
+        It is the nearest one, but at a joint, where two are as near, the thicker one, which the fingers touch first:
+        waiting for the thinner one they would push the arm aside, by up to 2 mm with 10 N.
+        """
         arms, radii = self.person.arms(), self.person.radii()
         origin, turn = pose_hand_in_map[:3, 3], pose_hand_in_map[:3, :3]
-        best: tuple[float, tuple[int, int, np.ndarray, float]] | None = None
+        best: tuple[tuple[bool, float], tuple[int, int, np.ndarray, float]] | None = None
         for arm in range(2):
             for part in range(len(ARM_SEGMENTS)):
                 if 2 * radii[arm, part] >= self._open_before or only not in (None, arm_part(arm, part)):
@@ -287,7 +293,8 @@ class Grip:
                 # what ends before it comes between them is not: a hand was taken 0.17 m away, at a forearm
                 fits = fits and (only is not None or abs(local[0]) <= PAD_HALF_WIDTH + CATCH)
                 if fits:
-                    distance = float(np.linalg.norm(local))
-                    if best is None or distance < best[0]:
-                        best = (distance, (arm, part, point, float(radii[arm, part])))
+                    touched = opening <= 2 * radii[arm, part] + TOUCH and abs(local[0]) <= PAD_HALF_WIDTH
+                    nearness = (not touched, float(np.linalg.norm(local)))
+                    if best is None or nearness < best[0]:
+                        best = (nearness, (arm, part, point, float(radii[arm, part])))
         return best[1] if best else None

@@ -96,6 +96,14 @@ def test_fingers_that_close_step_by_step_take_the_part_of_the_arm_between_them_e
     assert grip.thickness == pytest.approx(thick)
 
 
+def test_at_the_elbow_the_thicker_part_is_taken_which_the_fingers_touch_first(around_forearm):
+    grip, pose, thick = around_forearm
+    upper = 2 * float(grip.person.radii()[1, 0])
+    pose[:3, 3] = grip.person.arms()[1, 1] + 0.001 * pose[:3, 0]  # a hair nearer to the forearm
+    assert closed_slowly(grip, pose, to=0.05) == pytest.approx(upper + TOUCH, abs=0.002)
+    assert upper > thick + TOUCH
+
+
 def test_a_part_that_ends_before_it_comes_between_the_fingers_is_not_taken(around_forearm):
     grip, pose, thick = around_forearm
     grip.on_command(0.0, thick - 0.004)  # too narrow for the forearm, wide enough for the hand 0.15 m away
