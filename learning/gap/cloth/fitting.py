@@ -164,6 +164,19 @@ class ClothFitter:
                 break
         return ClothFit(model=model, rss=best, residuals=residuals, half=self._half_widths(J, residuals))
 
+    def with_intervals(self, fit: ClothFit, free: tuple[Free, ...], steps: dict[Free, float]) -> ClothFit:
+        """A fit with these numbers free, at the values that it has, and how sure they are together.
+
+        Args:
+            fit: the fit.
+            free: those that were fitted, at whatever time.
+            steps: finite difference of each of them.
+        """
+        model = replace(fit.model, free=free)
+        return replace(
+            fit, model=model, half=self._half_widths(self.columns(model, fit.residuals, steps), fit.residuals)
+        )
+
     def _half_widths(self, J: np.ndarray, residuals: list[np.ndarray]) -> np.ndarray:
         """Half-widths (P,) from weighted columns (rows, P); not finite where nothing was fitted."""
         if not len(J) or not J.shape[1]:

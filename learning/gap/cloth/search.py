@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from .candidates import Candidate, candidates
-from .catches import best_catch
+from .catches import MOMENT, best_catch
 from .fitting import ENOUGH, ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .patches import best_patch
@@ -28,6 +28,8 @@ NUMBER = 10.0  # what a fitted number has to keep gaining to stay
 SPACING = 0.1  # between the instants a slip is screened at, over a recording's length
 SAME = 12.0  # criterion within which two explanations fit alike
 FINER = 0.1  # finite differences once a fit stands still, over those before
+ONSET: Free = ("strain_stiffening", "onset")
+BEND = 0.02  # finite difference of the onset [1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +48,7 @@ class ClothSearch:
     Attributes:
         chosen: candidates in the model, in order.
         fit: the final fit.
+        sure: the same with the intervals of all numbers that were fitted at some time.
         plain: the model as given.
         before, after: shared and unshared parts of its residual and of the final one.
         rivals: per chosen candidate, other names that fitted as well.
@@ -55,6 +58,7 @@ class ClothSearch:
 
     chosen: tuple[Candidate, ...]
     fit: ClothFit
+    sure: ClothFit
     plain: ClothFit
     before: Coherence
     after: Coherence
@@ -144,6 +148,7 @@ class _Rounds:
         return ClothSearch(
             chosen=tuple(chosen),
             fit=fit,
+            sure=sure(self._fitter, fit, chosen),
             plain=self._plain,
             before=self._before,
             after=self._coherence(fit),
@@ -312,8 +317,8 @@ def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: C
     if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
         fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
     if last.name == "strain_stiffening":  # from which stretch on
-        free = (*fit.model.free, ("strain_stiffening", "onset"))
-        steps = {**steps_of(chosen), ("strain_stiffening", "onset"): 0.02}
+        free = (*fit.model.free, ONSET)
+        steps = {**steps_of(chosen), ONSET: BEND}
         bent = fitter.fit(replace(fit.model, free=free), steps, 4)
         fit = replace(bent, model=replace(bent.model, free=fit.model.free))
     return settled(fitter, fitter.fit(fit.model, steps_of(chosen), rounds=3), chosen)
@@ -327,6 +332,18 @@ def settled(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate]) -> Clot
     """
     fine = fitter.fit(fit.model, {f: FINER * s for f, s in steps_of(chosen).items()}, rounds=5)
     return fine if fine.rss < (1.0 - ENOUGH) * fit.rss else fit
+
+
+def sure(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate]) -> ClothFit:
+    """The fit with what was fitted once and then held free, too: without, the others look too sure."""
+    end = float(max(e.t[-1] for e in fitter.episodes))
+    held: dict[Free, float] = {ONSET: BEND, ("snag", "t0"): MOMENT * end, ("snag", "t1"): MOMENT * end}
+    acting = {c.name for c in chosen}
+    held = {f: s for f, s in held.items() if f[0] in acting}
+    if not held:
+        return fit
+    steps = {f: FINER * s for f, s in {**steps_of(chosen), **held}.items()}
+    return fitter.with_intervals(fit, (*fit.model.free, *held), steps)
 
 
 def _prune(

@@ -84,7 +84,7 @@ class ClothStudy(Study):
         if after <= before:
             return found
         self._rejected = " and ".join(c.name for c in found.chosen)
-        return replace(found, chosen=(), fit=found.plain, after=found.before, rivals={})
+        return replace(found, chosen=(), fit=found.plain, sure=found.plain, after=found.before, rivals={})
 
     @property
     def _pairs(self) -> np.ndarray:
@@ -199,11 +199,11 @@ class ClothStudy(Study):
         # a slip happens between two steps of the simulation
         half = [
             h + (self.scene.physics.time_step if parameter == ("grip_slip", "time") else 0.0)
-            for parameter, h in zip(f.fit.model.free, f.fit.half, strict=True)
+            for parameter, h in zip(f.sure.model.free, f.sure.half, strict=True)
         ]
         for c in f.chosen:
             values = []
-            for k, (name, p) in enumerate(f.fit.model.free):
+            for k, (name, p) in enumerate(f.sure.model.free):
                 if name == c.name or (name == "physics" and p == c.name):
                     x = f.fit.model.value((name, p))
                     unit = UNITS.get(p, "") if name == "physics" else _unit(name, p)

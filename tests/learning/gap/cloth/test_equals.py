@@ -63,6 +63,7 @@ def exchanged(cloth_set):
         found = ClothSearch(
             chosen=chosen,
             fit=fit,
+            sure=fit,
             plain=plain,
             before=calm,
             after=calm,

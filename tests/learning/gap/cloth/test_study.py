@@ -42,6 +42,7 @@ def test_a_recalibration_must_suit_the_load_and_be_a_number_cloth_can_have(cloth
             Candidate(name="elastic_stiffness", target="cloth", start=start, push=start, steps={}, recalibration=True),
         ),
         fit=fit(ClothModel(physics={"elastic_stiffness": stiffness}), newtons),
+        sure=fit(ClothModel(physics={"elastic_stiffness": stiffness}), newtons),
         plain=fit(ClothModel(), 4.0),
         before=calm,
         after=calm,
@@ -66,6 +67,7 @@ def test_what_makes_the_held_out_recording_worse_is_never_found(cloth_set, monke
     found = ClothSearch(
         chosen=(candidate,),
         fit=fit,
+        sure=fit,
         plain=ClothFit(model=ClothModel(), rss=1.0, residuals=[off], half=np.ones(0)),
         before=calm,
         after=calm,
@@ -95,6 +97,7 @@ def test_whole_sets_that_fit_as_well_are_told(cloth_set):
     study.__dict__["found"] = ClothSearch(
         chosen=(effects["wind"], effects["offset"]),
         fit=nothing,
+        sure=nothing,
         plain=nothing,
         before=calm,
         after=calm,
