@@ -220,9 +220,10 @@ class ClassicalSenses(Senses):
         *,
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
+        beside: Sequence[Frame] = (),
     ) -> GraspPoint:
         """Half the neck binding's length from its ends."""
-        return collar_middle(frame, near_in_map, away, self._tuning.collar)
+        return collar_middle(frame, near_in_map, away, self._tuning.collar, beside)
 
     def head(self, frame: Frame) -> Head:
         """The skin at the head end of the bed, as wide and as high as a head."""

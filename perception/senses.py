@@ -114,8 +114,7 @@ class Senses(ABC):
             near_in_map: (3,) where the corner was just now [m].
 
         Returns:
-            Target `collar_corner_left` or `collar_corner_right`.  Below a confidence of 0.5 it is inferred, or other
-            cloth hangs beside it.
+            Target `collar_corner_left` or `_right`; below a confidence of 0.5 inferred, or with other cloth beside it.
 
         Raises:
             PerceptionFailure: the corner is not seen.
@@ -226,8 +225,7 @@ class Senses(ABC):
             near_in_map: (3,) roughly where its armhole is [m].
 
         Returns:
-            Position: middle of the strap.  Closing: across the strap; approach x closing points along it, from the
-            neckline outwards on the wearer's left, and opposite on the right.
+            Position: its middle.  Closing: across it; approach x closing points along it, outwards on the left side.
 
         Raises:
             PerceptionFailure: no armhole near the place, or the strap is hidden.
@@ -371,6 +369,7 @@ class Senses(ABC):
         *,
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
+        beside: Sequence[Frame] = (),
     ) -> GraspPoint:
         """The middle of a worn gown's neckline.
 
@@ -378,6 +377,7 @@ class Senses(ABC):
             frame: a view from above the person.
             near_in_map: (3,) middle between the shoulders [m].
             away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
+            beside: more views of the same cloth, which show what folds and shoulders hide from `frame`.
 
         Returns:
             Target `collar_middle`; its confidence is the share of the neckline that shows.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -229,41 +230,56 @@ def collar_middle(
     near_in_map: np.ndarray,
     away: tuple[float, float] = (0.0, 0.0),
     tuning: CollarTuning = DEFAULT,
+    beside: Sequence[Frame] = (),
 ) -> GraspPoint:
     """The middle of a worn gown's neckline: about as much of the tape lies on either side of it.
 
     What is hidden is shared between its ends.  A taut half hides nothing, and a slack one has folds: the less straight
     the tape runs from an end, the nearer to the midline and the lower that end lies, and the farther off the armhole,
-    the more is hidden there.
+    the more is hidden there.  Of several pictures each shows what a fold or a shoulder hides from the others.
 
     Args:
         frame: a view from above the person.
         near_in_map: (3,) middle between the shoulders [m].
         away: from the middle to where the cloth is to be grasped, along x and y in the map [m].
         tuning: numbers of the search.
+        beside: more views of the same cloth, from elsewhere.
 
     Returns:
         The grasp in the map, with an approach into the cloth; its confidence is the share of the tape that shows.
 
     Raises:
-        PerceptionFailure: too little tape is seen there.
+        PerceptionFailure: too little tape is seen there, in any of them.
     """
-    _, points, share = _neckline_tape(frame, tuning)
-    worn = np.linalg.norm((points - near_in_map)[:, :2], axis=1) < tuning.body_distance
-    if np.count_nonzero(worn) < tuning.min_points:
+    seen = [view for view in (_worn_tape(each, near_in_map, tuning) for each in (frame, *beside)) if view is not None]
+    if not seen:
         raise PerceptionFailure(Problem.NOTHING_SEEN, "neck binding on the person")
-    areas = surface_areas(frame, points, tuning.area_radius, tuning.min_cosine)[worn] / share
-    tape = points[worn]
+    tape = np.concatenate([points for _, points, _ in seen])
     across_body = main_direction(tape)
     across_body *= np.sign(across_body[0]) or 1.0  # the wearer's right: in the map the head lies at -y, the feet at y
-    middles, lengths = slices_across(tape, areas, tape @ across_body, tuning)
+    middles, lengths = slices_across([(points, areas) for _, points, areas in seen], across_body, tuning)
     shown = float(lengths.sum())
     hidden = max(0.0, GOWN.neckline_length - shown)
-    doubt = (tuning.even_doubt + _doubt(frame, tape, near_in_map, across_body, tuning)) ** 2
+    doubts = [_doubt(each, points, near_in_map, across_body, tuning) for each, points, _ in seen]
+    doubt = (tuning.even_doubt + np.min(doubts, axis=0)) ** 2
     place = (shown + hidden) / 2 + GOWN.neckline_middle - hidden * doubt[0] / doubt.sum()
     along = np.cumsum(lengths) - lengths / 2
     position = np.array([np.interp(place, along, axis) for axis in middles.T])
     return _grasp(frame, tape, position, max(0.0, shown - _folded_under(middles, tuning)), away, tuning)
+
+
+def _worn_tape(
+    frame: Frame, near_in_map: np.ndarray, tuning: CollarTuning
+) -> tuple[Frame, np.ndarray, np.ndarray] | None:
+    """A picture with points (n, 3) of the tape on the person and its area (n,) at each; None where hardly any shows."""
+    try:
+        _, points, share = _neckline_tape(frame, tuning)
+    except PerceptionFailure:
+        return None
+    worn = np.linalg.norm((points - near_in_map)[:, :2], axis=1) < tuning.body_distance
+    if np.count_nonzero(worn) < tuning.min_points:
+        return None
+    return frame, points[worn], surface_areas(frame, points, tuning.area_radius, tuning.min_cosine)[worn] / share
 
 
 def _folded_under(middles: np.ndarray, tuning: CollarTuning) -> float:
@@ -273,23 +289,28 @@ def _folded_under(middles: np.ndarray, tuning: CollarTuning) -> float:
 
 
 def slices_across(
-    points: np.ndarray, areas: np.ndarray, across: np.ndarray, tuning: CollarTuning
+    views: Sequence[tuple[np.ndarray, np.ndarray]], across_body: np.ndarray, tuning: CollarTuning
 ) -> tuple[np.ndarray, np.ndarray]:
     """Middles (m, 3) and lengths of tape (m,) of slices across the body, in their order [m].
 
     Each has as much tape as its area tells, which folds in it do not shorten, or as is needed to reach its neighbours,
-    where the tape is seen from its side or not at all.
+    where the tape is seen from its side or not at all.  Of several views the one counts that shows most of a slice.
 
     Args:
-        points: (n, 3) of the tape [m].
-        areas: (n,) of the tape at each of them [m^2].
-        across: (n,) where they are across the body [m].
+        views: of each the points (n, 3) of the tape [m], and the area (n,) of the tape at each of them [m^2].
+        across_body: (3,) unit vector.
         tuning: numbers of the search.
     """
-    _, slices = np.unique(np.floor((across - across.min()) / tuning.slice_width), return_inverse=True)
-    middles = np.array([np.median(points[slices == n], axis=0) for n in range(slices.max() + 1)])
+    first = min(float((points @ across_body).min()) for points, _ in views)
+    slices = [np.floor((points @ across_body - first) / tuning.slice_width).astype(int) for points, _ in views]
+    count = max(int(each.max()) for each in slices) + 1
+    area = np.array([np.bincount(each, areas, count) for each, (_, areas) in zip(slices, views, strict=True)])
+    area[[np.bincount(each, minlength=count) == 0 for each in slices]] = -1.0  # nothing of it shows
+    shows = np.flatnonzero(area.max(axis=0) >= 0.0)
+    best = area.argmax(axis=0)[shows]
+    middles = np.array([np.median(views[k][0][slices[k] == n], axis=0) for n, k in zip(shows, best, strict=True)])
     steps = np.pad(np.linalg.norm(np.diff(middles, axis=0), axis=1), 1, constant_values=tuning.slice_width)
-    return middles, np.maximum(np.bincount(slices, areas) / GOWN.strap_width, (steps[:-1] + steps[1:]) / 2)
+    return middles, np.maximum(area[best, shows] / GOWN.strap_width, (steps[:-1] + steps[1:]) / 2)
 
 
 def _doubt(

@@ -239,6 +239,7 @@ class ScriptedSenses(Senses):
         *,
         near_in_map: np.ndarray,
         away: tuple[float, float] = (0.0, 0.0),
+        beside: Sequence[Frame] = (),
     ) -> GraspPoint:
         """A little aside until it is asked where to grasp it on the chest, and then in the person's middle."""
         place = np.array((self._collar + away[0], -0.5 + away[1], 0.83))

@@ -110,11 +110,14 @@ def flat_tape(length=0.4, step=0.004):
     return points, np.full(len(points), step**2)
 
 
+ACROSS = np.array((1.0, 0.0, 0.0))
+
+
 def test_a_fold_that_shows_does_not_shorten_the_tape():
     points, areas = flat_tape()
     folded = np.abs(points[:, 0] - 0.2) < 0.03
     for more in (1.0, 4.0):
-        middles, lengths = slices_across(points, areas * np.where(folded, more, 1.0), points[:, 0], DEFAULT)
+        middles, lengths = slices_across([(points, areas * np.where(folded, more, 1.0))], ACROSS, DEFAULT)
         assert lengths.sum() == pytest.approx(0.4 + 0.06 * (more - 1.0), abs=0.03)
         assert len(middles) == len(lengths) == 20
 
@@ -122,8 +125,29 @@ def test_a_fold_that_shows_does_not_shorten_the_tape():
 def test_tape_that_hardly_shows_still_reaches_its_neighbours():
     points, areas = flat_tape()
     seen = (points[:, 0] < 0.15) | (points[:, 0] > 0.25)
-    _, lengths = slices_across(points[seen], 0.3 * areas[seen], points[seen, 0], DEFAULT)
+    _, lengths = slices_across([(points[seen], 0.3 * areas[seen])], ACROSS, DEFAULT)
     assert lengths.sum() == pytest.approx(0.4, abs=0.03)
+
+
+def test_of_two_pictures_the_one_counts_that_shows_more_of_a_slice():
+    points, areas = flat_tape()
+    left, right = (np.where(points[:, 0] < 0.2, a, b) * areas for a, b in ((1.0, 0.2), (0.3, 1.0)))
+    middles, lengths = slices_across([(points, left), (points, right)], ACROSS, DEFAULT)
+    assert lengths.sum() == pytest.approx(0.4, abs=0.03)
+    assert np.all(np.diff(middles[:, 0]) > 0.0)
+
+
+def test_what_is_hidden_from_one_picture_another_one_shows(scenes):
+    scene = scenes.lying(1)
+    middle = corner_places(scene).mean(axis=0)
+    first, second = scene.frame(1), scene.frame(2)
+    whole = collar_middle(first, middle)
+    half = points_in_map(first)[..., 0] < whole.position_in_map[0] + 0.05
+    cut = replace(first, depth=np.where(half, first.depth, 0.0))
+    alone, together = collar_middle(cut, middle), collar_middle(cut, middle, beside=(second,))
+    assert alone.confidence < 0.8 * whole.confidence
+    assert together.confidence > 0.95 * whole.confidence
+    assert together.position_in_map[0] == pytest.approx(whole.position_in_map[0], abs=0.02)
 
 
 def test_tape_that_is_folded_under_does_not_show(scenes):

@@ -118,8 +118,8 @@ class WornGown(ScriptedSenses):
     def chest_cover(self, frame, *, shoulders_in_map):
         return replace(super().chest_cover(frame, shoulders_in_map=shoulders_in_map), outside=self.outside)
 
-    def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0)):
-        seen = super().collar_middle(frame, near_in_map=near_in_map, away=away)
+    def collar_middle(self, frame, *, near_in_map, away=(0.0, 0.0), beside=()):
+        seen = super().collar_middle(frame, near_in_map=near_in_map, away=away, beside=beside)
         off = np.add(self.closely if self.closely and frame.camera != "head" else self.off, away)
         return replace(seen, confidence=self.shown, position_in_map=near_in_map + (*off, 0.13))
 
