@@ -15,6 +15,7 @@ from .scene import ClothEpisode, ClothScene
 MOMENT = 0.02  # [s] by which the instant of a slip is moved in a fit
 PULL = 0.3  # [N/m] of a snag: a cloth weighs a newton or two
 PATCHES = 7  # places of the cloth where a mass or a snag is tried
+ONSETS = (0.01, 0.03, 0.06)  # strains tried as the ones from which cloth stiffens; between them a fit finds its way [1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,12 +84,15 @@ def _everywhere() -> list[Candidate]:
     """Effects that act on the whole cloth or on the reading."""
     return [
         _effect("air_drag", "cloth", {"coefficient": 0.0}, {"coefficient": 1.0}, ("coefficient",)),
-        _effect(
-            "strain_stiffening",
-            "cloth",
-            {"stiffness": 0.0, "onset": 0.03},
-            {"stiffness": 20.0, "onset": 0.03},
-            ("stiffness",),
+        *(
+            _effect(
+                "strain_stiffening",
+                "cloth",
+                {"stiffness": 0.0, "onset": onset},
+                {"stiffness": 20.0, "onset": onset},
+                ("stiffness",),
+            )
+            for onset in ONSETS
         ),
         _effect("delay", "cloth", {"time": 0.0}, {"time": 0.01}, ("time",)),
         _effect("offset", "cloth", {a: 0.0 for a in "xyz"}, {a: 0.003 for a in "xyz"}, ("x", "y", "z")),
