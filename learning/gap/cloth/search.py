@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from .candidates import Candidate, candidates
-from .catches import MOMENT, best_catch
+from .candidates import ONSETS, Candidate, candidates
+from .catches import FINE, MOMENT, best_catch
 from .fitting import ENOUGH, ClothFit, ClothFitter, ClothModel, Free, scaled
 from .noise import Coherence, coherence, load_misfit, memory, neighbours
 from .patches import best_patch
@@ -305,6 +305,19 @@ def _slipped(fitter: ClothFitter, fit: ClothFit, away: float) -> ClothFit:
     return fit
 
 
+def _stiffened(fitter: ClothFitter, fit: ClothFit, steps: dict[Free, float]) -> ClothFit:
+    """Fit from which stretch on cloth stiffens, and how much, from where that was and from the likeliest other one."""
+    size: Free = ("strain_stiffening", "stiffness")
+    others = fitter.sized([fit.model.moved({ONSET: x}) for x in ONSETS], fit.model.moved({size: 0.0}), size)
+    starts = [fit.model, *(m for _, m in others if m.value(ONSET) != fit.model.value(ONSET))][:2]
+    free = (*fit.model.free, ONSET)
+    steps = {**steps, ONSET: BEND}
+    best = min((fitter.fit(replace(m, free=free), steps, rounds=4) for m in starts), key=lambda each: each.rss)
+    # much from a late stretch on and less from an earlier one are nearly the same: on until it stands still
+    best = fitter.fit(best.model, {f: FINER * x for f, x in steps.items()}, rounds=8, least=FINE)
+    return replace(best, model=replace(best.model, free=fit.model.free))
+
+
 def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
     """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
     last = chosen[-1]
@@ -317,10 +330,7 @@ def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: C
     if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
         fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
     if last.name == "strain_stiffening":  # from which stretch on
-        free = (*fit.model.free, ONSET)
-        steps = {**steps_of(chosen), ONSET: BEND}
-        bent = fitter.fit(replace(fit.model, free=free), steps, 4)
-        fit = replace(bent, model=replace(bent.model, free=fit.model.free))
+        fit = _stiffened(fitter, fit, steps_of(chosen))
     return settled(fitter, fitter.fit(fit.model, steps_of(chosen), rounds=3), chosen)
 
 

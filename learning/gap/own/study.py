@@ -62,7 +62,10 @@ class OwnStudy(Study):
     @cached_property
     def _searched(self) -> tuple[Found, str]:
         """The search's result, and what it had named where that made the held-out recordings worse."""
-        found = name_own(self.sim)
+        return self._held_to(name_own(self.sim))
+
+    def _held_to(self, found: Found) -> tuple[Found, str]:
+        """What the held-out recordings leave of a search's result, and what they were worse with."""
         if self.sim.model_error.any():
             found = self._borne_out(found)
         if found.named.blocks and farther(*self._before_and_after(found), found.named.noise.rms / self.sim.scale):
