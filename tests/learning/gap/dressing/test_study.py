@@ -125,6 +125,25 @@ def test_the_world_is_simulated_again_where_the_answer_is(lift):
     assert study.system.centre["mass"] == pytest.approx(0.4, abs=0.02)
 
 
+class Bent(HandWritten):
+    """A world in which a spring half as stiff as usual pushes one recording's hand aside, and no other one does."""
+
+    def _found(self, stretch, effects, drag, key):
+        found = super()._found(stretch, effects, drag, key)
+        stiffness = sum(e.parameters.get("stiffness", 0.0) for e in effects)
+        found[:, 1] += 4.0 * (stretch.person == "bent") * max(0.0, 1.0 - abs(stiffness - 1.0))
+        return found
+
+
+def test_held_out_recordings_have_their_say_where_the_world_was_simulated(lift, monkeypatch):
+    monkeypatch.setattr(studied, "Predictions", Bent)
+    given = measured(lift, {"stiffness": 2.2})
+    last = given.episodes[-1]
+    bent = replace(last, settings={"stretch": replace(last.settings["stretch"], person="bent")})
+    v = open_study(replace(given, episodes=(*given.episodes[:-1], bent))).conclude()
+    assert [f.name for f in v.effects] == ["joint_stiffness"]
+
+
 def test_a_load_cells_bias_is_told_hand_by_hand_and_costs_no_simulation_of_its_own(lift, tmp_path):
     study = open_study(measured(lift, {}, bias=(0.8, -1.0, 1.2)))
     v = study.conclude()
