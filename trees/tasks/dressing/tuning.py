@@ -280,8 +280,7 @@ class DressingTuning(Quantities):
         0.75,
         "1",
         "of the neckline, by its area, from which all cameras together tell where its middle lies",
-        "measured: the states of `collar_aside`: 23 of 24 that lay within all bounds show so much; where less does the "
-        "middle was missed by 0.08 m",
+        "measured: all 39 states of `collar_aside` show so much, 0.77 at least; of what shows less nothing is known",
     )
     collar_told_from_head: float = quantity(
         0.95,
