@@ -329,7 +329,7 @@ def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: C
         fit = best_catch(fitter, fit, scene, steps_of(chosen))
     if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
         fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
-    if last.name == "strain_stiffening":  # from which stretch on
+    if any(c.name == ONSET[0] for c in chosen):  # the same holds for from which stretch on
         fit = _stiffened(fitter, fit, steps_of(chosen))
     return settled(fitter, fitter.fit(fit.model, steps_of(chosen), rounds=3), chosen)
 
