@@ -18,7 +18,7 @@ from ..own.study import OwnStudy
 from .loads import CHANNELS, SEEN, Predictions
 from .system import DRAG, DressingSystem, entries
 
-ROUNDS = 4
+ROUNDS = 8
 SLIP = 0.03  # an arm seen so far from where it is seen otherwise, against the model's, is a slip of the tracker [m]
 CLOSE = 0.1  # typical sizes by which values may differ from where the world was simulated
 
@@ -73,7 +73,7 @@ class DressingStudy(OwnStudy):
         drags, held_to = [0.0] * len(self.measured.episodes), False
         simulated = [p for e in self.system.effects if not e.regressor for p in e.parameters]
         searched = None
-        for _ in range(2 * ROUNDS):
+        for _ in range(ROUNDS):
             self.system.move_to(at, drags)
             vars(self).pop("sim", None)  # what it keeps was the world elsewhere
             searched = name_own(self.sim), ""
@@ -90,7 +90,7 @@ class DressingStudy(OwnStudy):
             else:
                 at = {**at, **found}
         else:
-            self.notes.append(f"The values had not come to rest after {2 * ROUNDS} rounds of simulation.")
+            self.notes.append(f"The values had not come to rest after {ROUNDS} rounds of simulation.")
             searched = searched if held_to or searched is None else self._held_to(searched[0])
         assert searched is not None
         return searched

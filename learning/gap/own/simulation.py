@@ -92,7 +92,7 @@ class Simulation:
         return np.sqrt(np.mean(left**2, axis=0)) + 1e-9 * reach + 1e-15
 
     @cached_property
-    def _usual(self) -> np.ndarray:
+    def _own_scale(self) -> np.ndarray:
         """(C,) what channels count by where a recording's own numbers are fitted: the model's own error, if any.
 
         Over the gap, a channel that is predicted well would outweigh the one that those numbers are about.
@@ -181,8 +181,8 @@ class Simulation:
 
     def _nearer(self, r: Recording, values: Values, now: Values) -> Values:
         """A recording's own numbers after one step of least squares, or as they are where none makes it better."""
-        left = (r.measured - self.raw(r, values, now)) / self._usual
-        N = self._own_columns(r, values, now) / self._usual[:, None]
+        left = (r.measured - self.raw(r, values, now)) / self._own_scale
+        N = self._own_columns(r, values, now) / self._own_scale[:, None]
         step = np.linalg.lstsq(N.reshape(-1, len(now)), left.ravel(), rcond=1e-8)[0]
         most = LONGEST * np.array([p.typical for p in self._own.values()])
         step = step / max(1.0, float(np.max(np.abs(step) / most)))
@@ -191,7 +191,7 @@ class Simulation:
                 k: float(np.clip(v + part * d, self._own[k].lower, self._own[k].upper))
                 for (k, v), d in zip(now.items(), step, strict=True)
             }
-            if np.sum(((r.measured - self.raw(r, values, new)) / self._usual) ** 2) < np.sum(left**2):
+            if np.sum(((r.measured - self.raw(r, values, new)) / self._own_scale) ** 2) < np.sum(left**2):
                 return new
         return now
 
@@ -233,7 +233,7 @@ class Simulation:
         """Columns (T, C, p) less what the recording's own numbers explain of them."""
         if not self._own:
             return columns
-        s = self._usual[:, None]
+        s = self._own_scale[:, None]
         N = (self._own_columns(r, values, own) / s).reshape(-1, len(self._own))
         X = (columns / s).reshape(-1, columns.shape[2])
         return (X - N @ np.linalg.lstsq(N, X, rcond=1e-8)[0]).reshape(columns.shape) * s
