@@ -1,4 +1,4 @@
-"""Draw the sleeves of a worn gown up to the shoulders, both at once, by the seams over the shoulders."""
+"""Draw the sleeves of a worn gown up to the shoulders, one after the other, by the seams over the shoulders."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 
@@ -23,8 +22,7 @@ from .control.fingers import let_cloth_go
 from .control.hands import hand_now
 from .control.head import look_towards
 from .control.take_from_above import FromAbove, take_from_above
-from .control.together import together
-from .control.two_hands import carry_each, take_each
+from .control.two_hands import carry_each
 from .control.withdraw import withdraw
 from .core.ports import Input
 from .core.reasons import Reason, SkillFailure
@@ -63,33 +61,19 @@ class SeatSleevesTuning(Quantities):
     )
     lift: float = quantity(0.12, "m", "of the seams before they are drawn", "choice: they clear the shoulders")
     drawn_to: tuple[float, float] = quantity(
-        (0.07, 0.14),
+        (0.10, 0.10),
         "m",
-        "inwards and headward from each shoulder, where the end of the seam of a low armhole is drawn to: it then goes "
-        "round the shoulder, not the arm",
-        "measured with ideal hands, the collar laid before: armholes at 0.44 to 0.76 came to rest at 0.70 to 0.84 "
-        "(101, 103, 104); 0.06 and 0.11 m at 0.69 to 0.82, 0.04 and 0.08 m at 0.66 to 0.87; 0.17 m headward, no higher",
+        "inwards and headward from the shoulder, where the end of the seam of a low armhole is drawn to, and of one "
+        "that was drawn before: it then goes round the shoulder, not the arm",
+        "measured, the right one alone: from 0.44 and 0.59 to 0.93 and 0.78, the collar 0.08 m headward (106, 112); "
+        "drawn 0.16 m headward to 0.77 and 0.74, the collar 0.09 m",
     )
     drawn_less: tuple[float, float] = quantity(
-        (0.05, 0.09),
+        (0.05, 0.07),
         "m",
         "likewise, of an armhole that is almost up",
-        "measured: left ones at 0.62 came to 0.92, drawn all the way to 0.96 and 1.00, with the collar 0.12 instead of "
-        "0.14 m headward (106, 142); a right one at 0.39 came to 0.68, drawn all the way to 0.79 (106)",
-    )
-    drawn_alone: tuple[float, float] = quantity(
-        (0.10, 0.16),
-        "m",
-        "likewise, of one that is drawn up alone",
-        "measured, the collar laid: right ones at 0.63 to 0.74 came to 0.76 to 0.78 (0 twice, 155, 157), drawn "
-        "by 0.07 and 0.14 m to 0.72 to 0.77; the left one stayed, and the collar but for one of six times (headward by "
-        "0.05 m)",
-    )
-    farther_again: float = quantity(
-        0.5,
-        "1",
-        "of the difference between the two, by which one that is still low is drawn farther each time",
-        "measured: one at 0.66 came to 0.71, and went back to 0.68 as the collar was laid (143)",
+        "choice: between 0.09 m headward, at which left ones went from 0.62 to 0.92 and from 0.72 to 0.87 (106, 142), "
+        "and 0.03 and 0.05 m, at which one went from 0.70 to 0.75 (106)",
     )
     low_and_almost: tuple[float, float] = quantity(
         (0.49, 0.64),
@@ -149,13 +133,16 @@ class SeatSleevesTuning(Quantities):
         "measured: let down where they were, they drew the collar on by 0.06 m, over the mouth (178)",
     )
     on_shoulder: float = quantity(
-        0.14,
+        0.10,
         "m",
-        "above where they are laid behind the shoulders, to which they are let down then",
+        "above where it is laid behind the shoulder, to which it is let down then",
         "measured: as low as there, hands met the shoulders with 36 and 47 N (178)",
     )
     laid_at: float = quantity(
-        -0.04, "m", "above the shoulder, where it is let go of", "choice: just above the mattress, behind the shoulder"
+        0.0,
+        "m",
+        "above the shoulder, where it is let go of",
+        "measured: 0.04 m lower, 0.10 m headward, a hand met the shoulder with 49 N (106)",
     )
     apart: float = quantity(
         0.04,
@@ -187,15 +174,15 @@ class Drawn:
 
 
 class SeatSleeves(Skill):
-    """Takes the outer end of the seam over each shoulder, and lays it down behind that shoulder.
+    """Takes the outer end of the seam over a shoulder, and lays it down behind that shoulder.
 
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
-    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  Both are drawn at once,
-    which takes half of the time, each as far as it is low: drawn too far, one takes the collar headward and to the
-    other side.  One that is up already is left alone, and so is one that is most likely up and comes no higher; once
-    they were drawn, the lower one is drawn alone, which leaves the collar where it is.  One that is missed does not
-    keep the other from being drawn.
+    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  The right one is drawn
+    first, all of its way, then the left one, no farther than it is low: drawn at once, both took the collar headward
+    by 0.08 m and more between them, and laid down from there it took the right one along.  One that is up already is
+    left alone, and so is one that is most likely up and comes no higher; once they were drawn, one that is up is left.
+    One that is missed does not keep the other from being drawn.
     The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and
     drawn back, after a missed grasp too.
     """
@@ -219,86 +206,85 @@ class SeatSleeves(Skill):
         yield from while_person_rests(self, self._seat())
 
     def _seat(self) -> Iterator[None]:
-        """Look at both, take one after the other, lift, draw, lay down, let go."""
-        tuning, drawn = self.tuning, self.context.memory.of(Drawn, Drawn)
-        arms = {side: watch_arm(self, side) for side in SIDES}
-        shoulders = np.array([arm.points_in_map[0] for arm in arms.values()])
-        seams: dict[Side, GraspPoint] = {}
+        """Look at both, then draw up those that are low, one after the other."""
+        drawn = self.context.memory.of(Drawn, Drawn)
+        shoulders = np.array([watch_arm(self, side).points_in_map[0] for side in SIDES])
         reach: dict[Side, float] = {}
-        left_before, hidden = set(drawn.left), Tries(PerceptionFailure)
+        left_before = set(drawn.left)
         drawn.left.clear()
         for n, side in enumerate(SIDES):  # before a hand comes in between
             yield from look_towards(self, shoulders[n])
-            frame = self.world.look("head")
-            reach[side] = self._reach(frame, side)
-            if self._is_drawn(side, reach[side], drawn, left_before):
-                with hidden:  # one that does not show does not keep the other from being drawn
-                    seams[side] = self.context.senses.shoulder_seam(frame, side=side, shoulders_in_map=shoulders)
-        if not seams and hidden.problems:
-            raise hidden.last
-        if not seams:
+            reach[side] = self._reach(self.world.look("head"), side)
+        low: list[Side] = [side for side in SIDES if self._is_drawn(side, reach[side], drawn, left_before)]
+        if not low:
             self.note("both are up already, or come no higher")
             return
-        seams = {side: seams[side] for side in self._low(list(seams), reach, drawn)}
-        held = yield from take_each({side: partial(self._take, side, seam) for side, seam in seams.items()})
-        self.note("draws both sleeves up" if len(held) == len(SIDES) else f"draws the {held[0]} sleeve up")
-        yield from self._off_the_arms({side: arms[side] for side in held})
-        above: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] + tuning.lift * UP for side in held}
-        yield from carry_each(self, above, tuning.carry, tuning.apart)
-        over, laid = {}, {}
-        for side in held:
-            inward, headward = self._drawn_to(side, reach[side], drawn.times[side], alone=len(held) == 1)
-            drawn.times[side] += 1
-            drawn.reach[side] = reach[side]
-            place = shoulders[SIDES.index(side)] - inward * outwards(side) + headward * HEADWARD
-            over[side] = np.append(place[:2], hand_now(self, side)[2, 3])
-            laid[side] = place + tuning.laid_at * UP
-        yield from self._draw(over, laid, np.mean(shoulders, axis=0))
-        # at once, so that neither side gives way to the other
-        yield from together(*(let_cloth_go(self, side) for side in held))
-        yield from withdraw(self, held, tuning.withdrawal)
+        turns, problems = self._turns(low, reach, drawn), list[PerceptionFailure | MotionError | SkillFailure]()
+        for side in turns:
+            try:
+                yield from self._draw_up(side, reach[side], shoulders)
+            except (PerceptionFailure, MotionError, SkillFailure) as problem:
+                # one that does not show, or is missed, does not keep the other from being drawn
+                if isinstance(problem, SkillFailure) and problem.reason != Reason.GRASP_MISSED:
+                    raise
+                problems.append(problem)
+        if len(problems) == len(turns):
+            raise problems[-1]
 
-    def _off_the_arms(self, arms: Mapping[Side, ArmPosture]) -> Iterator[None]:
-        """Draw seams that were taken low beside the arm away from it: lifted from there, they would come up in it."""
-        aside: dict[Side, np.ndarray] = {}
-        for side, arm in arms.items():
-            hand, path = hand_now(self, side)[:3, 3], ArmPath.of(arm)
-            at = path.coordinate_of(hand)
-            across, off = path.frame(at)[:, 0], hand - path.point(at)
-            missing = self.tuning.beside - abs(float(off @ across))
-            if missing > 0.0 and off @ UP < 0.0:
-                aside[side] = hand + math.copysign(missing, float(off @ across)) * across
-        yield from carry_each(self, aside, self.tuning.carry, self.tuning.apart)
+    def _draw_up(self, side: Side, reach: float, shoulders: np.ndarray) -> Iterator[None]:
+        """Take the seam over one shoulder, lift it, draw it over the shoulder, lay it down, let go."""
+        tuning, drawn, n = self.tuning, self.context.memory.of(Drawn, Drawn), SIDES.index(side)
+        arm = watch_arm(self, side)
+        yield from look_towards(self, shoulders[n])
+        seam = self.context.senses.shoulder_seam(self.world.look("head"), side=side, shoulders_in_map=shoulders)
+        yield from self._take(side, seam)
+        self.note(f"draws the {side} sleeve up")
+        yield from self._off_the_arm(side, arm)
+        yield from self._carry(side, hand_now(self, side)[:3, 3] + tuning.lift * UP)
+        inward, headward = self._drawn_to(side, reach, drawn.times[side])
+        drawn.times[side] += 1
+        drawn.reach[side] = reach
+        laid = shoulders[n] - inward * outwards(side) + headward * HEADWARD + tuning.laid_at * UP
+        yield from self._draw(side, laid, np.mean(shoulders, axis=0))
+        yield from let_cloth_go(self, side)
+        yield from withdraw(self, [side], tuning.withdrawal)
 
-    def _draw(
-        self, over: Mapping[Side, np.ndarray], laid: Mapping[Side, np.ndarray], middle: np.ndarray
-    ) -> Iterator[None]:
-        """Carry seams over the shoulders and lay them down, no farther headward than the chin shows.
+    def _carry(self, side: Side, place: np.ndarray) -> Iterator[None]:
+        yield from carry_each(self, {side: place}, self.tuning.carry, self.tuning.apart)
 
-        Both lift the collar between them: over mouth and nose, it lay there until it was laid straight (178, 267).
+    def _off_the_arm(self, side: Side, arm: ArmPosture) -> Iterator[None]:
+        """Draw a seam that was taken low beside the arm away from it: lifted from there, it would come up in it."""
+        hand, path = hand_now(self, side)[:3, 3], ArmPath.of(arm)
+        at = path.coordinate_of(hand)
+        across, off = path.frame(at)[:, 0], hand - path.point(at)
+        missing = self.tuning.beside - abs(float(off @ across))
+        if missing > 0.0 and off @ UP < 0.0:
+            yield from self._carry(side, hand + math.copysign(missing, float(off @ across)) * across)
+
+    def _draw(self, side: Side, laid: np.ndarray, middle: np.ndarray) -> Iterator[None]:
+        """Carry a seam over the shoulder and lay it down, no farther headward than the chin shows.
+
+        It lifts the collar: over mouth and nose, it lay there until it was laid straight (178, 267).
         """
-        tuning = self.tuning
         yield from look_towards(self, middle)
-        for goals in (over, laid):
-            for _ in carry_each(self, goals, tuning.carry, tuning.apart):
+        over = np.append(laid[:2], hand_now(self, side)[2, 3])
+        for place in (over, laid):
+            for _ in self._carry(side, place):
                 if self._chin_covered(middle):
-                    yield from self._draw_back(laid)
+                    yield from self._draw_back(side, laid)
                     return
                 yield
 
-    def _draw_back(self, laid: Mapping[Side, np.ndarray]) -> Iterator[None]:
-        """Carry the seams a little footward, and lay them down there, over the shoulders behind which they were `laid`.
+    def _draw_back(self, side: Side, laid: np.ndarray) -> Iterator[None]:
+        """Carry the seam a little footward, and lay it down there, over the shoulder behind which it was `laid`.
 
-        Let down where they are, behind the shoulders, they draw the collar on by 0.06 m.
+        Let down where it is, behind the shoulder, it draws the collar on by 0.06 m.
         """
         tuning = self.tuning
         self.note("the collar has come to the chin")
-        back: dict[Side, np.ndarray] = {side: hand_now(self, side)[:3, 3] - tuning.back * HEADWARD for side in laid}
-        yield from carry_each(self, back, tuning.carry, tuning.apart)
-        down: dict[Side, np.ndarray] = {
-            side: np.append(back[side][:2], place[2] + tuning.on_shoulder) for side, place in laid.items()
-        }
-        yield from carry_each(self, down, tuning.carry, tuning.apart)
+        back = hand_now(self, side)[:3, 3] - tuning.back * HEADWARD
+        yield from self._carry(side, back)
+        yield from self._carry(side, np.append(back[:2], laid[2] + tuning.on_shoulder))
 
     def _chin_covered(self, middle: np.ndarray) -> bool:
         """Whether cloth is about to come over mouth and nose; a face that does not show now was looked at before."""
@@ -340,20 +326,23 @@ class SeatSleeves(Skill):
         often, likely = drawn.times[side] >= tuning.enough_draws, reach >= tuning.likely_up
         return often and likely and reach < drawn.reach.get(side, 0.0) + tuning.brought_higher
 
-    def _low(self, sides: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
-        """Of those that may be drawn up: without one that was before and is up by now, unless it is the lowest."""
-        lowest = min(sides, key=lambda side: reach[side])
-        return [s for s in sides if not drawn.times[s] or reach[s] < self.tuning.up_by_now] or [lowest]
+    def _turns(self, low: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
+        """Of those that may be drawn up, which are, the right one first.
 
-    def _drawn_to(self, side: Side, reach: float, times: int, *, alone: bool) -> tuple[float, float]:
-        """Inwards and headward from the shoulder [m], the less the higher the armhole is, farther after each try."""
+        One that was drawn before and is up by now is left, unless it is the lowest.
+        """
+        still_low = [side for side in low if not drawn.times[side] or reach[side] < self.tuning.up_by_now]
+        turns = still_low or [min(low, key=lambda side: reach[side])]
+        return [side for side in SIDES[::-1] if side in turns]
+
+    def _drawn_to(self, side: Side, reach: float, times: int) -> tuple[float, float]:
+        """Inwards and headward from the shoulder [m]: the first time the less the higher the armhole is."""
         tuning = self.tuning
-        if self.side or (alone and times):
-            return tuning.drawn_alone
+        if self.side or times:
+            return tuning.drawn_to
         between = tuning.low_and_almost if side == "left" else tuning.low_and_almost_right
-        farther = float(np.interp(reach, between, (1.0, 0.0))) + tuning.farther_again * times
         less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)
-        inward, headward = less + min(farther, 1.0) * (all_of_it - less)
+        inward, headward = less + np.interp(reach, between, (1.0, 0.0)) * (all_of_it - less)
         return float(inward), float(headward)
 
     def _take(self, side: Side, seam: GraspPoint) -> Iterator[None]:
