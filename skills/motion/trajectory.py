@@ -121,20 +121,16 @@ def check_motion(
     arms = robot.ready.copy()
     if other_arm is not None and len(sides) == 1:
         arms[1 - SIDES.index(sides[0])] = other_arm
-    leaving: set[tuple[str, str]] = set()
-    given: set[tuple[str, str]] | None = None
     step = max(1, len(samples) // tuning.checked_samples)
     chosen = np.unique(np.append(np.arange(0, len(samples), step), len(samples) - 1))
-    for k in chosen:
-        for n, side in enumerate(sides):
-            arms[SIDES.index(side)] = samples[k, robot.dof * n : robot.dof * (n + 1)]
-        if given is None:
-            given = standing_contacts(checker, sides, pose_base_in_map, arms)
-        touching = (
-            []
-            if checker.free(pose_base_in_map, arms)
-            else [hit for hit in checker.collisions(pose_base_in_map, arms) if hit not in given]
-        )
+    postures = np.repeat(arms[None], len(chosen), axis=0)
+    for n, side in enumerate(sides):
+        postures[:, SIDES.index(side)] = samples[chosen, robot.dof * n : robot.dof * (n + 1)]
+    given, leaving = standing_contacts(checker, sides, pose_base_in_map, postures[0]), set[tuple[str, str]]()
+    free_along = checker.free_along(pose_base_in_map, postures)
+    for k, posture, free in zip(chosen, postures, free_along, strict=True):
+        hits = [] if free else checker.collisions(pose_base_in_map, posture)
+        touching = [hit for hit in hits if hit not in given]
         leaving = set(touching) if k == 0 else leaving & set(touching)
         if not leaving.issuperset(touching) or (touching and k == chosen[-1]):
             a, b = touching[0]

@@ -54,7 +54,8 @@ class OwnLinks:
         base, pan = seen.pose_base_in_map, seen.head_pan
         now = set(self._checker.collisions(base, seen.arm_positions, pan))
         _, postures = self._motion.postures(trajectory, seen)
-        for arms in (*postures[:: max(1, len(postures) // CHECKED)], postures[-1]):
-            if touching := [pair for pair in self._checker.collisions(base, arms, pan) if pair not in now]:
+        chosen = np.append(np.arange(0, len(postures), max(1, len(postures) // CHECKED)), len(postures) - 1)
+        for hits in self._checker.collisions_along(base, postures[chosen], pan):
+            if touching := [pair for pair in hits if pair not in now]:
                 one, other = (name.replace("_", " ") for name in touching[0])
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the {one} would touch the {other}")
