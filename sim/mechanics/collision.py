@@ -129,15 +129,11 @@ class CollisionChecker:
         for q in self._along(pose_base_in_map, postures, head_pan):
             yield self._hits(q)
 
-    def _along(
-        self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None
-    ) -> Iterator[np.ndarray]:
-        """The joint vector (nq,) of each posture: one array, of which only the arms are set anew."""
-        pan = self.head_pan if head_pan is None else head_pan
-        q = self._kinematics.configuration(pose_base_in_map, postures[0], pan)
-        for arms in postures:
-            self._kinematics.turn_arms(q, arms)
-            yield q
+    def _along(self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None) -> np.ndarray:
+        """The joint vector (k, nq) of each posture."""
+        return self._kinematics.configurations(
+            pose_base_in_map, postures, self.head_pan if head_pan is None else head_pan
+        )
 
     def _hits(self, q: np.ndarray) -> list[tuple[str, str]]:
         """Names of all pairs that are too close."""

@@ -165,12 +165,22 @@ class Kinematics:
         q[self._head_index] = head_pan
         if gripper_opening is not None:
             q[self._finger_index] = np.asarray(gripper_opening)[:, None] / 2.0
-        self.turn_arms(q, arm_positions)
+        q[self._arm_places[0]], q[self._arm_places[1]] = arm_positions
         return q
 
-    def turn_arms(self, q: np.ndarray, arm_positions: np.ndarray) -> None:
-        """Put angles (2, n) [rad] of the arms into a joint vector of `configuration`."""
-        q[self._arm_places[0]], q[self._arm_places[1]] = arm_positions
+    def configurations(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Joint vectors (k, nq) of `configuration` for postures (k, 2, n) of the arms, at least one, the rest alike."""
+        first = self.configuration(pose_base_in_map, arm_positions[0], head_pan, gripper_opening)
+        q = np.repeat(first[None], len(arm_positions), axis=0)
+        for n, place in enumerate(self._arm_places):
+            q[:, place] = arm_positions[:, n]
+        return q
 
     def link_poses(self, q: np.ndarray) -> dict[str, np.ndarray]:
         """Pose (4, 4) in the map of every link, for a joint vector of `configuration`."""

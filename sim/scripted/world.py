@@ -321,13 +321,7 @@ class ScriptedWorld(World):
                 self._dq[:] = 0.0
                 break
             longest = min(self._longest_step, self._twist_step) if self._twisting() else self._longest_step
-            now, only_follows = self.time.time, self._follows_until(time)
-            while only_follows and (then := now + min(longest, time - now)) < time - 1e-9:
-                now = then  # where it is, the clock alone says: the last step tells how fast
-            if now > self.time.time:
-                self._step(now - self.time.time, now)
-            dt = min(longest, time - now)
-            self._step(dt, now + dt)
+            self._step(min(longest, time - self.time.time))
         self.time.time = max(self.time.time, time)  # without the rounding of the sum
 
     def _rests(self) -> bool:
@@ -336,14 +330,6 @@ class ScriptedWorld(World):
         if self._motions or self._twisting() or self._rates or now < self._base_until or self._slowing(now) > 0.0:
             return False
         return self._opening.tolist() == self._fingers_goal()
-
-    def _follows_until(self, time: float) -> bool:
-        """Whether trajectories that last until then move the arms, and nothing else moves."""
-        now = self.time.time
-        if not self._motions or self._twisting() or self._rates or now < self._base_until or self._slowing(now) > 0.0:
-            return False
-        lasting = all(time - motion.start <= motion.times[-1] for motion in self._motions)
-        return lasting and self._opening.tolist() == self._fingers_goal()
 
     def _twisting(self) -> bool:
         return self._twists["left"].active or self._twists["right"].active
@@ -357,8 +343,8 @@ class ScriptedWorld(World):
         wanted = self._opening_goal.tolist()
         return [max(wanted[n], self.between_fingers[side]) for n, side in enumerate(SIDES)]
 
-    def _step(self, dt: float, now: float) -> None:
-        """Bring everything to the time `now`, which is `dt` from where the clock stands [s]."""
+    def _step(self, dt: float) -> None:
+        now = self.time.time + dt
         before = self._q.copy()
         for motion in tuple(self._motions):
             values = motion.at(now - motion.start)

@@ -134,3 +134,9 @@ def test_many_postures_at_once_are_those_one_by_one_to_the_last_bit(kinematics, 
         kinematics.jacobian_hand_in_base(side, *each)[:3] @ rate for *each, rate in zip(q, rates, strict=True)
     ]
     assert np.array_equal(kinematics.velocities_of_hand_in_base(side, q, rates), velocities)
+
+
+def test_many_joint_vectors_at_once_are_those_one_by_one(kinematics):
+    base, opening, arms = np.array((0.7, -0.3, 2.0)), np.array((0.02, 0.05)), random_arms(kinematics, 5)
+    each = [kinematics.configuration(base, posture, 0.3, opening) for posture in arms]
+    assert np.array_equal(kinematics.configurations(base, np.array(arms), 0.3, opening), each)

@@ -90,7 +90,7 @@ def led(rate_hz, steps=None):
     tuning = REHEARSAL if steps is None else replace(REHEARSAL, twist_steps=steps)
     world = RehearsalWorld(tuning=tuning)
     step, taken = world._step, []
-    world._step = lambda dt, now: (taken.append(dt), step(dt, now))
+    world._step = lambda dt: (taken.append(dt), step(dt))
     world.send(HandTwist(side="left", twist_in_map=np.array((0.0, -0.1, 0.0, 0.0, 0.0, 0.0)), duration=1.0))
     for tick in range(1, round(2 * rate_hz) + 1):
         world.clock.wait_until(tick / rate_hz)
@@ -111,7 +111,7 @@ def test_at_the_usual_rate_a_hand_follows_as_in_the_simulated_room():
 def test_between_two_ticks_a_trajectory_is_left_alone_but_for_how_fast_it_is_at_the_last():
     world = RehearsalWorld()
     step, taken = world._step, []
-    world._step = lambda dt, now: (taken.append(dt), step(dt, now))
+    world._step = lambda dt: (taken.append(dt), step(dt))
     times, start = np.array((0.0, 1.0, 2.0)), world.observe().arm_positions[0, 0]
     positions = start + np.array((0.0, 0.1, 0.4))[:, None]
     world.send(JointTrajectory(joints=("left_s0",), times=times, positions=positions))
