@@ -1,11 +1,14 @@
 """Processor time of the two halves of `caretree check TASK`: `python benchmarks/check_task.py [TASK]`."""
 
+import gc
 import sys
 import time
 
+from caretree.trees.cli import MADE_UNTIL_LOOKED_THROUGH
 from caretree.trees.proof.check import check, rehearse
 from caretree.trees.run.task import load_task
 
+gc.set_threshold(MADE_UNTIL_LOOKED_THROUGH)  # as for the command itself
 task = load_task(sys.argv[1] if len(sys.argv) > 1 else "dressing")
 began = time.process_time()
 report = check(task)

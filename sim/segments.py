@@ -101,11 +101,20 @@ def any_nearer(
     one: np.ndarray, one_radii: np.ndarray, other: np.ndarray, other_radii: np.ndarray, least: np.ndarray
 ) -> bool:
     """Whether any gap of `capsule_gaps`, whose arguments these are, is below the least one (n, m) asked for it [m]."""
-    apart, _ = segment_distances(one, other)
     for i in range(len(one)):
         for j in range(len(other)):
-            if apart[i, j] - one_radii[i] - other_radii[j] < least[i, j]:
-                return True
+            # of most pairs the spheres around both are too far from each other already
+            square = one_long = other_long = 0.0
+            for k in range(3):
+                square += (one[i, 0, k] + one[i, 1, k] - other[j, 0, k] - other[j, 1, k]) ** 2
+                one_long += (one[i, 1, k] - one[i, 0, k]) ** 2
+                other_long += (other[j, 1, k] - other[j, 0, k]) ** 2
+            reach = np.sqrt(one_long) + np.sqrt(other_long)
+            reach += 2.0 * (one_radii[i] + other_radii[j] + least[i, j] + _TOUCHING)
+            if reach > 0.0 and square < reach * reach:
+                apart, _ = segment_distances(one[i : i + 1], other[j : j + 1])
+                if apart[0, 0] - one_radii[i] - other_radii[j] < least[i, j]:
+                    return True
     return False
 
 

@@ -57,11 +57,20 @@ def surfaces(rgb: np.ndarray, tuning: SurfaceTuning = DEFAULT) -> np.ndarray:
     Returns:
         (H, W) uint8 of `Surface` values.
     """
+    return _labelled(_smooth_hsv(rgb, tuning), tuning)
+
+
+def _smooth_hsv(rgb: np.ndarray, tuning: SurfaceTuning) -> np.ndarray:
+    """Hue in half degrees, saturation and value from 0 to 255, (H, W, 3) uint8, without the noise of single pixels."""
     import cv2
 
-    smooth = cv2.medianBlur(np.ascontiguousarray(rgb), tuning.blur_size)
-    hsv = cv2.cvtColor(smooth, cv2.COLOR_RGB2HSV)  # hue in half degrees, the others 0-255
-    labels = np.zeros(rgb.shape[:2], dtype=np.uint8)
+    return cv2.cvtColor(cv2.medianBlur(np.ascontiguousarray(rgb), tuning.blur_size), cv2.COLOR_RGB2HSV)
+
+
+def _labelled(hsv: np.ndarray, tuning: SurfaceTuning) -> np.ndarray:
+    import cv2
+
+    labels = np.zeros(hsv.shape[:2], dtype=np.uint8)
     for surface, (h0, h1, s0, s1, v0) in (  # later ones win
         (Surface.INSIDE, GOWN.inside_colour),
         (Surface.OUTSIDE, GOWN.outside_colour),
@@ -90,4 +99,4 @@ def surfaces_at(rgb: np.ndarray, rows: np.ndarray, columns: np.ndarray, tuning: 
     room = tuning.blur_size // 2
     top, left = max(rows.min() - room, 0), max(columns.min() - room, 0)
     window = rgb[top : rows.max() + room + 1, left : columns.max() + room + 1]
-    return surfaces(window, tuning)[rows - top, columns - left]
+    return _labelled(_smooth_hsv(window, tuning)[rows - top, columns - left][:, None], tuning)[:, 0]

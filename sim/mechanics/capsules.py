@@ -77,9 +77,7 @@ class RobotCapsules:
     ) -> np.ndarray:
         """(k, r, 2, 3) what `ends` gives for postures (k, 2, n) of the arms, at least one, the rest being the same."""
         robot, ends = self._kinematics, np.empty((len(arm_positions), *self._ends.shape))
-        q = robot.configuration(pose_base_in_map, arm_positions[0], head_pan, gripper_opening)
-        for n, arms in enumerate(arm_positions):
-            robot.turn_arms(q, arms)
+        for n, q in enumerate(robot.configurations(pose_base_in_map, arm_positions, head_pan, gripper_opening)):
             pin.forwardKinematics(robot.model, robot.data, q)
             _place(self._local, self._joints, self._places, ends[n])
         return ends

@@ -1,15 +1,16 @@
-"""Does the robot hit itself or a box in the room?  Its capsules and boxes, tested by coal."""
+"""Does the robot hit itself or a box in the room?  Its capsules and boxes, tested by coal where they may be near."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..extras import later
 from ..world import SIDES
-from .kinematics import Kinematics
+from .far_apart import FarApart, Solid
+from .kinematics import Kinematics, joint_places
 from .shape import Shape
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class CollisionChecker:
         model = kinematics.model
         self._geometry = pin.GeometryModel()
         self._names: list[str] = []
+        self._solids: list[Solid] = []
         ids: dict[str, list[int]] = {}
         self.robot = robot = kinematics.robot
         tested = {link for pair in robot.own_pairs for link in pair}
@@ -74,6 +76,8 @@ class CollisionChecker:
         for data, closest in ((self._data, margin), (self._roomy, margin + room)):
             for request in data.collisionRequests:
                 request.security_margin = closest
+        self._margin, self._room = margin, margin + room
+        self._far, self._places = FarApart(self._solids, self._pairs), joint_places(kinematics.data)
 
     def free(
         self,
@@ -93,9 +97,16 @@ class CollisionChecker:
         """
         pan = self.head_pan if head_pan is None else head_pan
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
-        if not self._compute(q, self._roomy, stop_at_first=not leaving):
+        if not self._touches(q, roomy=True, stop_at_first=not leaving):
             return True
         return bool(leaving) and all(leaving.get(n, np.inf) - EPSILON <= gap for n, gap in self._near().items())
+
+    def free_along(
+        self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None = None
+    ) -> Iterator[bool]:
+        """What `free` says of each of the postures (k, 2, n) of a motion [rad], at least one, in turn."""
+        for q in self._along(pose_base_in_map, postures, head_pan):
+            yield not self._touches(q, roomy=True, stop_at_first=True)
 
     def contacts(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
@@ -103,15 +114,30 @@ class CollisionChecker:
         """What is too near for `free` where the arms (2, n) are, for a motion that leaves it."""
         pan = self.head_pan if head_pan is None else head_pan
         q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
-        return self._near() if self._compute(q, self._roomy, stop_at_first=False) else {}
+        return self._near() if self._touches(q, roomy=True, stop_at_first=False) else {}
 
     def collisions(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
-        pan = self.head_pan if head_pan is None else head_pan
-        q = self._kinematics.configuration(pose_base_in_map, arm_positions, pan)
-        if not self._compute(q, self._data, stop_at_first=False):
+        return next(self.collisions_along(pose_base_in_map, np.asarray(arm_positions, float)[None], head_pan))
+
+    def collisions_along(
+        self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None = None
+    ) -> Iterator[list[tuple[str, str]]]:
+        """What `collisions` says of each of the postures (k, 2, n) of a motion [rad], at least one, in turn."""
+        for q in self._along(pose_base_in_map, postures, head_pan):
+            yield self._hits(q)
+
+    def _along(self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None) -> np.ndarray:
+        """The joint vector (k, nq) of each posture."""
+        return self._kinematics.configurations(
+            pose_base_in_map, postures, self.head_pan if head_pan is None else head_pan
+        )
+
+    def _hits(self, q: np.ndarray) -> list[tuple[str, str]]:
+        """Names of all pairs that are too close."""
+        if not self._touches(q, roomy=False, stop_at_first=False):
             return []  # asking every pair's result takes longer than all the tests do
         hit = [
             pair for pair, result in zip(self._pairs, self._data.collisionResults, strict=True) if result.isCollision()
@@ -123,13 +149,21 @@ class CollisionChecker:
         near = [n for n, result in enumerate(self._roomy.collisionResults) if result.isCollision()]
         return {n: pin.computeDistance(self._geometry, self._roomy, n).min_distance for n in near}
 
-    def _compute(self, q: np.ndarray, data: pin.GeometryData, *, stop_at_first: bool) -> bool:
-        model = self._kinematics
-        return pin.computeCollisions(model.model, model.data, self._geometry, data, q, stop_at_first)
+    def _touches(self, q: np.ndarray, *, roomy: bool, stop_at_first: bool) -> bool:
+        """Whether any pair is too close; coal's results are those of `q` only where one is."""
+        model, data = self._kinematics.model, self._kinematics.data
+        pin.forwardKinematics(model, data, q)
+        if self._far.all(self._places, self._room if roomy else self._margin):
+            return False
+        return pin.computeCollisions(
+            model, data, self._geometry, self._roomy if roomy else self._data, q, stop_at_first
+        )
 
     def _add(self, name: str, joint: int, placement: pin.SE3, shape: Shape) -> int:
         solid = coal.Box(*shape.size) if shape.kind == "box" else coal.Capsule(*shape.size)
         local = pin.SE3(pin.rpy.rpyToMatrix(*shape.rpy), np.array(shape.xyz))
-        entry = pin.GeometryObject(f"{name} {len(self._names)}", joint, placement * local, solid)
+        whole = placement * local
+        entry = pin.GeometryObject(f"{name} {len(self._names)}", joint, whole, solid)
         self._names.append(name)
+        self._solids.append(Solid(joint=joint, shape=shape, turn=whole.rotation, centre=whole.translation))
         return self._geometry.addGeometryObject(entry)

@@ -106,6 +106,15 @@ class Kinematics:
         """Pose (4, 4) of one hand for its n angles (n,) [rad] and a base pose (3,)."""
         return planar_pose(pose_base_in_map) @ self.pose_hand_in_base(side, q)
 
+    def places_of_hand_in_map(self, side: Side, q: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
+        """Where `pose_hand_in_map` puts a hand for angles (k, n) [rad], (k, 3) [m]: in a third of the time."""
+        arm, data, frame = self._arms[side]
+        poses = np.empty((len(q), 4, 4))
+        for n, angles in enumerate(np.asarray(q, float)):
+            pin.forwardKinematics(arm, data, angles)
+            poses[n] = pin.updateFramePlacement(arm, data, frame).homogeneous
+        return (planar_pose(pose_base_in_map) @ poses)[:, :3, 3]
+
     def poses_hands_in_map(self, arm_positions: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
         """Poses (2, 4, 4) of both hands for the angles of the arms (2, n) [rad] and a base pose (3,)."""
         base, poses = planar_pose(pose_base_in_map), np.empty((2, 4, 4))
@@ -117,6 +126,14 @@ class Kinematics:
         """Jacobian (6, n) of the hand point: linear, then angular velocity, along the axes of `base`."""
         arm, data, frame = self._arms[side]
         return pin.computeFrameJacobian(arm, data, np.asarray(q, float), frame, pin.LOCAL_WORLD_ALIGNED)
+
+    def velocities_of_hand_in_base(self, side: Side, q: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Velocities (k, 3) of a hand along the axes of `base` for angles (k, n) [rad] and rates (k, n) of them."""
+        arm, data, frame = self._arms[side]
+        jacobians = np.empty((len(q), 3, q.shape[1]))
+        for n, angles in enumerate(np.asarray(q, float)):
+            jacobians[n] = pin.computeFrameJacobian(arm, data, angles, frame, pin.LOCAL_WORLD_ALIGNED)[:3]
+        return (jacobians @ rates[:, :, None])[:, :, 0]
 
     def jacobian_hand_in_map(self, side: Side, q: np.ndarray, pose_base_in_map: np.ndarray) -> np.ndarray:
         """Jacobian (6, n) of the hand point along the axes of `map`."""
@@ -148,12 +165,22 @@ class Kinematics:
         q[self._head_index] = head_pan
         if gripper_opening is not None:
             q[self._finger_index] = np.asarray(gripper_opening)[:, None] / 2.0
-        self.turn_arms(q, arm_positions)
+        q[self._arm_places[0]], q[self._arm_places[1]] = arm_positions
         return q
 
-    def turn_arms(self, q: np.ndarray, arm_positions: np.ndarray) -> None:
-        """Put angles (2, n) [rad] of the arms into a joint vector of `configuration`."""
-        q[self._arm_places[0]], q[self._arm_places[1]] = arm_positions
+    def configurations(
+        self,
+        pose_base_in_map: np.ndarray,
+        arm_positions: np.ndarray,
+        head_pan: float = 0.0,
+        gripper_opening: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Joint vectors (k, nq) of `configuration` for postures (k, 2, n) of the arms, at least one, the rest alike."""
+        first = self.configuration(pose_base_in_map, arm_positions[0], head_pan, gripper_opening)
+        q = np.repeat(first[None], len(arm_positions), axis=0)
+        for n, place in enumerate(self._arm_places):
+            q[:, place] = arm_positions[:, n]
+        return q
 
     def link_poses(self, q: np.ndarray) -> dict[str, np.ndarray]:
         """Pose (4, 4) in the map of every link, for a joint vector of `configuration`."""

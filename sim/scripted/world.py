@@ -210,7 +210,10 @@ class ScriptedWorld(World):
         stands = self._q.tobytes() + self._base.tobytes()
         if stands != self._posed:
             place = self.kinematics.pose_hand_in_map
-            self._poses = np.array([place(side, self._q[n], self._base) for n, side in enumerate(SIDES)])
+            if isinstance(self.kinematics, Kinematics):
+                self._poses = self.kinematics.poses_hands_in_map(self._q, self._base)
+            else:
+                self._poses = np.array([place(side, self._q[n], self._base) for n, side in enumerate(SIDES)])
             self._posed = stands
         return self._poses
 

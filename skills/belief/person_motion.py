@@ -16,11 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...perception.errors import PerceptionFailure
-from ...perception.person.arm_fit import nearest_on_chain
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import SIDES, Frame, Side
 from ..core.reasons import Reason, SkillFailure
 from ..core.skill import Skill
+from ..geometry.person_zone import distance_to_chain
 from .person_tracking import doubt_arms, head_view, watch_of
 
 
@@ -225,7 +225,7 @@ def _arms(skill: Skill, tuning: PersonMotionTuning) -> dict[Side, Arm]:
     holds = np.array([skill.context.guard.grip(hand) == "arm" for hand in SIDES])
     arms: dict[Side, Arm] = {}
     for side, posture in watch_of(skill).arms.items():
-        away = nearest_on_chain(hands, posture.points_in_map, np.zeros(3))[2]
+        away = distance_to_chain(hands, posture.points_in_map)
         if (away < np.where(holds, 0.0, tuning.at_hand)).any():
             continue
         n = int(np.argmin(np.where(holds, away, np.inf)))

@@ -396,14 +396,14 @@ def chest_top(skill: Skill) -> float:
 
 def careful(
     skill: Skill, fast: float, *, tuning: PersonTrackingTuning = PERSON_TRACKING
-) -> Callable[[np.ndarray], float]:
-    """A limit on a hand's speed [m/s] by its position (3,) in the map: `fast` in the open, slow near the person.
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Limits (k,) on a hand's speed [m/s] at positions (k, 3) in the map: `fast` in the open, slow near the person.
 
     Planned with it, a motion is slow only where it must be; the guard would slow all of it.
     """
     zone = skill.context.guard.zone
 
-    def limit(position: np.ndarray) -> float:
-        return min(fast, tuning.near_speed) if zone.distance(position)[0] < tuning.near_distance else fast
+    def limit(positions: np.ndarray) -> np.ndarray:
+        return np.where(zone.distance(positions) < tuning.near_distance, min(fast, tuning.near_speed), fast)
 
     return limit

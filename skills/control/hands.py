@@ -121,7 +121,7 @@ def move_hands(
     Args:
         skill: that moves.
         goals: by side, pose (4, 4) in the map.
-        speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
+        speed: greatest speed of each hand [m/s], or a function of positions (k, 3) in the map, as `careful` makes.
         free: hand axis about which the orientation does not matter (see `solve_ik`).
         way: `line` straight and turning evenly; `any` way that is free; `either` straight where that is possible,
             turning evenly or else as the joints would have it.
@@ -169,7 +169,7 @@ def move_arms(
         skill: that moves.
         target: (2, n) joint angles, such as `robot.ready` [rad].
         sides: that move; the other row of `target` does not count.
-        speed: greatest speed of each hand [m/s], or a function of its position (3,) in the map.
+        speed: greatest speed of each hand [m/s], or a function of positions (k, 3) in the map, as `careful` makes.
         retreat: the motion takes load off the person.
 
     Raises:

@@ -116,8 +116,8 @@ def reach_in(
     yield from open_gripper(skill, side, wide)
     slower, zone = tuning.inwards_share * speed, skill.context.guard.zone
 
-    def inwards(place: np.ndarray) -> float:
-        return min(slower, tuning.touch_speed) if zone.distance(place)[0] < tuning.touch_distance else slower
+    def inwards(places: np.ndarray) -> np.ndarray:
+        return np.where(zone.distance(places) < tuning.touch_distance, min(slower, tuning.touch_speed), slower)
 
     yield from until_load(skill, side, tuning.touch_load, move_hands(skill, {side: inside}, speed=inwards))
 

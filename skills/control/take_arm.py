@@ -170,9 +170,9 @@ def _go_around(
     """
     goal, short = around.copy(), 0.0
 
-    def speed(place: np.ndarray) -> float:
-        left = float((goal[:3, 3] - place) @ goal[:3, 2])
-        return tuning.touch_speed if left < tuning.touch_height + tuning.grip_depth else tuning.descent_speed
+    def speed(places: np.ndarray) -> np.ndarray:
+        left = np.vecdot(goal[:3, 3] - places, goal[:3, 2])
+        return np.where(left < tuning.touch_height + tuning.grip_depth, tuning.touch_speed, tuning.descent_speed)
 
     for n in range(tuning.tries):
         down = move_hands(skill, {hand: goal}, speed=speed)

@@ -52,11 +52,16 @@ def type_name(kind: Any) -> str:
     return kind.__name__ if isinstance(kind, type) else str(kind).replace("typing.", "")
 
 
+@cache
+def _origin(kind: Any) -> Any:
+    return typing.get_origin(kind)  # asked at every read and write
+
+
 def conforms(value: object, kind: Any) -> bool:
     """Whether `value` may be written where `kind` is declared (a class, a union, a Literal or Any)."""
     if kind is Any:
         return True
-    origin = typing.get_origin(kind)
+    origin = _origin(kind)
     if origin is typing.Literal:
         return any(value == allowed and type(value) is type(allowed) for allowed in typing.get_args(kind))
     if origin in (typing.Union, types.UnionType):

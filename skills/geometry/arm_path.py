@@ -13,6 +13,7 @@ import numpy as np
 
 from ...perception.estimates import ArmPosture
 from ...perception.image.cloud import unit
+from ...sim.compiled import njit
 from ...sim.quantity import Quantities, quantity
 from ...sim.vector import cross
 
@@ -113,8 +114,8 @@ class ArmPath:
             low, high = tuning.search_from, tuning.search_to
         else:
             low, high = near - tuning.search_window, near + tuning.search_window
-        coordinates = np.linspace(low, high, int((high - low) / tuning.search_step) + 1)
-        return float(coordinates[int(np.argmin(np.linalg.norm(self.at(coordinates) - point_in_map, axis=1)))])
+        count = int((high - low) / tuning.search_step) + 1
+        return _nearest(self.points, self.lengths, self._directions, low, high, count, np.asarray(point_in_map, float))
 
     def moved(self, coordinate: float, distance: float) -> float:
         """The arm coordinate `distance` [m] further towards the fingertip (negative: towards the shoulder)."""
@@ -155,3 +156,26 @@ class ArmPath:
 def _segment(coordinate: float) -> int:
     """Index of the segment that a coordinate belongs to: 0 upper arm, 1 forearm, 2 hand."""
     return min(max(math.floor(coordinate), 0), 2)
+
+
+@njit()
+def _nearest(
+    points: np.ndarray,
+    lengths: np.ndarray,
+    directions: np.ndarray,
+    low: float,
+    high: float,
+    count: int,
+    place: np.ndarray,
+) -> float:
+    """Of `count` arm coordinates, evenly from `low` to `high`, the one at which the axis is nearest to a place (3,)."""
+    best, least = low, np.inf
+    for n in range(count):
+        coordinate = high if n == count - 1 else n * ((high - low) / (count - 1)) + low
+        segment = int(min(max(np.floor(coordinate), 0.0), 2.0))
+        along, square = (coordinate - segment) * lengths[segment], 0.0
+        for k in range(3):
+            square += (points[segment, k] + along * directions[segment, k] - place[k]) ** 2
+        if square < least:
+            best, least = coordinate, square
+    return best

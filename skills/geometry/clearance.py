@@ -66,7 +66,7 @@ class LinkClearance:
         self._gaps = self.least_gaps(*self._asked)
 
     def room(
-        self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str]
+        self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str], rows: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """What is left of each gap: below 0 a link is too near.
 
@@ -74,12 +74,16 @@ class LinkClearance:
             ends_in_map: (r, 2, 3) of the links' axes [m].
             zone: where the person is.
             held: hand -> the arm that it holds, which its fingers and palm may touch.
+            rows: (r,) bool, of the links that are asked for; all by default.
 
         Returns:
-            (r, m) room [m] and (r, m, 3) directions from the person to the link.
+            (r, m) room [m] and (r, m, 3) directions from the person to the link, of those links.
         """
-        gaps, away = zone.gaps(ends_in_map, self.radii)
-        return gaps - self._least(zone, held), away
+        if rows is None:
+            gaps, away = zone.gaps(ends_in_map, self.radii)
+            return gaps - self._least(zone, held), away
+        gaps, away = zone.gaps(ends_in_map[rows], self.radii[rows])
+        return gaps - self._least(zone, held)[rows], away
 
     def less_left(self, ends_in_map: np.ndarray, zone: PersonZone, held: Mapping[Side, str], room: np.ndarray) -> bool:
         """Whether less is left of any gap than `room` (r, m) [m]; the other arguments are those of `room()`."""

@@ -73,7 +73,7 @@ class PersonZone:
         """The arm that is nearest to a position (3,), None where none has been seen."""
         arms = [part for part in ARMS if part in self._parts]
         point = np.asarray(position_in_map, float)[None]
-        return min(arms, key=lambda part: float(_to_chain(point, *self._parts[part])[0]), default=None)
+        return min(arms, key=lambda part: _from_surface(point, *self._parts[part]), default=None)
 
     def move_arm(self, part: str, hand_in_map: np.ndarray) -> None:
         """Turn an arm that a hand holds about its shoulder, to where the hand (3,) is now.
@@ -174,8 +174,13 @@ def _links(points: np.ndarray) -> np.ndarray:
     return links
 
 
-def _to_chain(points: np.ndarray, chain: np.ndarray, radius: float) -> np.ndarray:
-    return segment_distances(np.stack((points, points), axis=1), _links(chain))[0].min(axis=1) - radius
+def distance_to_chain(points: np.ndarray, chain: np.ndarray) -> np.ndarray:
+    """Distance (k,) of points (k, 3) from the axis of a chain of points (n, 3) [m]."""
+    return segment_distances(np.stack((points, points), axis=1), _links(chain))[0].min(axis=1)
+
+
+def _from_surface(point: np.ndarray, chain: np.ndarray, radius: float) -> float:
+    return float(distance_to_chain(point, chain)[0]) - radius
 
 
 def _turned(chain: np.ndarray, taken_at: np.ndarray, hand: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -53,10 +53,23 @@ class ClearOfPerson(CollisionChecker):
     ) -> bool:
         """Whether arms (2, n) at these angles touch nothing and come near nobody, with room for a smooth motion."""
         pan = self.head_pan if head_pan is None else head_pan
-        zone, ends = self._zone, self._links.ends(pose_base_in_map, arm_positions, pan, self._opening)
+        ends = self._links.ends(pose_base_in_map, arm_positions, pan, self._opening)
+        return not self._near_person(ends) and self._checker.free(pose_base_in_map, arm_positions, pan, leaving=leaving)
+
+    def free_along(
+        self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None = None
+    ) -> Iterator[bool]:
+        """What `free` says of each of the postures (k, 2, n) of a motion [rad], at least one, in turn."""
+        pan = self.head_pan if head_pan is None else head_pan
+        way = self._links.ends_along(pose_base_in_map, postures, pan, self._opening)
+        for ends, free in zip(way, self._checker.free_along(pose_base_in_map, postures, pan), strict=True):
+            yield free and not self._near_person(ends)
+
+    def _near_person(self, ends: np.ndarray) -> bool:
+        """Whether links, ends (r, 2, 3) [m], come too near to the person."""
+        zone = self._zone
         assert len(zone.names) == self._least.shape[1], "one checker serves one plan: the person must not change"
-        near = any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)
-        return not near and self._checker.free(pose_base_in_map, arm_positions, pan, leaving=leaving)
+        return any_nearer(ends, self._links.radii, zone.ends, zone.radii, self._least_gaps)
 
     def contacts(
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
@@ -69,11 +82,19 @@ class ClearOfPerson(CollisionChecker):
         self, pose_base_in_map: np.ndarray, arm_positions: np.ndarray, head_pan: float | None = None
     ) -> list[tuple[str, str]]:
         """Names of all pairs that are too close, for a message."""
+        return next(self.collisions_along(pose_base_in_map, np.asarray(arm_positions, float)[None], head_pan))
+
+    def collisions_along(
+        self, pose_base_in_map: np.ndarray, postures: np.ndarray, head_pan: float | None = None
+    ) -> Iterator[list[tuple[str, str]]]:
+        """What `collisions` says of each of the postures (k, 2, n) of a motion [rad], at least one, in turn."""
         pan = self.head_pan if head_pan is None else head_pan
-        room = self._room(pose_base_in_map, arm_positions, pan)
         links, parts = self._links.names, self._zone.names
-        near = [(links[n], f"the person's {parts[m]}") for n, m in np.argwhere(room < self._least)]
-        return [*dict.fromkeys(near), *self._checker.collisions(pose_base_in_map, arm_positions, pan)]
+        own = self._checker.collisions_along(pose_base_in_map, postures, pan)
+        for arms, hits in zip(postures, own, strict=True):
+            room = self._room(pose_base_in_map, arms, pan)
+            near = [(links[n], f"the person's {parts[m]}") for n, m in np.argwhere(room < self._least)]
+            yield [*dict.fromkeys(near), *hits]
 
     def _room(self, base: np.ndarray, arms: np.ndarray, head_pan: float) -> np.ndarray:
         ends = self._links.ends(base, arms, head_pan, self._opening)

@@ -13,11 +13,11 @@ from ...sim.mechanics.collision import CollisionChecker
 from ...sim.mechanics.kinematics import Kinematics
 from ...sim.mechanics.path_timing import toppra
 from ...sim.quantity import Quantities, quantity
-from ...sim.vector import length as vector_length
 from ...sim.world import SIDES, JointTrajectory, Side
 from .errors import MotionBlocked
 
-HandSpeed = float | Callable[[np.ndarray], float]  # a limit [m/s], or one that depends on where the hand is (3,)
+# a limit [m/s], or limits (k,) for places (k, 3) of a hand in the map
+HandSpeed = float | Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +61,7 @@ def plan_joint_motion(
         waypoints: by side, (k, n) joint angles with the current ones first [rad]; both sides need the same k.
         pose_base_in_map: (3,) where the base stands; needed with `checker` or a `hand_speed` that depends on place.
         speed_scale: share of the velocity limits to use; accelerations scale with its square.
-        hand_speed: greatest speed of each hand [m/s], or a function of the hand's position in the map.
+        hand_speed: greatest speed of each hand [m/s], or for each of a hand's positions (k, 3) in the map that (k,).
         checker: when given, every sample is tested.
         other_arm: (n,) angles of the arm that does not move, for `checker`; the ready posture when omitted.
         tuning: numbers of the timing.
@@ -121,20 +121,16 @@ def check_motion(
     arms = robot.ready.copy()
     if other_arm is not None and len(sides) == 1:
         arms[1 - SIDES.index(sides[0])] = other_arm
-    leaving: set[tuple[str, str]] = set()
-    given: set[tuple[str, str]] | None = None
     step = max(1, len(samples) // tuning.checked_samples)
     chosen = np.unique(np.append(np.arange(0, len(samples), step), len(samples) - 1))
-    for k in chosen:
-        for n, side in enumerate(sides):
-            arms[SIDES.index(side)] = samples[k, robot.dof * n : robot.dof * (n + 1)]
-        if given is None:
-            given = standing_contacts(checker, sides, pose_base_in_map, arms)
-        touching = (
-            []
-            if checker.free(pose_base_in_map, arms)
-            else [hit for hit in checker.collisions(pose_base_in_map, arms) if hit not in given]
-        )
+    postures = np.repeat(arms[None], len(chosen), axis=0)
+    for n, side in enumerate(sides):
+        postures[:, SIDES.index(side)] = samples[chosen, robot.dof * n : robot.dof * (n + 1)]
+    given, leaving = standing_contacts(checker, sides, pose_base_in_map, postures[0]), set[tuple[str, str]]()
+    free_along = checker.free_along(pose_base_in_map, postures)
+    for k, posture, free in zip(chosen, postures, free_along, strict=True):
+        hits = [] if free else checker.collisions(pose_base_in_map, posture)
+        touching = [hit for hit in hits if hit not in given]
         leaving = set(touching) if k == 0 else leaving & set(touching)
         if not leaving.issuperset(touching) or (touching and k == chosen[-1]):
             a, b = touching[0]
@@ -266,14 +262,16 @@ def _hand_speed_constraint(
 
         def compute_constraint_params(self, path: Any, gridpoints: np.ndarray, *_: Any) -> tuple:
             bounds = np.full((len(gridpoints), 2), (0.0, 1e6))
-            for n, (q, slope) in enumerate(zip(path(gridpoints), path(gridpoints, 1), strict=True)):
-                for k, side in enumerate(sides):
-                    arm, rate = q[count * k : count * (k + 1)], slope[count * k : count * (k + 1)]
-                    limit = hand_speed
-                    if callable(limit):
-                        limit = limit(kinematics.pose_hand_in_map(side, arm, base)[:3, 3])
-                    moved = vector_length(kinematics.jacobian_hand_in_base(side, arm)[:3] @ rate)
-                    bounds[n, 1] = min(bounds[n, 1], (margin * float(limit) / max(moved, 1e-6)) ** 2)
+            angles, slopes = path(gridpoints), path(gridpoints, 1)
+            for k, side in enumerate(sides):
+                mine = slice(count * k, count * (k + 1))
+                limit = hand_speed
+                if callable(limit):
+                    limit = limit(kinematics.places_of_hand_in_map(side, angles[:, mine], base))
+                moved = kinematics.velocities_of_hand_in_base(side, angles[:, mine], slopes[:, mine])
+                pace = margin * limit / np.maximum(np.sqrt(np.vecdot(moved, moved)), 1e-6)
+                # one by one, as numpy rounds a square otherwise in the last bit
+                bounds[:, 1] = np.minimum(bounds[:, 1], [each**2 for each in pace.tolist()])
             return None, None, None, None, None, None, bounds
 
     return HandSpeedConstraint()

@@ -81,3 +81,18 @@ def test_distance_to_a_box_is_zero_inside_and_counts_from_its_nearest_face():
     through = ((-3.0, 0.0, 0.5), (3.0, 0.0, 0.5))
     above_a_corner = ((4.0, 5.0, 1.0), (4.0, 5.0, 9.0))
     assert box_distances(np.array((beside, through, above_a_corner)), box).tolist() == [1.0, 0.0, 5.0]
+
+
+def test_short_capsules_are_told_near_as_their_gaps_say():
+    generator = np.random.default_rng(0)
+    found = []
+    for _ in range(200):
+        start = generator.normal(size=(5, 2, 1, 3))
+        ends = np.concatenate((start, start + 0.2 * generator.normal(size=start.shape)), axis=2)
+        one, other = np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
+        radii, least = generator.uniform(0.0, 0.1, 5), generator.normal(-0.1, 0.1, (5, 5))
+        near = bool((capsule_gaps(one, radii, other, radii)[0] < least).any())
+        assert any_nearer(one, radii, other, radii, least) == near
+        found.append(near)
+    assert any(found)
+    assert not all(found)

@@ -14,14 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...sim.abilities import HandKinematics
-from ...sim.mechanics.robot_model import RobotModel
 from ...sim.segments import furthest_moved
 from ...sim.vector import length
 from ...sim.world import SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory, Observation, Side
 from ...skills.geometry.person_zone import PersonZone
 from .declared_grips import DeclaredGrips
-from .hand_speed import HandPositions, hand_path, hand_positions_from, near_speed, near_speed_bound, stretched
+from .hand_speed import near_speed, near_speed_bound, stretched
 from .keep_clear import KeepClear
 from .limits import Limits
 from .link_motion import LinkMotion
@@ -37,9 +35,8 @@ class CommandScaling:
     """What of each command may be sent.
 
     Args:
-        robot: what it is made of.
-        kinematics: of the robot; where it has none, trajectories near the person are bounded by the arm's reach.
-        links: where commands bring the links, if it has kinematics.
+        links: where commands bring the robot's links; where it has no kinematics, there are none, and trajectories near
+            the person are bounded by the arm's reach.
         limits: what to enforce.
         zone: where the person is.
         load: on the hands.
@@ -49,8 +46,6 @@ class CommandScaling:
 
     def __init__(
         self,
-        robot: RobotModel,
-        kinematics: HandKinematics | None,
         links: LinkMotion | None,
         *,
         limits: Limits,
@@ -59,9 +54,8 @@ class CommandScaling:
         grips: DeclaredGrips,
         under_way: MotionsUnderWay,
     ) -> None:
-        self._robot, self._limits, self._zone = robot, limits, zone
+        self._limits, self._zone = limits, zone
         self._load, self._grips, self._under_way = load, grips, under_way
-        self._hand_positions = hand_positions_from(kinematics)
         self._links = links
         self._clear = None if links is None else KeepClear(links, zone)
 
@@ -93,10 +87,10 @@ class CommandScaling:
         """
         factor, fastest = 1.0, {}
         for side in SIDES:
-            if self._hand_positions is None or self._links is None:
+            if self._links is None:
                 bound = self._bounded(command, side, seen, retreat)
             else:
-                bound = self._along(command, side, seen, retreat, self._hand_positions, self._links)
+                bound = self._along(command, side, seen, retreat, self._links)
             if bound is not None:
                 factor, fastest[side] = max(factor, bound[0]), bound[1]
         if self._clear is not None:
@@ -155,16 +149,10 @@ class CommandScaling:
         return speed / self._speed_limit(side), self._speed_limit(side)
 
     def _along(
-        self,
-        command: JointTrajectory,
-        side: Side,
-        seen: Observation,
-        retreat: bool,
-        hand_positions: HandPositions,
-        links: LinkMotion,
+        self, command: JointTrajectory, side: Side, seen: Observation, retreat: bool, links: LinkMotion
     ) -> tuple[float, float] | None:
         """The same, by the way that the arm's links go; None where it does not move that arm."""
-        walked = hand_path(self._robot, command, side, seen, hand_positions)
+        walked = links.hand_path(command, side, seen)
         if walked is None:
             return None
         times, path = walked

@@ -85,8 +85,6 @@ class GuardedWorld:
         self._overspeed = Overspeed(limits, self.zone, links)
         self._under_way = MotionsUnderWay(inner.clock)
         self._scaling = CommandScaling(
-            inner.robot,
-            kinematics,
             links,
             limits=limits,
             zone=self.zone,

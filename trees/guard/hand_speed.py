@@ -2,31 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from ...sim.abilities import HandKinematics
-from ...sim.mechanics.robot_model import RobotModel
 from ...sim.world import SIDES, JointTrajectory, Observation, Side
 from ...skills.geometry.person_zone import PersonZone
 
-# hand_positions(side, joint_positions (k, n) [rad], base_pose (3,)) -> (k, 3) in the map [m]
-HandPositions = Callable[[Side, np.ndarray, np.ndarray], np.ndarray]
 SAMPLE = 0.05  # [s] between the places where a trajectory is checked
 SAMPLES_MAX = 2000
 REACH = 1.4  # [m] shoulder to fingertips: bounds a hand's speed when no kinematics are known
-
-
-def hand_positions_from(kinematics: HandKinematics | None) -> HandPositions | None:
-    """Where a robot's model puts its hands; None where no model is known."""
-    if kinematics is None:
-        return None
-
-    def positions(side: Side, joint_positions: np.ndarray, base_pose: np.ndarray) -> np.ndarray:
-        return np.array([kinematics.pose_hand_in_map(side, q, base_pose)[:3, 3] for q in joint_positions])
-
-    return positions
 
 
 def sampled(trajectory: JointTrajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -36,21 +19,6 @@ def sampled(trajectory: JointTrajectory) -> tuple[np.ndarray, np.ndarray]:
     fine = np.union1d(times, np.linspace(0.0, times[-1], count + 1))
     columns = np.asarray(trajectory.positions, float).T
     return fine, np.stack([np.interp(fine, times, column) for column in columns], axis=1)
-
-
-def hand_path(
-    robot: RobotModel, trajectory: JointTrajectory, side: Side, observation: Observation, hand_positions: HandPositions
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Times (m,) and hand positions (m, 3) of one side, or None when the trajectory does not move that arm."""
-    names = robot.joints_of(side)
-    if not set(names) & set(trajectory.joints):
-        return None
-    times, positions = sampled(trajectory)
-    q = np.tile(observation.arm_positions[SIDES.index(side)], (len(times), 1))
-    for column, joint in enumerate(trajectory.joints):
-        if joint in names:
-            q[:, names.index(joint)] = positions[:, column]
-    return times, np.asarray(hand_positions(side, q, observation.pose_base_in_map), float)
 
 
 def near_speed(times: np.ndarray, ends: np.ndarray, radii: np.ndarray, zone: PersonZone, near: float) -> float:

@@ -40,12 +40,13 @@ class KeepClear:
         """The part (6,) of a twist (6,) that keeps the arm's links off the person and off the rest of the robot."""
         if self._own is None or not np.any(twist):
             return twist
-        room, away = self._all_room(self._motion.ends(seen), held)
-        rows, least = self._motion.rows(command.side)[:, None], _least(room)
+        rows = self._motion.rows(command.side)
+        room, away = self._all_room(self._motion.ends(seen), held, rows)
+        least = _least(room)
 
         def shortfall(tried: np.ndarray) -> np.ndarray:
             after = self._motion.after_twist(seen, command.side, tried, command.duration)
-            return np.where(rows, least - self._all_room(after, held)[0], -np.inf)
+            return least - self._all_room(after, held, rows)[0]
 
         for start in (twist, np.append(twist[:3], np.zeros(3))):  # where nothing turns, the hand may still slide
             slid = start.copy()
@@ -95,9 +96,10 @@ class KeepClear:
                 )
         self._own.judge(command, seen)
 
-    def _all_room(self, ends: np.ndarray, held: Mapping[Side, str]) -> tuple[np.ndarray, np.ndarray]:
+    def _all_room(self, ends: np.ndarray, held: Mapping[Side, str], rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What is left (k, m) of the gaps of the links `rows` (r,) to person and robot, and directions (k, m, 3)."""
         assert self._own is not None
-        pairs = zip(self._room(ends, held), self._own.room(ends), strict=True)
+        pairs = zip(self._clearance.room(ends, self._zone, held, rows), self._own.room(ends, rows), strict=True)
         room, away = (np.concatenate(pair, axis=1) for pair in pairs)
         return room, away
 

@@ -45,6 +45,7 @@ class LinkMotion:
         self._seen_ends = np.zeros((0, 2, 3))
         self._went: tuple[JointTrajectory, Observation, tuple[np.ndarray, np.ndarray]] | None = None
         self._postures: tuple[JointTrajectory, Observation, tuple[np.ndarray, np.ndarray]] | None = None
+        self._turned: tuple[Observation, tuple[Side, float, bytes], np.ndarray] | None = None
         self._rows = {side: np.array([name.startswith(side) for name in self.names]) for side in SIDES}
 
     def rows(self, side: Side) -> np.ndarray:
@@ -67,12 +68,17 @@ class LinkMotion:
         return np.stack((points, points), axis=1)
 
     def after_twist(self, seen: Observation, side: Side, twist_in_map: np.ndarray, duration: float) -> np.ndarray:
-        """(r, 2, 3) ends once a hand has moved with a twist (6,) for `duration` [s], the base at rest."""
+        """(r, 2, 3) ends once a hand has moved with a twist (6,) for `duration` [s], the base at rest; read-only."""
+        asked = side, duration, twist_in_map.tobytes()
+        if self._turned is not None and self._turned[0] is seen and self._turned[1] == asked:
+            return self._turned[2]  # asked for by what keeps clear, and for the speed of what it has let pass
         n, arms = SIDES.index(side), np.array(seen.arm_positions, float)
         jacobian = self._kinematics.jacobian_hand_in_map(side, arms[n], seen.pose_base_in_map)
         square = jacobian @ jacobian.T + _DAMPED
         arms[n] += duration * jacobian.T @ np.linalg.solve(square, twist_in_map)
-        return self.ends(seen, arms)
+        ends = self.ends(seen, arms)
+        self._turned = seen, asked, ends
+        return ends
 
     def after_base(self, seen: Observation, velocity: np.ndarray, duration: float) -> np.ndarray:
         """(r, 2, 3) ends once the base has moved with a velocity (3,) in its frame for `duration` [s]."""
@@ -98,6 +104,18 @@ class LinkMotion:
         way = times, ends
         self._went = trajectory, seen, way
         return way
+
+    def hand_path(
+        self, trajectory: JointTrajectory, side: Side, seen: Observation
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times (k,) [s] and places (k, 3) of a hand in the map [m]; None where a trajectory does not move that arm."""
+        if not set(self._robot.joints_of(side)) & set(trajectory.joints):
+            return None
+        times, arms = self.postures(trajectory, seen)
+        angles, base = arms[:, SIDES.index(side)], seen.pose_base_in_map
+        if self.known is not None:
+            return times, self.known.places_of_hand_in_map(side, angles, base)
+        return times, np.array([self._kinematics.pose_hand_in_map(side, q, base)[:3, 3] for q in angles])
 
     def postures(self, trajectory: JointTrajectory, seen: Observation) -> tuple[np.ndarray, np.ndarray]:
         """Times (k,) [s] and angles (k, 2, n) [rad] of both arms on a trajectory, read-only; other joints rest."""

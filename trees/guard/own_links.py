@@ -32,18 +32,20 @@ class OwnLinks:
         self._could_touch = np.array([[frozenset((a, b)) in pairs for b in links] for a in links])
         self._checker = CollisionChecker(kinematics, margin=0.0)
 
-    def room(self, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What is left of the gaps between links.
+    def room(self, ends: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What is left of the gaps between some links and all.
 
         Args:
             ends: (r, 2, 3) of their axes [m].
+            rows: (r,) bool, of k of them.
 
         Returns:
-            (r, r) what is left of the gap between two links, below 0 where they are too near [m], and (r, r, 3)
+            (k, r) what is left of the gap between two links, below 0 where they are too near [m], and (k, r, 3)
             directions from the second to the first.
         """
-        gaps, away = capsule_gaps(ends, self._motion.radii, ends, self._motion.radii)
-        return np.where(self._could_touch, gaps - LEAST, FAR), away
+        radii = self._motion.radii
+        gaps, away = capsule_gaps(ends[rows], radii[rows], ends, radii)
+        return np.where(self._could_touch[rows], gaps - LEAST, FAR), away
 
     def judge(self, trajectory: JointTrajectory, seen: Observation) -> None:
         """Refuse a trajectory on which links touch that do not touch now.
@@ -54,7 +56,8 @@ class OwnLinks:
         base, pan = seen.pose_base_in_map, seen.head_pan
         now = set(self._checker.collisions(base, seen.arm_positions, pan))
         _, postures = self._motion.postures(trajectory, seen)
-        for arms in (*postures[:: max(1, len(postures) // CHECKED)], postures[-1]):
-            if touching := [pair for pair in self._checker.collisions(base, arms, pan) if pair not in now]:
+        chosen = np.append(np.arange(0, len(postures), max(1, len(postures) // CHECKED)), len(postures) - 1)
+        for hits in self._checker.collisions_along(base, postures[chosen], pan):
+            if touching := [pair for pair in hits if pair not in now]:
                 one, other = (name.replace("_", " ") for name in touching[0])
                 raise SkillFailure(Reason.MOTION_BLOCKED, f"the {one} would touch the {other}")

@@ -59,11 +59,12 @@ class Announcer:
 
     def sweep(self) -> None:
         """Tell what was stopped without being visited; what is reset may be told of again."""
-        for node, told in list(self._told.items()):
-            if node.status == Status.INVALID and isinstance(node, (Skill, Stage)):
-                if told == Status.RUNNING:
-                    self._announce(node, Status.INVALID)
-                del self._told[node]
+        stopped = [node for node in self._told if node.status is Status.INVALID]
+        for node in stopped:
+            assert isinstance(node, (Skill, Stage))
+            if self._told[node] == Status.RUNNING:
+                self._announce(node, Status.INVALID)
+            del self._told[node]
 
     def _announce(self, node: Skill | Stage, status: Status) -> None:
         if self._told.get(node) == status:

@@ -54,3 +54,10 @@ def test_some_pixels_are_told_apart_as_in_the_whole_picture():
     for low, high in ((0, 40), (0, 6), (34, 40), (17, 18)):
         rows, columns = rng.integers(low, high, 20), rng.integers(low, high, 20)
         np.testing.assert_array_equal(surfaces_at(rgb, rows, columns), whole[rows, columns])
+
+
+def test_some_pixels_are_labelled_as_in_the_whole_picture():
+    generator = np.random.default_rng(0)
+    picture = generator.integers(0, 255, (60, 80, 3), dtype=np.uint8)
+    rows, columns = generator.integers(0, 60, 40), generator.integers(0, 80, 40)
+    assert np.array_equal(surfaces_at(picture, rows, columns), surfaces(picture)[rows, columns])

@@ -69,3 +69,32 @@ def test_what_a_motion_leaves_may_stay_as_near_and_come_no_nearer(kinematics):
     assert before(0.0).free(BASE, model.READY, leaving=begins)
     assert before(0.002).free(BASE, model.READY, leaving=begins)
     assert not before(-0.002).free(BASE, model.READY, leaving=begins)
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.1])
+def test_what_is_far_apart_is_what_coal_finds_free(kinematics, margin):
+    import pinocchio as pin
+
+    checker, generator, told = CollisionChecker(kinematics, BED, margin=margin), np.random.default_rng(0), 0
+    for _ in range(300):
+        limits = [kinematics.limits[side] for side in SIDES]
+        arms = np.array([generator.uniform(limit.lower, limit.upper) for limit in limits])
+        base = generator.uniform((-2.0, -2.0, -np.pi), (2.0, 2.0, np.pi))
+        q = kinematics.configuration(base, arms)
+        touches = pin.computeCollisions(kinematics.model, kinematics.data, checker._geometry, checker._data, q, False)
+        assert touches == bool(checker.collisions(base, arms))
+        told += checker._far.all(checker._places, margin)
+    assert told > 50
+
+
+def test_a_motion_is_judged_as_its_postures_are(kinematics):
+    checker = CollisionChecker(kinematics, BED)
+    clapped = model.READY.copy()
+    clapped[:, 0] = (-1.6, 1.6)
+    way = np.stack([(1 - share) * model.READY + share * clapped for share in np.linspace(0.0, 1.0, 20)])
+    base = np.zeros(3)
+    assert list(checker.free_along(base, way)) == [checker.free(base, arms) for arms in way]
+    hits = list(checker.collisions_along(base, way))
+    assert hits == [checker.collisions(base, arms) for arms in way]
+    assert any(hits)
+    assert not all(hits)

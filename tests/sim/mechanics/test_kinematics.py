@@ -121,3 +121,22 @@ def test_there_is_one_for_each_robot():
     other = replace(BAXTER, name="other")
     assert kinematics_of(other) is not kinematics_of(BAXTER)
     assert kinematics_of(other).robot is other
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_many_postures_at_once_are_those_one_by_one_to_the_last_bit(kinematics, side):
+    base, n = np.array((0.7, -0.3, 2.0)), SIDES.index(side)
+    q = np.array(random_arms(kinematics, 30))[:, n]
+    rates = np.random.default_rng(1).normal(size=q.shape)
+    places = [kinematics.pose_hand_in_map(side, each, base)[:3, 3] for each in q]
+    assert np.array_equal(kinematics.places_of_hand_in_map(side, q, base), places)
+    velocities = [
+        kinematics.jacobian_hand_in_base(side, *each)[:3] @ rate for *each, rate in zip(q, rates, strict=True)
+    ]
+    assert np.array_equal(kinematics.velocities_of_hand_in_base(side, q, rates), velocities)
+
+
+def test_many_joint_vectors_at_once_are_those_one_by_one(kinematics):
+    base, opening, arms = np.array((0.7, -0.3, 2.0)), np.array((0.02, 0.05)), random_arms(kinematics, 5)
+    each = [kinematics.configuration(base, posture, 0.3, opening) for posture in arms]
+    assert np.array_equal(kinematics.configurations(base, np.array(arms), 0.3, opening), each)

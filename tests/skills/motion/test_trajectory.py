@@ -77,8 +77,8 @@ def test_the_hand_obeys_its_speed_limit_where_the_limit_holds(kinematics):
     slow = plan_joint_motion(kinematics, waypoints, BASE, hand_speed=0.15)
     assert max(hand_speed(kinematics, slow, side).max() for side in SIDES) <= 0.15
 
-    def near_the_head(position):
-        return 0.1 if position[0] < 0.45 else 10.0
+    def near_the_head(positions):
+        return np.where(positions[:, 0] < 0.45, 0.1, 10.0)
 
     goals = {"right": hand_pose((0.2, -0.1, 0.9), (-1, 0, -1))}
     trajectory = plan_reach(kinematics, goals, model.READY, BASE, free="approach", hand_speed=near_the_head)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.sim.mechanics.kinematics import kinematics_of
-from caretree.sim.world import SIDES, BaseVelocity, HandTwist
+from caretree.sim.world import SIDES, BaseVelocity, HandTwist, JointTrajectory
 from caretree.skills.core.skill import Skill
 from caretree.skills.scripted.rehearsal import REHEARSAL, RehearsalWorld
 from caretree.trees.run.runner import Run
@@ -106,3 +106,21 @@ def test_a_hand_follows_a_twist_as_well_in_the_few_steps_of_a_rare_tick():
 
 def test_at_the_usual_rate_a_hand_follows_as_in_the_simulated_room():
     assert led(TICK_RATE)[1] == led(TICK_RATE, steps=1000)[1]
+
+
+def test_between_two_ticks_a_trajectory_is_left_alone_but_for_how_fast_it_is_at_the_last():
+    world = RehearsalWorld()
+    step, taken = world._step, []
+    world._step = lambda dt: (taken.append(dt), step(dt))
+    times, start = np.array((0.0, 1.0, 2.0)), world.observe().arm_positions[0, 0]
+    positions = start + np.array((0.0, 0.1, 0.4))[:, None]
+    world.send(JointTrajectory(joints=("left_s0",), times=times, positions=positions))
+    for now in (0.5, 1.2, 1.9):
+        world.clock.wait_until(now)
+        seen = world.observe()
+        assert seen.arm_positions[0, 0] == pytest.approx(np.interp(now, times, positions[:, 0]))
+        assert seen.arm_velocities[0, 0] == pytest.approx(0.1 if now < 1.0 else 0.3, abs=0.05)
+    assert len(taken) == 6
+    world.clock.wait_until(3.0)
+    assert world.observe().arm_positions[0, 0] == pytest.approx(start + 0.4)
+    assert not world.observe().arm_velocities.any()

@@ -7,14 +7,8 @@ from caretree.sim.scripted.linear_arm import LinearArms
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import JointTrajectory
 from caretree.skills.geometry.person_zone import PersonZone
-from caretree.trees.guard.hand_speed import (
-    hand_path,
-    hand_positions_from,
-    near_speed,
-    near_speed_bound,
-    sampled,
-    stretched,
-)
+from caretree.trees.guard.hand_speed import near_speed, near_speed_bound, sampled, stretched
+from caretree.trees.guard.link_motion import LinkMotion
 
 AHEAD = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 2.0)), positions=np.array(((0.0,), (0.8,))))
 TIMES = np.array((0.0, 1.0, 2.0, 3.0))  # [s]
@@ -32,10 +26,10 @@ def zone_at(place):
 
 def test_the_path_of_a_hand_is_that_of_its_kinematics():
     seen = ScriptedWorld().observe()
-    times, path = hand_path(BAXTER, AHEAD, "left", seen, hand_positions_from(LinearArms()))
+    times, path = LinkMotion(BAXTER, LinearArms()).hand_path(AHEAD, "left", seen)
     assert times[[0, -1]] == pytest.approx((0.0, 2.0))
     assert np.linalg.norm(path[-1] - path[0]) == pytest.approx(0.4)  # [m]: half a metre for each radian
-    assert hand_path(BAXTER, AHEAD, "right", seen, hand_positions_from(LinearArms())) is None
+    assert LinkMotion(BAXTER, LinearArms()).hand_path(AHEAD, "right", seen) is None
 
 
 def test_samples_are_close_together_and_hold_every_knot():
@@ -62,7 +56,7 @@ def test_only_steps_near_the_person_count():
 def test_without_kinematics_the_speed_is_never_underestimated():
     seen = ScriptedWorld().observe()
     there = zone_at(seen.pose_hand_in_map[0, :3, 3])
-    times, path = hand_path(BAXTER, AHEAD, "left", seen, hand_positions_from(LinearArms()))
+    times, path = LinkMotion(BAXTER, LinearArms()).hand_path(AHEAD, "left", seen)
     assert near_speed_bound(AHEAD, "left", seen, there, 0.3) >= near_speed(times, ends_of(path), THIN, there, 0.3) > 0.0
     assert near_speed_bound(AHEAD, "right", seen, there, 0.3) == 0.0
     assert near_speed_bound(AHEAD, "left", seen, zone_at((9.0, 9.0, 9.0)), 0.3) == 0.0
