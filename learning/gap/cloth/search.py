@@ -25,7 +25,7 @@ CARRIED = 0.8  # proxy bodies are taken as given where they alone bring the squa
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
-EXCHANGES = 4  # members that are exchanged at most
+EXCHANGES = 3  # members that are exchanged at most
 NUMBER = 10.0  # what a fitted number has to keep gaining to stay
 
 
@@ -152,14 +152,14 @@ class _Rounds:
         def price(other: Other) -> float:
             return around.worse(other) + NUMBER * max(other.numbers - now.numbers, 0)
 
-        others = [o for member in now.chosen for o in around.instead(member)]
-        best = min(others, key=price, default=now)
-        if price(best) > -SAME:
-            return False
-        self._say(f"rather {' and '.join(c.name for c in best.chosen)}")
-        self._fit, self._chosen = _prune(self._fitter, best.fit, list(best.chosen), self._worth)
-        self._after = self._coherence(self._fit)
-        return True
+        for member in now.chosen:
+            best = min(around.instead(member), key=price, default=now)
+            if price(best) < -SAME:
+                self._say(f"rather {' and '.join(c.name for c in best.chosen)}")
+                self._fit, self._chosen = _prune(self._fitter, best.fit, list(best.chosen), self._worth)
+                self._after = self._coherence(self._fit)
+                return True
+        return False
 
     def result(self) -> ClothSearch:
         """The final model, without what later rounds made unnecessary."""
