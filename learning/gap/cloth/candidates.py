@@ -76,6 +76,16 @@ def candidates(scene: ClothScene, episodes: list[ClothEpisode], residuals: list[
     return out
 
 
+def is_moment(c: Candidate) -> bool:
+    """Whether a hypothesis is an instant and has no size."""
+    return c.name == "grip_slip"
+
+
+def clash(name: str, taken: set[str]) -> bool:
+    """Whether a hypothesis and one of those taken are the same load."""
+    return (name == "added_mass" and "mass" in taken) or (name == "mass" and "added_mass" in taken)
+
+
 def _place(p: np.ndarray) -> dict[str, float]:
     return {a: float(x) for a, x in zip("xyz", p, strict=True)}
 

@@ -17,7 +17,7 @@ from .scene import ClothScene
 
 NAME = "snag"
 SIZE: Free = (NAME, "stiffness")
-PLACES = 6  # nearest parts of the cloth that are tried
+PLACES = 16  # nearest parts of the cloth that are tried
 INSTANTS = 6  # a recording is cut into so many parts to look for the span in
 MOMENT = 0.05  # finite difference of the instants, over a recording's length
 FINE = 2e-4  # a weak long catch and a strong short one are nearly the same: fitted until it stands still

@@ -125,6 +125,10 @@ class ClothFitter:
         """Measured minus predicted, per episode, unweighted."""
         return [y - x for y, x in zip(self.data, predict(self.sim, model, self.episodes), strict=True)]
 
+    def with_bodies(self, model: ClothModel) -> list[np.ndarray]:
+        """The same with proxy bodies on the cloth, as every local effect brings them."""
+        return self.residuals(replace(model, carried=True))
+
     def rss(self, residuals: list[np.ndarray]) -> float:
         """Weighted sum of squares."""
         return float(sum(np.sum((r * self.weights) ** 2) for r in residuals))
@@ -229,7 +233,7 @@ class ClothFitter:
                 np.concatenate([((a - b) * self.weights).ravel() for a, b in zip(residuals, other, strict=True)])
                 / (change if change else 1.0)
             )
-        return np.stack(columns, axis=1)
+        return np.stack(columns, axis=1) if columns else np.zeros((sum(r.size for r in residuals), 0))
 
 
 def scaled_to(residual: np.ndarray, column: np.ndarray) -> tuple[float, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 MATERIAL_LOAD = 0.02  # of the load's range
+STRETCHES = 8  # a recording is cut into to hear where it is loud
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,24 @@ def coherence(residuals: list[np.ndarray], pairs: np.ndarray, markers: int) -> C
     together = float(products.mean()) if products.size else 0.0
     left = max(total - max(together, 0.0), 0.02 * total)
     return Coherence(shared=together, floor=float(np.sqrt(left)), p_value=float(norm.sf(z)))
+
+
+def bursts(residuals: list[np.ndarray], markers: int) -> float:
+    """P-value of the markers being as loud in every stretch of time as in the middle one, over all recordings.
+
+    Cloth that buckles the other way than the model moves its markers by much, and neighbours against each other.
+
+    Args:
+        residuals: (T, >= 3 M) per episode, markers first.
+        markers: M.
+    """
+    parts = [p for r in residuals for p in np.array_split(r[:, : 3 * markers], STRETCHES)]
+    loud = np.array([np.mean(p**2, axis=0) for p in parts])  # (stretches, 3 M)
+    usual = np.median(loud, axis=0) + 1e-30
+    columns = float(usual.sum() ** 2 / np.sum(usual**2))
+    # within a stretch a column may be all memory, so it counts once
+    ratio = float(np.max(loud.mean(axis=1)) / np.median(loud.mean(axis=1)))
+    return min(1.0, len(parts) * float(chi2.sf(columns * ratio, columns)))
 
 
 def memory(residuals: list[np.ndarray]) -> float:

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from .candidates import ONSETS, Candidate, candidates
-from .catches import FINE, MOMENT, best_catch
-from .fitting import ENOUGH, ClothFit, ClothFitter, ClothModel, Free, scaled
-from .noise import Coherence, coherence, load_misfit, memory, neighbours
-from .patches import best_patch
+from .candidates import Candidate, candidates, clash
+from .exchange import SAME, Exchange, Other
+from .fitting import ClothFit, ClothFitter, ClothModel
+from .noise import Coherence, bursts, coherence, load_misfit, memory, neighbours
+from .polish import begun, polish, rested, settled, steps_of, sure
 from .scene import ClothEpisode, ClothScene
+from .screening import screened
 from .simulate import Simulator
 
 ALPHA = 0.05
@@ -24,12 +25,8 @@ CARRIED = 0.8  # proxy bodies are taken as given where they alone bring the squa
 MATERIAL = 0.015  # a step must lower the mean square by this part of what it leaves
 SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing that neighbours share
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
+EXCHANGES = 3  # members that are exchanged at most
 NUMBER = 10.0  # what a fitted number has to keep gaining to stay
-SPACING = 0.1  # between the instants a slip is screened at, over a recording's length
-SAME = 12.0  # criterion within which two explanations fit alike
-FINER = 0.1  # finite differences once a fit stands still, over those before
-ONSET: Free = ("strain_stiffening", "onset")
-BEND = 0.02  # finite difference of the onset [1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +65,7 @@ class ClothSearch:
 
 
 def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say: Callable[[str], None]) -> ClothSearch:
-    """Rounds of screening and verification until no effect pays its price.
+    """Rounds of screening and verification until no effect pays its price and none is better in another's place.
 
     Args:
         sim: runs the scene.
@@ -77,8 +74,11 @@ def search(sim: Simulator, scene: ClothScene, episodes: list[ClothEpisode], say:
         say: told of every round.
     """
     rounds = _Rounds(sim, scene, episodes, say)
-    while rounds.more and rounds.next():
-        pass
+    for _ in range(EXCHANGES):
+        while rounds.more and rounds.next():
+            pass
+        if not rounds.exchange():
+            break
     return rounds.result()
 
 
@@ -110,7 +110,9 @@ class _Rounds:
         """Whether something is left to be explained and the model may still grow."""
         loads = [e.load for e in self._episodes]
         return len(self._chosen) < MAX_CHOSEN and (
-            _shares(self._after) or load_misfit(self._fit.residuals, loads, self._markers) < 0.01
+            _shares(self._after)
+            or load_misfit(self._fit.residuals, loads, self._markers) < 0.01
+            or bursts(self._fit.residuals, self._markers) < 0.01
         )
 
     def next(self) -> bool:
@@ -142,13 +144,31 @@ class _Rounds:
         self._rivals[top.added.name] = tuple(dict.fromkeys(alike))
         return True
 
+    def exchange(self) -> bool:
+        """Put another hypothesis where a member explains noticeably less; whether there was one."""
+        now = Other(chosen=tuple(self._chosen), fit=self._fit)
+        around = Exchange(fitter=self._fitter, scene=self._scene, named=now, worth=self._worth)
+
+        def price(other: Other) -> float:
+            return around.worse(other) + NUMBER * max(other.numbers - now.numbers, 0)
+
+        for member in now.chosen:
+            best = min(around.instead(member), key=price, default=now)
+            if price(best) < -SAME:
+                self._say(f"rather {' and '.join(c.name for c in best.chosen)}")
+                self._fit, self._chosen = _prune(self._fitter, best.fit, list(best.chosen), self._worth)
+                self._after = self._coherence(self._fit)
+                return True
+        return False
+
     def result(self) -> ClothSearch:
         """The final model, without what later rounds made unnecessary."""
         fit, chosen = _prune(self._fitter, self._fit, self._chosen, self._worth)
+        fit = rested(self._fitter, fit, chosen, self._worth) if chosen else fit
         return ClothSearch(
             chosen=tuple(chosen),
             fit=fit,
-            sure=sure(self._fitter, fit, chosen),
+            sure=sure(self._fitter, fit, chosen) if chosen else fit,
             plain=self._plain,
             before=self._before,
             after=self._coherence(fit),
@@ -162,9 +182,8 @@ class _Rounds:
 
     def _pool(self) -> list[Candidate]:
         """Hypotheses that can join what is chosen."""
-        with_bodies = self._fitter.residuals(replace(self._fit.model, carried=True))
         taken = {c.name for c in self._chosen}
-        every = candidates(self._scene, self._episodes, with_bodies)
+        every = candidates(self._scene, self._episodes, self._fitter.with_bodies(self._fit.model))
         return [c for c in every if c.name not in taken and not clash(c.name, taken)]
 
     def _verified(self, pool: list[Candidate], part: ClothFit) -> list[tuple[Candidate, ClothFit]]:
@@ -177,15 +196,17 @@ class _Rounds:
         worst = int(np.argmax([np.mean((r * self._weights) ** 2) for r in part.residuals]))
         alone = ClothFitter(self._sim, [self._some.episodes[worst]], self._weights)
         seen = replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
-        ranked, left = _screen(self._sim, alone, seen, self._chosen, pool)
+        own = alone.columns(seen.model, seen.residuals, steps_of(self._chosen))
+        ranked, left = screened(alone, seen.model, own, pool, float(np.sqrt(seen.rss)))
         verified: list[tuple[Candidate, ClothFit]] = []
         done = False  # once one explains all, the others only have to show whether they would too
-        for k, c in enumerate(ranked[:VERIFIED]):
+        for k, likely in enumerate(ranked[:VERIFIED]):
             # screening saw one recording, fits see several
             least = min((f.rss for _, f in verified), default=0.0) * seen.rss / max(part.rss, 1e-30)
-            if done and left[c.name] > max(HOPELESS * least, 0.25 * seen.rss):
+            if done and left[likely.name] > max(HOPELESS * least, 0.25 * seen.rss):
                 continue
-            first = begun(self._some, self._fit.model, c, part.rss)
+            c = begun(self._some, self._fit.model, likely, part.rss)
+            first = self._fit.model.joined(c.push)
             joined = self._some.fit(first, steps_of([*self._chosen, c]), rounds=1 if done else 2)
             done = done or not _shares(self._coherence(joined))
             part_left = np.sqrt(joined.rss / max(part.rss, 1e-30))
@@ -217,143 +238,8 @@ def _weights(fitter: ClothFitter, markers: int) -> np.ndarray:
     return out
 
 
-def clash(name: str, taken: set[str]) -> bool:
-    """Whether a hypothesis and one of those taken are the same load."""
-    return (name == "added_mass" and "mass" in taken) or (name == "mass" and "added_mass" in taken)
-
-
 def _price(tried: int, model: ClothModel) -> float:
     return float(chi2.isf(ALPHA / max(tried, 1), 1)) * len(model.free)
-
-
-def steps_of(chosen: list[Candidate]) -> dict[Free, float]:
-    """Finite difference of every number of some candidates."""
-    return {f: s for c in chosen for f, s in c.steps.items()}
-
-
-def _screen(
-    sim: Simulator, fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], pool: list[Candidate]
-) -> tuple[list[Candidate], dict[str, float]]:
-    """Candidates by how much a linear use of one simulation each would explain, best first, one of each name.
-
-    Returns:
-        The candidates, and the weighted sum of squares each would leave.
-    """
-    runs = []
-    for c in pool:
-        for f in c.start.free:
-            model = fit.model.joined(c.start.moved({f: c.push.value(f)}))
-            runs += [(e, model.acting, model.physics) for e in fitter.episodes]
-    sim.ahead(runs)
-    own = [fitter.columns(fit.model, fit.residuals, steps_of(chosen))] if chosen and fit.model.free else []
-    scored = []
-    for c in pool:
-        base = fit.model.joined(c.start)
-        r = fitter.residuals(base)
-        flat = np.concatenate([(x * fitter.weights).ravel() for x in r])
-        columns, sizes = list(own), {}
-        for f in c.start.free:
-            x = fitter.residuals(base.moved({f: c.push.value(f)}))
-            column = np.concatenate([((a - b) * fitter.weights).ravel() for a, b in zip(r, x, strict=True)])
-            columns.append(column[:, None])
-        X = np.concatenate(columns, axis=1)
-        theta = np.linalg.lstsq(X, flat, rcond=1e-8)[0]
-        mine = theta[-len(c.start.free) :]
-        mine = mine * max(float(np.linalg.norm(mine)), 1.0) ** (1.0 / c.power - 1.0)
-        for f, k in zip(c.start.free, mine, strict=True):
-            sizes[f] = c.start.value(f) + float(np.clip(k, -30.0, 30.0)) * (c.push.value(f) - c.start.value(f))
-        left = float(np.sum((flat - X @ theta) ** 2))
-        if c.name == "grip_slip":  # a moment, not a size: the simulation itself is the answer
-            x = fitter.residuals(fit.model.joined(c.push))
-            left, sizes = fitter.rss(x), {}
-        push = c.push.moved(sizes) if sizes else c.push
-        if all(abs(push.value(f) - c.start.value(f)) < 1e-9 for f in c.start.free):
-            continue  # it would have to act the wrong way round
-        steps = {f: 0.3 * abs(push.value(f) - c.start.value(f)) + 1e-6 if sizes else c.steps[f] for f in c.steps}
-        steps = {f: max(s, 0.1 * abs(c.steps[f])) for f, s in steps.items()}
-        scored.append((left, replace(c, push=push, steps=steps)))
-    scored.sort(key=lambda pair: pair[0])
-    firsts: dict[str, Candidate] = {}
-    lefts: dict[str, float] = {}
-    for left, c in scored:
-        firsts.setdefault(c.name, c)
-        lefts.setdefault(c.name, left)
-    return list(firsts.values()), lefts
-
-
-def begun(fitter: ClothFitter, model: ClothModel, c: Candidate, limit: float) -> ClothModel:
-    """The model with a candidate at the size screened, or at less where so much of it is worse than none."""
-    tried = model.joined(c.push)
-    for factor in (0.3, 0.1):
-        if c.name == "grip_slip" or fitter.rss(fitter.residuals(tried)) < limit:
-            break
-        tried = model.joined(scaled(c.push, factor, c.start))
-    return tried
-
-
-def _slipped(fitter: ClothFitter, fit: ClothFit, away: float) -> ClothFit:
-    """Move the instant of a slip, from steps of `away` (over a recording's length) down to a few time steps."""
-    away *= float(max(e.t[-1] for e in fitter.episodes))
-    while away > 0.002:
-        here = fit.model.value(("grip_slip", "time"))
-        for t in (here - away, here + away):
-            model = fit.model.moved({("grip_slip", "time"): t})
-            residuals = fitter.residuals(model)
-            if fitter.rss(residuals) < fit.rss:
-                fit = replace(fit, model=model, residuals=residuals, rss=fitter.rss(residuals))
-        away *= 0.6
-    return fit
-
-
-def _stiffened(fitter: ClothFitter, fit: ClothFit, steps: dict[Free, float]) -> ClothFit:
-    """Fit from which stretch on cloth stiffens, and how much, from where that was and from the likeliest other one."""
-    size: Free = ("strain_stiffening", "stiffness")
-    others = fitter.sized([fit.model.moved({ONSET: x}) for x in ONSETS], fit.model.moved({size: 0.0}), size)
-    starts = [fit.model, *(m for _, m in others if m.value(ONSET) != fit.model.value(ONSET))][:2]
-    free = (*fit.model.free, ONSET)
-    steps = {**steps, ONSET: BEND}
-    best = min((fitter.fit(replace(m, free=free), steps, rounds=4) for m in starts), key=lambda each: each.rss)
-    # much from a late stretch on and less from an earlier one are nearly the same: on until it stands still
-    best = fitter.fit(best.model, {f: FINER * x for f, x in steps.items()}, rounds=8, least=FINE)
-    return replace(best, model=replace(best.model, free=fit.model.free))
-
-
-def polish(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate], scene: ClothScene) -> ClothFit:
-    """Fit what the screening fixed: where a mass sits or a place caught, and from when to when."""
-    last = chosen[-1]
-    seen = fitter.residuals(fit.model)  # it was verified on fewer recordings
-    fit = replace(fit, residuals=seen, rss=fitter.rss(seen))
-    if last.name == "added_mass":
-        fit = best_patch(fitter, fit, scene, steps_of(chosen))
-    if last.name == "snag":
-        fit = best_catch(fitter, fit, scene, steps_of(chosen))
-    if any(c.name == "grip_slip" for c in chosen):  # what is found later may have moved it
-        fit = _slipped(fitter, fit, SPACING if last.name == "grip_slip" else 0.3 * SPACING)
-    if any(c.name == ONSET[0] for c in chosen):  # the same holds for from which stretch on
-        fit = _stiffened(fitter, fit, steps_of(chosen))
-    return settled(fitter, fitter.fit(fit.model, steps_of(chosen), rounds=3), chosen)
-
-
-def settled(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate]) -> ClothFit:
-    """The fit gone on with where smaller finite differences help it: beside its best values cloth bends within a step.
-
-    A step is what matters while a size is looked for; near the end its differences point past the best values, and what
-    is left there looks like another effect.
-    """
-    fine = fitter.fit(fit.model, {f: FINER * s for f, s in steps_of(chosen).items()}, rounds=5)
-    return fine if fine.rss < (1.0 - ENOUGH) * fit.rss else fit
-
-
-def sure(fitter: ClothFitter, fit: ClothFit, chosen: list[Candidate]) -> ClothFit:
-    """The fit with what was fitted once and then held free, too: without, the others look too sure."""
-    end = float(max(e.t[-1] for e in fitter.episodes))
-    held: dict[Free, float] = {ONSET: BEND, ("snag", "t0"): MOMENT * end, ("snag", "t1"): MOMENT * end}
-    acting = {c.name for c in chosen}
-    held = {f: s for f, s in held.items() if f[0] in acting}
-    if not held:
-        return fit
-    steps = {f: FINER * s for f, s in {**steps_of(chosen), **held}.items()}
-    return fitter.with_intervals(fit, (*fit.model.free, *held), steps)
 
 
 def _prune(

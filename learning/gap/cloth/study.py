@@ -22,6 +22,7 @@ from .equals import Equals, equals
 from .experiment import separating
 from .fitting import ClothFitter, ClothModel, predict, scaled
 from .noise import coherence, load_misfit, neighbours
+from .polish import INSTANTS
 from .scene import ClothEpisode, ClothScene, read_scene
 from .search import NUMBER, ClothSearch, search
 from .simulate import Simulator
@@ -196,11 +197,12 @@ class ClothStudy(Study):
         f = self.found
         effects, recalibration = [], []
         fitter = self._fitter(self.fitted)
-        # a slip happens between two steps of the simulation
+        # an instant lies between two steps of the simulation
         half = [
-            h + (self.scene.physics.time_step if parameter == ("grip_slip", "time") else 0.0)
+            h + (self.scene.physics.time_step if parameter in INSTANTS else 0.0)
             for parameter, h in zip(f.sure.model.free, f.sure.half, strict=True)
         ]
+        spread = {} if self.equals is None else self.equals.spread
         for c in f.chosen:
             values = []
             for k, (name, p) in enumerate(f.sure.model.free):
@@ -208,7 +210,8 @@ class ClothStudy(Study):
                     x = f.fit.model.value((name, p))
                     unit = UNITS.get(p, "") if name == "physics" else _unit(name, p)
                     doubt = "" if np.isfinite(half[k]) else ALONE
-                    low, high = x - float(half[k]), x + float(half[k])
+                    ends = (x - float(half[k]), x + float(half[k]), *spread.get((name, p), ()))
+                    low, high = min(ends), max(ends)
                     values.append(Value(name=p, unit=unit, value=x, low=low, high=high, doubt=doubt))
             entry = next((e for e in f.fit.model.effects if e.name == c.name), None)
             fixed = {v.name for v in values}

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from caretree.learning.gap.cloth.noise import coherence, neighbours
+from caretree.learning.gap.cloth.noise import bursts, coherence, neighbours
+from scipy.signal import lfilter
 
 
 def test_neighbours_share_a_model_error_and_not_their_noise():
@@ -15,3 +16,12 @@ def test_neighbours_share_a_model_error_and_not_their_noise():
     assert both.p_value < 1e-6
     assert both.floor == pytest.approx(0.01, rel=0.25)
     assert both.shared == pytest.approx(0.02**2 / 2, rel=0.3)
+
+
+def test_a_cloth_that_buckles_late_is_loud_then_and_noise_with_a_memory_is_not():
+    rng = np.random.default_rng(1)
+    white = rng.normal(size=(600, 48))
+    slow = lfilter([0.5], [1.0, -0.9], white, axis=0)[-60:]
+    assert bursts([slow, white[:60]], 16) > 0.05
+    twisted = np.where(np.arange(60)[:, None] > 45, 4.0, 0.0) * np.where(np.arange(48) % 2, 1.0, -1.0)
+    assert bursts([slow + twisted], 16) < 1e-6

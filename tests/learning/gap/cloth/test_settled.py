@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 from caretree.learning.gap.cloth.candidates import candidates
 from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
+from caretree.learning.gap.cloth.polish import settled, steps_of
 from caretree.learning.gap.cloth.scene import read_scene
-from caretree.learning.gap.cloth.search import settled, steps_of
 from caretree.learning.gap.measurement import load_set
 
 STEP = 0.03  # of a tilt, over which the cloth bends

@@ -106,7 +106,9 @@ def test_whole_sets_that_fit_as_well_are_told(cloth_set):
         weights=np.ones(18),
     )
     study.__dict__["verdict"], wind = "effects", (("wind", "cloth"),)
-    study.__dict__["equals"] = Equals(instead={}, sets=(wind, (*wind, *((n, "cloth") for n in ("offset", "delay")))))
+    study.__dict__["equals"] = Equals(
+        instead={}, sets=(wind, (*wind, *((n, "cloth") for n in ("offset", "delay")))), spread={}
+    )
     told = [{name for name, _ in r.effects} for r in study.rivals()]
     assert told == [{"wind"}, {"wind", "offset", "delay"}]
     assert all(r.experiment for r in study.rivals())

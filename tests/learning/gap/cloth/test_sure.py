@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from caretree.learning.gap.cloth.candidates import Candidate
 from caretree.learning.gap.cloth.fitting import ClothFitter, ClothModel
+from caretree.learning.gap.cloth.polish import ONSET, sure
 from caretree.learning.gap.cloth.scene import ClothEpisode
-from caretree.learning.gap.cloth.search import ONSET, sure
 from caretree.sim.effects.model_file import EffectEntry
 
 T = np.linspace(0.0, 1.0, 50)
