@@ -200,11 +200,22 @@ def test_a_sleeve_that_is_up_is_left_alone(low, seen):
 
 
 def test_the_lower_one_is_drawn_farther():
-    run = bench(reach={"left": 0.65, "right": 0.3})
+    run = bench(reach={"left": 0.60, "right": 0.3})
     assert run.ended() is None
     left, right = ((last_held(run, side) - SHOULDERS[side]) @ HEADWARD for side in SIDES)
-    assert left == pytest.approx(0.07, abs=0.01)  # [m]
+    assert left == pytest.approx(0.078, abs=0.005)  # [m]
     assert right == pytest.approx(0.10, abs=0.01)  # [m]
+
+
+@pytest.mark.parametrize(
+    ("seen", "drawn"),
+    [((0.66, 0.45), {"right"}), ((0.60, 0.45), {"left", "right"}), ((0.66, 0.70), {"left", "right"})],
+)
+def test_a_left_one_that_is_almost_up_waits_while_the_right_one_is_lower(seen, drawn):
+    """Drawn up from 0.72, it took the right one down again from 0.93 (106)."""
+    run = bench(reach=dict(zip(SIDES, seen, strict=True)))
+    assert run.ended() is None
+    assert {side for side, times in run.context.memory.of(Drawn, Drawn).times.items() if times} == drawn
 
 
 def test_the_right_one_which_slid_down_is_drawn_farther_than_a_left_one_as_high():
