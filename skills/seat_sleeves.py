@@ -181,7 +181,8 @@ class SeatSleeves(Skill):
     cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  The right one is drawn
     first, then the left one, each as far as it is low: drawn at once, both took the collar headward by 0.08 m and more
     between them, and laid down from there it took the right one along.  One that is up already is left alone, and so is
-    one that is most likely up and comes no higher; once they were drawn, one that is up is left.  One that is missed does not keep the other from being drawn.
+    one that is most likely up and comes no higher; once they were drawn, one that is up is left.  One that is missed
+    does not keep the other from being drawn.
     The robot stands at the head of the bed, each hand on its side, and the arms have to lie.  The hands end open and
     drawn back, after a missed grasp too.
     """
@@ -329,7 +330,8 @@ class SeatSleeves(Skill):
         """Of those that may be drawn up, which are, the right one first.
 
         One that was drawn before and is up by now is left, unless it is the lowest.  A left one that is almost up waits
-        while the right one is lower: drawn up from 0.72, it took the right one from 0.93 to 0.72 (106).
+        while the right one is lower: drawn alone, that came to rest at 0.93, with a left one drawn up from 0.72 after
+        it at 0.72 (106).
         """
         still_low = [side for side in low if not drawn.times[side] or reach[side] < self.tuning.up_by_now]
         turns = still_low or [min(low, key=lambda side: reach[side])]

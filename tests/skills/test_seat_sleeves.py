@@ -212,7 +212,7 @@ def test_the_lower_one_is_drawn_farther():
     [((0.66, 0.45), {"right"}), ((0.60, 0.45), {"left", "right"}), ((0.66, 0.70), {"left", "right"})],
 )
 def test_a_left_one_that_is_almost_up_waits_while_the_right_one_is_lower(seen, drawn):
-    """Drawn up from 0.72, it took the right one down again from 0.93 (106)."""
+    """Drawn up from 0.72, it took the right one along (106)."""
     run = bench(reach=dict(zip(SIDES, seen, strict=True)))
     assert run.ended() is None
     assert {side for side, times in run.context.memory.of(Drawn, Drawn).times.items() if times} == drawn
