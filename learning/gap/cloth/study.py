@@ -197,27 +197,7 @@ class ClothStudy(Study):
         f = self.found
         effects, recalibration = [], []
         fitter = self._fitter(self.fitted)
-        # an instant lies between two steps of the simulation
-        half = [
-            h + (self.scene.physics.time_step if parameter in INSTANTS else 0.0)
-            for parameter, h in zip(f.sure.model.free, f.sure.half, strict=True)
-        ]
-        spread = {} if self.equals is None else self.equals.spread
         for c in f.chosen:
-            values = []
-            for k, (name, p) in enumerate(f.sure.model.free):
-                if name == c.name or (name == "physics" and p == c.name):
-                    x = f.fit.model.value((name, p))
-                    unit = UNITS.get(p, "") if name == "physics" else _unit(name, p)
-                    doubt = "" if np.isfinite(half[k]) else ALONE
-                    ends = (x - float(half[k]), x + float(half[k]), *spread.get((name, p), ()))
-                    low, high = min(ends), max(ends)
-                    values.append(Value(name=p, unit=unit, value=x, low=low, high=high, doubt=doubt))
-            entry = next((e for e in f.fit.model.effects if e.name == c.name), None)
-            fixed = {v.name for v in values}
-            for p, x in (entry.parameters if entry else {}).items():
-                if p not in fixed:
-                    values.append(Value(name=p, unit=_unit(c.name, p), value=x, low=x, high=x, doubt=TRIED))
             without = fitter.residuals(f.fit.model.without(c.name))
             own = max(_mean2(without, self) - _mean2(f.fit.residuals, self), 0.0)
             size = float(np.sqrt(own) / f.after.floor)
@@ -227,7 +207,7 @@ class ClothStudy(Study):
             finding = EffectFinding(
                 name=c.name,
                 target=c.target,
-                parameters=tuple(values),
+                parameters=self._values(c),
                 equivalent=rivals,
                 size=size,
                 confidence=self._kept(without, c),
@@ -243,6 +223,27 @@ class ClothStudy(Study):
         if self.verdict == "unknown" and not self._rejected:
             guess = _shape_of(f.fit.residuals, self.fitted, len(self.scene.markers))
         return self.verdict, tuple(effects), tuple(recalibration), guess
+
+    def _values(self, c: Candidate) -> tuple[Value, ...]:
+        """The numbers of a candidate with their intervals: those that were fitted, then those that were looked for."""
+        f = self.found
+        spread = {} if self.equals is None else self.equals.spread
+        values = []
+        for (name, p), width in zip(f.sure.model.free, f.sure.half, strict=True):
+            if name == c.name or (name == "physics" and p == c.name):
+                # an instant lies between two steps of the simulation
+                half = float(width) + (self.scene.physics.time_step if (name, p) in INSTANTS else 0.0)
+                x = f.fit.model.value((name, p))
+                unit = UNITS.get(p, "") if name == "physics" else _unit(name, p)
+                ends = (x - half, x + half, *spread.get((name, p), ()))
+                doubt = "" if np.isfinite(half) else ALONE
+                values.append(Value(name=p, unit=unit, value=x, low=min(ends), high=max(ends), doubt=doubt))
+        entry = next((e for e in f.fit.model.effects if e.name == c.name), None)
+        fixed = {v.name for v in values}
+        for p, x in (entry.parameters if entry else {}).items():
+            if p not in fixed:
+                values.append(Value(name=p, unit=_unit(c.name, p), value=x, low=x, high=x, doubt=TRIED))
+        return tuple(values)
 
     def _instead(self, c: Candidate) -> tuple[str, ...]:
         """What could stand in for a candidate; where nothing is named for sure, what fitted alike in its round."""
