@@ -8,6 +8,7 @@ import numpy as np
 
 from ...sim.quantity import Quantities, quantity
 from ...sim.world import Frame, Side
+from ..image.plain_opencv import plain_opencv
 from .lying_body import LyingBody, Trunk, side_sign
 from .person_facts import PERSON
 from .skin import DEFAULT as SKIN_DEFAULT
@@ -82,13 +83,14 @@ def skin_view(
     if len(mine) > tuning.max_points:
         mine = mine[np.linspace(0, len(mine) - 1, tuning.max_points).astype(int)]
     if skin.any():
-        to_skin = cv2.distanceTransform((~skin).astype(np.uint8), cv2.DIST_L2, 3)
-        gradient = np.stack(
-            [
-                cv2.Sobel(to_skin, cv2.CV_32F, 1, 0, ksize=3, scale=0.125),  # 1/8 makes Sobel's sum a slope
-                cv2.Sobel(to_skin, cv2.CV_32F, 0, 1, ksize=3, scale=0.125),
-            ]
-        )
+        with plain_opencv():
+            to_skin = cv2.distanceTransform((~skin).astype(np.uint8), cv2.DIST_L2, 3)
+            gradient = np.stack(
+                [
+                    cv2.Sobel(to_skin, cv2.CV_32F, 1, 0, ksize=3, scale=0.125),  # 1/8 makes Sobel's sum a slope
+                    cv2.Sobel(to_skin, cv2.CV_32F, 0, 1, ksize=3, scale=0.125),
+                ]
+            )
     else:
         to_skin, gradient = np.full(skin.shape, tuning.far, np.float32), np.zeros((2, *skin.shape), np.float32)
     return SkinView(

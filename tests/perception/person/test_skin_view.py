@@ -1,5 +1,6 @@
 """What of the skin is taken for one arm."""
 
+import cv2
 import numpy as np
 import pytest
 from caretree.perception.person.lying_body import body_seen
@@ -39,3 +40,22 @@ def test_distances_to_skin_grow_away_from_it(scenes, bed, black):
     assert len(nothing.points) == 0
     assert (nothing.to_skin > 100.0).all()
     assert not nothing.gradient.any()
+
+
+def test_the_processor_makes_no_difference(scenes, bed):
+    frame = scenes.person(0).frame(0)
+    body = body_seen(frame, bed)
+    usual = skin_view(frame, bed, body, "right")
+    cv2.setUseOptimized(False)
+    try:
+        plain = skin_view(frame, bed, body, "right")
+    finally:
+        cv2.setUseOptimized(True)
+    assert np.array_equal(usual.to_skin, plain.to_skin)
+    assert np.array_equal(usual.gradient, plain.gradient)
+
+
+def test_opencv_is_left_as_it_was(scenes, bed):
+    frame = scenes.person(0).frame(0)
+    skin_view(frame, bed, body_seen(frame, bed), "right")
+    assert cv2.useOptimized()
