@@ -39,7 +39,7 @@ from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
 from .look_at_sleeves import LookAtSleeves as LookAtSleeves
 from .safe import make_safe
-from .spread import chest_covered, none_seen_beside, none_seen_low, outside_out, spread
+from .spread import chest_covered, none_seen_beside, none_seen_low, outside_out, sleeves_known, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
 from .tuning import DRESSING
 
@@ -63,6 +63,7 @@ CONDITIONS = (
     none_seen_beside,
     none_seen_low,
     right_sleeve_stands,
+    sleeves_known,
 )
 
 

@@ -261,6 +261,15 @@ def look_at_sleeves(gown: Scope) -> Behaviour:
     )
 
 
+def sleeves_by_now(gown: Scope) -> Behaviour:
+    """Look at both sleeves once more if the gown was touched since.
+
+    From the head alone a left one that was up was told too low after the gown had been drawn over, and drawn (106).
+    """
+    known = Condition(f"{gown.prefix}sleeves known", sleeves_known, Reason.NOTHING_SEEN)
+    return fallback(f"{gown.prefix}how they sit by now", known, look_at_sleeves(gown))
+
+
 def over(bed: Scope) -> Behaviour:
     """Draw a gown that lies to one side over; where it cannot be done, the rest may do."""
     gown = Scope(bed, "over")
@@ -273,7 +282,7 @@ def seated(bed: Scope) -> Behaviour:
     gown = Scope(bed, "sleeves")
     # from the head of the bed: where a sleeve was seen to be low from beside it, the robot stands there
     draw = SeatSleeves("seat", gown, up=DRESSING.armhole_closely)
-    seat = (go_up(gown), over(gown), draw, back_off("clear the view", gown))
+    seat = (go_up(gown), over(gown), sleeves_by_now(gown), draw, back_off("clear the view", gown))
     left = sequence("left as they are", surely_back("leave them", gown), go_up(Scope(gown, "left")))
     return fallback("as far as they go", sequence("draw them up", *seat), left)
 
@@ -378,6 +387,11 @@ def chest_covered(context: Context) -> bool:
 def outside_out(context: Context) -> bool:
     """The head camera sees hardly any of the gown's inside on the trunk: nothing of it is folded over."""
     return _cover(context).outside > DRESSING.outside_share
+
+
+def sleeves_known(context: Context) -> bool:
+    """Both sleeves were looked at closely since the gown was touched."""
+    return len(context.memory.of(CloseLook, CloseLook).sleeves) == len(SIDES)
 
 
 def none_seen_low(context: Context) -> bool:
