@@ -192,7 +192,7 @@ def lower_arm(
 def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: LoweringTuning) -> Iterator[None]:
     mattress = float(skill.world.room.bed[1, 2])
     downwards = _about_shoulder(skill, *held, tuning) if held else lambda position: (-UP, np.zeros(3))
-    end, window = skill.now() + tuning.timeout, deque[tuple[float, float]]()
+    end, window = skill.now() + tuning.timeout, deque[tuple[float, np.ndarray]]()
     while True:
         pose, load = hand_now(skill, hand), cloth_load(skill, hand)
         height = float(pose[2, 3]) - mattress
@@ -202,7 +202,7 @@ def _lower(skill: Skill, hand: Side, held: tuple[Side, Hold] | None, tuning: Low
             return
         # the bed is stiff: pressed on for as long as a stall takes to be noticed, the guard's limit is passed
         at_rest |= low and float(load[2]) > tuning.stop_at
-        if at_rest or _carried(window, skill.now(), height, load, tuning):
+        if at_rest or carried_by_bed(window, skill.now(), pose[:3, 3] - mattress * UP, load, tuning):
             if held:
                 with suppress(PerceptionFailure, SensorLost, SkillFailure):
                     take_from_hand(skill, *held)
@@ -266,22 +266,27 @@ def _seen_to_lie(skill: Skill, side: Side, hold: Hold, tuning: LoweringTuning) -
     return False
 
 
-def _carried(
-    window: deque[tuple[float, float]], now: float, height: float, load: np.ndarray, tuning: LoweringTuning
+def carried_by_bed(
+    window: deque[tuple[float, np.ndarray]], now: float, place: np.ndarray, load: np.ndarray, tuning: LoweringTuning
 ) -> bool:
-    """Whether the hand comes down no farther because the bed carries the arm; keeps the window of times and heights.
+    """Whether the hand comes down no farther because the bed carries the arm; keeps the window of times and places.
+
+    One that still goes aside does not stand: it goes there first, and began to come down after a second (0).
 
     Raises:
         SkillFailure: MOTION_BLOCKED where it is not the bed.
     """
-    window.append((now, height))
+    window.append((now, place))
     while window[0][0] < now - tuning.stall_time:
         window.popleft()
     on_record = now - window[0][0] > tuning.stall_record * tuning.stall_time
-    if not on_record or window[0][1] - height > tuning.min_descent:
+    height, (across, along, down) = float(place[2]), window[0][1] - place
+    if not on_record or down > tuning.min_descent:
         return False
     if load[2] > tuning.bed_load and height < tuning.max_rest_height:
         return True
+    if math.hypot(across, along) > tuning.min_descent:
+        return False
     raise SkillFailure(Reason.MOTION_BLOCKED, f"the hand stands {height:.2f} m above the mattress")
 
 

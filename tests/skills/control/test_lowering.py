@@ -1,5 +1,6 @@
 """Where an arm comes to rest, which arm a hand holds, and when an arm lies; the way down: test_release_arm."""
 
+from collections import deque
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,15 @@ from caretree.perception.image.cloud import unit
 from caretree.perception.person.arm_fit import turned_about_shoulder
 from caretree.skills.belief.person_tracking import Watch, doubt_arms, posture_in_hand
 from caretree.skills.control.arm_grip import over_arm
-from caretree.skills.control.lowering import LOWERING, held_arm, lies, lower_arm, resting_place, share_of_way
+from caretree.skills.control.lowering import (
+    LOWERING,
+    carried_by_bed,
+    held_arm,
+    lies,
+    lower_arm,
+    resting_place,
+    share_of_way,
+)
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.geometry.arm_path import ArmPath
 from caretree.skills.geometry.hold import Hold
@@ -137,3 +146,22 @@ def test_cloth_nearer_to_the_shoulder_comes_down_by_less_as_the_arm_does(coordin
     asks.context.memory.of(Watch, Watch).arms["right"] = posture
     assert share_of_way(asks, "left", "right", None) == 1.0
     assert share_of_way(asks, "left", "right", ("right", Hold("left", 1.0))) == pytest.approx(share, abs=0.15)
+
+
+def moved_on(aside, height, push):
+    """Whether the bed carries an arm, by 2 s of a hand that goes `aside` [m/s] at a height [m], pushed up [N]."""
+    window, load = deque(), np.array((0.0, 0.0, push))
+    ways = [(t, np.array((aside * t, 0.0, height))) for t in np.arange(0.0, 2.0, 1 / 15)]
+    told = [carried_by_bed(window, t, place, load, LOWERING) for t, place in ways]
+    return any(told)
+
+
+def test_a_hand_that_still_goes_aside_does_not_stand():
+    assert not moved_on(0.03, 0.22, 2.0)
+    with pytest.raises(SkillFailure, match=r"stands 0\.22 m") as stop:
+        moved_on(0.0, 0.22, 2.0)
+    assert stop.value.reason == Reason.MOTION_BLOCKED
+
+
+def test_the_bed_carries_an_arm_that_slides_on_it():
+    assert moved_on(0.03, 0.05, LOWERING.bed_load + 1.0)
