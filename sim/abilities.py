@@ -61,15 +61,6 @@ class HasTickRate(Protocol):
 
 
 @runtime_checkable
-class HasQuietTimes(Protocol):
-    """A simulated world that knows for how long nothing will happen that anybody could answer."""
-
-    def quiet_until(self) -> float:
-        """World clock until when it rests, or only goes on with trajectories; its present time where it cannot tell."""
-        ...
-
-
-@runtime_checkable
 class HasTiming(Protocol):
     """A world that keeps account of its time."""
 

@@ -84,7 +84,6 @@ class _Motion:
     slots: list[tuple[int, int]] = field(default_factory=list)  # per column: arm and joint, or (-1, 0) for the head
 
     def __post_init__(self) -> None:
-        self.ends = self.start + float(self.times[-1])  # [s] by the clock, as who waits for it counts
         self.columns = [n for n, (arm, _) in enumerate(self.slots) if arm >= 0]  # those of arms
         self.arms, self.joints = [self.slots[n][0] for n in self.columns], [self.slots[n][1] for n in self.columns]
         self.head = next((n for n, (arm, _) in enumerate(self.slots) if arm < 0), None)  # column of the head

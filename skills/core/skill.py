@@ -24,7 +24,6 @@ Laws, tested over every skill:
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Generator, Iterator
 from typing import Any, ClassVar, Literal
 
@@ -76,7 +75,6 @@ class Skill(py_trees.behaviour.Behaviour):
         self.failure: Failure | None = None
         self._phase: Literal["idle", "waiting", "active"] = "idle"
         self._generator: Generator[None, None, None] | None = None
-        self._due = math.inf  # earliest time at which something that it waits for in this tick may be [s]
 
     # -- what authors write ------------------------------------------------------------------------------
 
@@ -116,7 +114,6 @@ class Skill(py_trees.behaviour.Behaviour):
         """Let `seconds` of world time pass: `yield from self.wait(0.5)`."""
         end = self.now() + seconds
         while self.now() < end:
-            self._due = min(self._due, end)
             yield
 
     def until(self, done: Callable[[], object], *, timeout: float, reason: Reason = Reason.TIMEOUT) -> Iterator[None]:
@@ -129,13 +126,7 @@ class Skill(py_trees.behaviour.Behaviour):
         while not done():
             if self.now() >= end:
                 raise SkillFailure(reason, f"waited {timeout:g} s")
-            self._due = -math.inf  # it may be true at any time
             yield
-
-    @property
-    def due(self) -> float:
-        """World clock before which it has nothing to do, as its waits say; `-inf` in a tick without one [s]."""
-        return self._due if self._due < math.inf else -math.inf
 
     # -- py_trees ----------------------------------------------------------------------------------------
 
@@ -149,7 +140,6 @@ class Skill(py_trees.behaviour.Behaviour):
 
     def update(self) -> Status:
         """Advance by one tick; errors become failures with a reason, so nothing escapes into the tree."""
-        self._due = math.inf
         try:
             return Status.SUCCESS if self._advance() else Status.RUNNING
         except SkillFailure as stop:

@@ -7,7 +7,6 @@ and every recovery and safe branch reached by injecting faults; how cloth behave
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,20 +132,8 @@ class RehearsalWorld(ScriptedWorld):
             self._sample = super().observe()
         return self._sample
 
-    def quiet_until(self) -> float:
-        """World clock until when nothing happens that a skill could answer [s].
-
-        Trajectories go where they go: what they pull at stays below the loads at which skills stop (`max_drag`).  A
-        task whose things answer a hand on its way says so here.
-        """
-        now = self.time.time
-        if self._rests():
-            return math.inf
-        ends = min((motion.ends for motion in self._motions), default=now)
-        return ends if ends > now and self._follows_until(ends) else now
-
     def _advance_to(self, time: float) -> None:
-        ahead = min(time - self.time.time, 1.0 / self.tick_rate)  # however long nothing happens
+        ahead = time - self.time.time
         self._longest_step = max(STEP, ahead / self._tuning.steps)
         self._twist_step = max(PERIOD, ahead / self._tuning.twist_steps)
         if self._follows_until(time):
@@ -167,7 +154,7 @@ class RehearsalWorld(ScriptedWorld):
         now = self.time.time
         if not self._motions or self._twisting() or self._rates or now < self._base_until or self._slowing(now) > 0.0:
             return False
-        lasting = all(time <= motion.ends for motion in self._motions)
+        lasting = all(time - motion.start <= motion.times[-1] for motion in self._motions)
         return lasting and self._opening.tolist() == self._fingers_goal()
 
     def held_back(self, side: Side) -> np.ndarray:

@@ -210,11 +210,6 @@ class Timeout(Wrapper):
         self.seconds = seconds
         self.ends = 0.0  # [s] world clock at which time is up
 
-    @property
-    def due(self) -> float:
-        """World clock before which it has nothing to do of its own [s]."""
-        return self.ends
-
     def initialise(self) -> None:
         """Start the clock."""
         self.ends = self.now() + self.seconds

@@ -24,7 +24,6 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.senses import Senses
-from ...sim.abilities import HasQuietTimes
 from ...sim.compiled import load
 from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
@@ -151,7 +150,6 @@ class Run:
             limits,
             period=1.0 / rate_hz,
             stepped=stepped,
-            quiet_until=world.quiet_until if isinstance(world, HasQuietTimes) else None,
             watchdog=self._watchdog,
             trace=self.trace,
             announcer=Announcer(self.root, self.context.now, told),

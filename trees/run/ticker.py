@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from py_trees.behaviour import Behaviour
-from py_trees.common import Status
 
 from ...sim.stopwatch import Stopwatch, timed
 from ...sim.waiting import wait
@@ -25,13 +23,6 @@ from .trace import Trace
 HANG = 20.0  # [s] wall time without a new tick: longer than any plan takes
 
 
-def due_of(node: Behaviour) -> float:
-    """World clock before which a node that was ticked has nothing to do; a leaf has, unless it says when [s]."""
-    if not node.children and node.status != Status.RUNNING:
-        return -math.inf  # what comes after it is next
-    return getattr(node, "due", math.inf if node.children else -math.inf)
-
-
 class Ticker:
     """Tells trace and progress of each tick, and the watchdog that there are ticks.
 
@@ -42,8 +33,6 @@ class Ticker:
         limits: those of a tick and of a wait count.
         period: from one tick to the next [s].
         stepped: time passes only while somebody waits, so that a wait may take as long as it likes.
-        quiet_until: world clock until when nothing happens in the world that anybody could answer [s]; None where it
-            cannot tell.
         watchdog: of a world whose time passes by itself.
         trace: gets every change.
         announcer: the same.
@@ -65,7 +54,6 @@ class Ticker:
         *,
         period: float,
         stepped: bool,
-        quiet_until: Callable[[], float] | None,
         watchdog: TickWatchdog | None,
         trace: Trace,
         announcer: Announcer,
@@ -78,8 +66,6 @@ class Ticker:
         self.stopwatch = stopwatch
         self._context, self._guard, self._clock = context, guard, clock
         self._wait_limit = None if stepped else limits.wait
-        self._quiet_until, self._longest = quiet_until, limits.run
-        self._due = -math.inf  # [s] world clock before which a tick would change nothing in the tree
         self._watchdog = watchdog
         self._trace, self._announcer = trace, announcer
         self._request_stop = request_stop
@@ -93,13 +79,9 @@ class Ticker:
         self.limit.start()
         self.advance_lease()
         self.limit.start()
-        due, told = math.inf, self._quiet_until is not None
         for visited in node.tick():
             self._trace.visit(visited)
             self._announcer.visit(visited)
-            if told:
-                due = min(due, due_of(visited))
-        self._due = due
         self.limit.pause()
         self.sweep()
 
@@ -107,7 +89,7 @@ class Ticker:
         """A tick begins, or what stands for one."""
         self.beat()
         self._began = time.perf_counter()
-        self._ticked, self._due = self._context.now(), -math.inf
+        self._ticked = self._context.now()
 
     def sweep(self) -> None:
         """Tell of what was stopped without being visited."""
@@ -138,16 +120,10 @@ class Ticker:
 
     @timed("world")
     def pass_time(self) -> None:
-        """Wait for the next tick; a tick that took longer than its period is followed by the next at once.
-
-        Where the tree only waits and the world is quiet, the next tick comes when either has something to do.
-        """
-        until = self._ticked + self.period
-        if self._quiet_until is not None and self._due > until and not self._context.lease.releasing():
-            until = max(until, min(self._due, self._quiet_until(), self._ticked + self._longest))
+        """Wait for the next tick; a tick that took longer than its period is followed by the next at once."""
         self.limit.start(self._wait_limit)
         try:
-            wait(self._clock, until)
+            wait(self._clock, self._ticked + self.period)
         finally:
             self.limit.pause()
 

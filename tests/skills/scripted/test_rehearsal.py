@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from caretree.sim.mechanics.kinematics import kinematics_of
-from caretree.sim.world import SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory
+from caretree.sim.world import SIDES, BaseVelocity, HandTwist, JointTrajectory
 from caretree.skills.core.skill import Skill
 from caretree.skills.scripted.rehearsal import REHEARSAL, RehearsalWorld
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
 from caretree.trees.run.worlds import TICK_RATE
-from caretree.trees.tasks.wipe_forearm.rehearsal import WashingWorld
 
 from ...trees.planted import run_of
 
@@ -125,27 +124,3 @@ def test_between_two_ticks_a_trajectory_is_left_alone_but_for_how_fast_it_is_at_
     world.clock.wait_until(3.0)
     assert world.observe().arm_positions[0, 0] == pytest.approx(start + 0.4)
     assert not world.observe().arm_velocities.any()
-
-
-def test_it_is_quiet_at_rest_and_until_the_first_trajectory_ends():
-    world = RehearsalWorld()
-    assert world.quiet_until() == np.inf
-    for joint, lasts in (("left_s0", 2.0), ("right_s0", 3.0)):
-        positions = np.full((2, 1), world.observe().arm_positions[SIDES.index(joint.partition("_")[0]), 0])
-        world.send(JointTrajectory(joints=(joint,), times=np.array((0.0, lasts)), positions=positions))
-    assert world.quiet_until() == 2.0
-    world.clock.wait_until(1.0)
-    assert world.quiet_until() == 2.0
-    world.send(BaseVelocity(velocity=np.array((0.1, 0.0, 0.0)), duration=0.2))
-    assert world.quiet_until() == 1.0, "where the base goes by then nobody has said"
-    world.clock.wait_until(1.2)
-    world.send(GripperOpening(side="left", opening=0.0))
-    assert world.quiet_until() == 1.2, "fingers may meet something"
-
-
-def test_a_hand_that_may_meet_the_arm_is_never_quiet_on_its_way():
-    world = WashingWorld(0)
-    assert world.quiet_until() == np.inf
-    positions = np.full((2, 1), world.observe().arm_positions[0, 0])
-    world.send(JointTrajectory(joints=("left_s0",), times=np.array((0.0, 1.0)), positions=positions))
-    assert world.quiet_until() == 0.0

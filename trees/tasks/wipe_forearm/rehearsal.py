@@ -42,10 +42,6 @@ class WashingWorld(RehearsalWorld):
             deep = max(deep, WASHING.reach - float(np.linalg.norm(away)))
         return super().held_back(side) + (0.0, 0.0, WASHING.stiffness * deep)
 
-    def quiet_until(self) -> float:
-        """As the rehearsal's at rest; a hand on its way may meet the arm."""
-        return super().quiet_until() if self._rests() else self.time.time
-
 
 class WashingScript(ScriptedSenses):
     """Sees the cloth on its table."""
