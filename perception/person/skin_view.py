@@ -84,7 +84,7 @@ def skin_view(
         mine = mine[np.linspace(0, len(mine) - 1, tuning.max_points).astype(int)]
     if skin.any():
         with plain_opencv():
-            to_skin = cv2.distanceTransform((~skin).astype(np.uint8), cv2.DIST_L2, 3)
+            to_skin = cv2.distanceTransform((~skin).astype(np.uint8), cv2.DIST_L2, 5)
             gradient = np.stack(
                 [
                     cv2.Sobel(to_skin, cv2.CV_32F, 1, 0, ksize=3, scale=0.125),  # 1/8 makes Sobel's sum a slope
