@@ -86,7 +86,10 @@ class LoweringTuning(Quantities):
         0.9, "1", "share of that time that must be on record for a judgement", "choice: ticks do not divide it evenly"
     )
     min_descent: float = quantity(
-        0.01, "m", "within that time, of a hand that comes down", "choice: a fifth of what full speed makes"
+        0.01,
+        "m",
+        "within that time, down or else aside, of a hand that does not stand",
+        "choice: a fifth of what full speed makes",
     )
     bed_load: float = quantity(
         10.0,
