@@ -29,8 +29,8 @@ class CheckLaidOutTuning(Quantities):
 class CheckLaidOut(Skill):
     """Looks whether the arm shows where it was seen last, and whether its sleeve lies by the hand.
 
-    It fails where the arm is covered, where the sleeve lies elsewhere or does not show, and where it was missed or
-    out of reach from more than one stand.
+    It fails where the arm is covered or not known well, where the sleeve lies elsewhere or does not show, and where it
+    was missed or out of reach from more than one stand.
     """
 
     commands = False
@@ -41,6 +41,10 @@ class CheckLaidOut(Skill):
     def steps(self) -> Iterator[None]:
         """One look."""
         posture = watch_arm(self, self.side)
+        off = float(posture.deviation.max())
+        if off > PERSON_TRACKING.sure_deviation:
+            # half under its sleeve it showed where it was believed to be, and was looked for in vain six times (0)
+            raise SkillFailure(Reason.ARM_LOST, f"a joint of it is known to {off * 100:.0f} cm")
         share = visible_share(self.world.look("head"), posture)
         self.note(f"{share:.0%} of the {self.side} arm show")
         if share < PERSON_TRACKING.min_visible:

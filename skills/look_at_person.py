@@ -39,12 +39,6 @@ class LookAtPersonTuning(Quantities):
     look_interval: float = quantity(
         0.1, "s", "between two pictures of an arm that is not known well yet", "choice: short"
     )
-    max_deviation: float = quantity(
-        0.035,
-        "m",
-        "deviation of any joint, at most, for an arm that counts as found",
-        "choice: well enough to take the arm",
-    )
 
 
 class LookAtPerson(Skill):
@@ -95,7 +89,7 @@ class LookAtPerson(Skill):
                 yield
                 continue
             posture = watch_of(self).arms[self.side]
-            if float(posture.deviation.max()) <= self.tuning.max_deviation:
+            if float(posture.deviation.max()) <= PERSON_TRACKING.sure_deviation:
                 self.posture = posture
                 return None
             yield from self.wait(self.tuning.look_interval)
@@ -118,6 +112,6 @@ class LookAtPerson(Skill):
             posture = watch_arm(self, self.side)
         except PerceptionFailure:
             raise lost from None
-        if float(posture.deviation.max()) > self.tuning.max_deviation:
+        if float(posture.deviation.max()) > PERSON_TRACKING.sure_deviation:
             raise lost
         return posture

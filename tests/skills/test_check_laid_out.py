@@ -40,6 +40,17 @@ def test_the_arm_has_to_be_bare_and_the_sleeve_at_hand(monkeypatch, sleeve, shar
     assert run.ended(seconds=1.0) == reason
 
 
+@pytest.mark.parametrize(("deviation", "reason"), [(0.03, None), (0.04, Reason.ARM_LOST)])
+def test_an_arm_that_is_not_known_well_is_not_laid_out(monkeypatch, deviation, reason):
+    monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: 1.0)
+    monkeypatch.setattr("caretree.skills.belief.person_tracking.visible_share", lambda frame, posture: 1.0)
+    known = replace(lying_posture("left"), deviation=np.full(4, deviation))
+    run = LeafBench(
+        lambda context: CheckLaidOut("laid out", context, side="left"), beside_bed(sleeve_opening=away(0.1), arm=known)
+    )
+    assert run.ended(seconds=1.0) == reason
+
+
 @pytest.mark.parametrize(("stands", "reason"), [(1, None), (2, Reason.SLEEVE_MISSED)])
 def test_a_sleeve_that_was_out_of_reach_from_two_stands_is_at_no_hand(monkeypatch, stands, reason):
     monkeypatch.setattr("caretree.skills.check_laid_out.visible_share", lambda frame, posture: 1.0)
