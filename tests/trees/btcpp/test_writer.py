@@ -57,6 +57,7 @@ def read_again(task, tmp_path, stage=None):
     return load_task(str(path))
 
 
+@pytest.mark.no_cover  # counting lines doubles its time
 @pytest.mark.parametrize(
     "name", [name if name == "wave" else pytest.param(name, marks=pytest.mark.extra) for name in task_names()]
 )
