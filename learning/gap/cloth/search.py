@@ -12,9 +12,10 @@ from .candidates import Candidate, candidates, clash
 from .exchange import SAME, Exchange, Other
 from .fitting import ClothFit, ClothFitter, ClothModel
 from .noise import Coherence, bursts, coherence, load_misfit, memory, neighbours
+from .pairs import paired
 from .polish import begun, polish, rested, settled, steps_of, sure
 from .scene import ClothEpisode, ClothScene
-from .screening import screened
+from .screening import probe, screened
 from .simulate import Simulator
 
 ALPHA = 0.05
@@ -27,13 +28,15 @@ SHARE = 0.01  # and by this part of what is explained, unless it leaves nothing 
 HOPELESS = 3.0  # once one explains all, those screened this far off are not fitted any more
 EXCHANGES = 3  # members that are exchanged at most
 NUMBER = 10.0  # what a fitted number has to keep gaining to stay
+TWOS = 3  # pairs that are fitted by simulation where the search begins,
+HALF = 0.5  # if they leave less than this part of what the best single hypothesis does
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tried:
-    """One verified explanation: names added in its round, the fit, the criterion."""
+    """One verified explanation: what is added in its round, the fit, the criterion."""
 
-    added: Candidate
+    added: tuple[Candidate, ...]
     fit: ClothFit
     score: float
 
@@ -123,26 +126,38 @@ class _Rounds:
         verified = self._verified(pool, part)
         if not verified:
             return False
-        best = min(verified, key=lambda x: x[1].rss)[1]
+        best = min((fit for _, fit in verified), key=lambda f: f.rss)
+        if not self._chosen and _shares(self._coherence(best)):
+            verified += self._twos(pool, part, best)
+        best = min((fit for _, fit in verified), key=lambda f: f.rss)
         count = sum(r.size for r in best.residuals)
         self._worth = count / memory(best.residuals)
         scored = [Tried(added=c, fit=f, score=self._score(f, f.model, count, len(pool))) for c, f in verified]
-        scored.sort(key=lambda t: t.score - (3.0 if t.added.recalibration else 0.0))
+        scored.sort(key=lambda t: t.score - (3.0 if t.added[0].recalibration else 0.0))
         top = scored[0]
         drop = part.rss - top.fit.rss
         explained = self._start.rss * count / self._rows - top.fit.rss
         now = self._score(part, self._fit.model, count, len(pool))
         if now - top.score <= 0 or drop < MATERIAL * top.fit.rss:
             return False
-        polished = polish(self._fitter, top.fit, [*self._chosen, top.added], self._scene)
+        polished = self._polished(top)
         after = self._coherence(polished)
         if drop < SHARE * explained and _shares(after):
             return False  # a large effect that is not quite right leaves something to mop up for any other
         self._fit, self._after = polished, after
-        self._chosen.append(top.added)
-        alike = (t.added.name for t in scored[1:] if t.score - top.score < SAME and t.added.name != top.added.name)
-        self._rivals[top.added.name] = tuple(dict.fromkeys(alike))
+        self._chosen.extend(top.added)
+        names = {c.name for c in top.added}
+        alike = [c.name for t in scored[1:] if t.score - top.score < SAME for c in t.added if c.name not in names]
+        self._rivals |= dict.fromkeys(names, tuple(dict.fromkeys(alike)))
         return True
+
+    def _polished(self, top: Tried) -> ClothFit:
+        """What is added, with its places and instants looked for, one after the other."""
+        fit = top.fit
+        for last in top.added:
+            others = [c for c in top.added if c is not last]
+            fit = polish(self._fitter, fit, [*self._chosen, *others, last], self._scene)
+        return fit
 
     def exchange(self) -> bool:
         """Put another hypothesis where a member explains noticeably less; whether there was one."""
@@ -186,19 +201,51 @@ class _Rounds:
         every = candidates(self._scene, self._episodes, self._fitter.with_bodies(self._fit.model))
         return [c for c in every if c.name not in taken and not clash(c.name, taken)]
 
-    def _verified(self, pool: list[Candidate], part: ClothFit) -> list[tuple[Candidate, ClothFit]]:
+    def _worst(self, part: ClothFit) -> tuple[ClothFitter, ClothFit]:
+        """The recording that a fit leaves most of, and the fit on it alone: what hypotheses are screened on."""
+        worst = int(np.argmax([np.mean((r * self._weights) ** 2) for r in part.residuals]))
+        alone = ClothFitter(self._sim, [self._some.episodes[worst]], self._weights)
+        return alone, replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
+
+    def _twos(
+        self, pool: list[Candidate], part: ClothFit, single: ClothFit
+    ) -> list[tuple[tuple[Candidate, ...], ClothFit]]:
+        """Pairs that leave much less than the best single candidate, screened as those are, and fitted.
+
+        Args:
+            pool: all candidates.
+            part: the model without them on the recordings candidates are verified on.
+            single: the best single candidate there.
+        """
+        alone, seen = self._worst(part)
+        own = alone.columns(seen.model, seen.residuals, {})
+        pairs = paired(probe(alone, seen.model, pool, float(np.sqrt(seen.rss))), own)
+        most = HALF * single.rss / max(part.rss, 1e-30)
+        verified: list[tuple[tuple[Candidate, ...], ClothFit]] = []
+        for pair in [p for p in pairs if p.left < most * seen.rss][:TWOS]:
+            one, other = pair.members
+            one = begun(self._some, part.model.joined(other.push), one, part.rss)
+            other = begun(self._some, part.model.joined(one.push), other, part.rss)
+            model = part.model.joined(one.push).joined(other.push)
+            fit = self._some.fit(model, steps_of([one, other]), rounds=2)
+            self._say(
+                f"  {one.name} and {other.name}: {np.sqrt(fit.rss / max(part.rss, 1e-30)):.3f} of the residual left"
+            )
+            if fit.rss < HALF * single.rss:
+                verified.append(((one, other), fit))
+        return verified
+
+    def _verified(self, pool: list[Candidate], part: ClothFit) -> list[tuple[tuple[Candidate, ...], ClothFit]]:
         """The best screened candidates, each fitted beside what is chosen.
 
         Args:
             pool: all candidates.
             part: what is chosen so far on the recordings candidates are verified on.
         """
-        worst = int(np.argmax([np.mean((r * self._weights) ** 2) for r in part.residuals]))
-        alone = ClothFitter(self._sim, [self._some.episodes[worst]], self._weights)
-        seen = replace(part, residuals=[part.residuals[worst]], rss=alone.rss([part.residuals[worst]]))
+        alone, seen = self._worst(part)
         own = alone.columns(seen.model, seen.residuals, steps_of(self._chosen))
         ranked, left = screened(alone, seen.model, own, pool, float(np.sqrt(seen.rss)))
-        verified: list[tuple[Candidate, ClothFit]] = []
+        verified: list[tuple[tuple[Candidate, ...], ClothFit]] = []
         done = False  # once one explains all, the others only have to show whether they would too
         for k, likely in enumerate(ranked[:VERIFIED]):
             # screening saw one recording, fits see several
@@ -211,7 +258,7 @@ class _Rounds:
             done = done or not _shares(self._coherence(joined))
             part_left = np.sqrt(joined.rss / max(part.rss, 1e-30))
             self._say(f"  {k + 1}/{VERIFIED} {c.name}: {part_left:.3f} of the residual left")
-            verified.append((c, joined))
+            verified.append(((c,), joined))
         return verified
 
     def _score(self, fit: ClothFit, model: ClothModel, count: int, tried: int) -> float:
