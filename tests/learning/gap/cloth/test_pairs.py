@@ -64,5 +64,7 @@ def test_the_pair_is_screened_before_all_others_at_the_sizes_it_has(recorded):
 
 def test_the_search_begins_with_it(recorded):
     sim, scene, told = recorded
-    found = search(sim, scene, told, lambda text: None)
+    said = []
+    found = search(sim, scene, told, said.append)
     assert {c.name for c in found.chosen} == {"air_drag", "offset"}
+    assert not [text for text in said if text.startswith("round 2")], "one after the other, after tilted gravity"
