@@ -1,8 +1,8 @@
 """Two hypotheses at once, at first order: what neither explains alone, and a third would rather stand for.
 
 Where two effects act, the one that explains most alone may be neither of them: bending stiffness took half of what air
-drag and a fabric that stiffens did together, and of the two alone one would have been fifth, the other nowhere.  The
-simulations that screen single hypotheses are enough to screen them by twos.
+drag and a fabric that stiffens did together, and of the two alone one was fourth, the other not among the best four.
+The simulations that screen single hypotheses are enough to screen them by twos.
 """
 
 from __future__ import annotations

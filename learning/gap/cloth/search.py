@@ -126,14 +126,13 @@ class _Rounds:
         verified = self._verified(pool, part)
         if not verified:
             return False
-        best = min((fit for _, fit in verified), key=lambda f: f.rss)
-        if not self._chosen and _shares(self._coherence(best)):
-            verified += self._twos(pool, part, best)
+        if not self._chosen:
+            verified += self._twos(pool, part, min((fit for _, fit in verified), key=lambda f: f.rss))
         best = min((fit for _, fit in verified), key=lambda f: f.rss)
         count = sum(r.size for r in best.residuals)
         self._worth = count / memory(best.residuals)
-        scored = [Tried(added=c, fit=f, score=self._score(f, f.model, count, len(pool))) for c, f in verified]
-        scored.sort(key=lambda t: t.score - (3.0 if t.added[0].recalibration else 0.0))
+        scored = [Tried(added=c, fit=f, score=self._score(f, f.model, count, len(pool) ** len(c))) for c, f in verified]
+        scored.sort(key=lambda t: t.score - (3.0 if all(c.recalibration for c in t.added) else 0.0))
         top = scored[0]
         drop = part.rss - top.fit.rss
         explained = self._start.rss * count / self._rows - top.fit.rss
@@ -212,11 +211,15 @@ class _Rounds:
     ) -> list[tuple[tuple[Candidate, ...], ClothFit]]:
         """Pairs that leave much less than the best single candidate, screened as those are, and fitted.
 
+        None where that one leaves nothing that neighbours share.
+
         Args:
             pool: all candidates.
             part: the model without them on the recordings candidates are verified on.
             single: the best single candidate there.
         """
+        if not _shares(self._coherence(single)):
+            return []
         alone, seen = self._worst(part)
         own = alone.columns(seen.model, seen.residuals, {})
         pairs = paired(probe(alone, seen.model, pool, float(np.sqrt(seen.rss))), own)
