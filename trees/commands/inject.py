@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -88,7 +89,7 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     given += () if options.robot is None else (options.robot,)
     given += () if options.senses == "own" else (options.senses,)
     key = campaign_key(task, given, world=options.world)
-    rows = [row for row in read_rows(path, key) if row.key in set(wanted)]
+    rows = _kept(path, key, wanted)
     print(f"{len(wanted)} faults to try, {len(rows)} of them tried before", flush=True)
     try:
         done = {row.key for row in rows}
@@ -104,7 +105,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     except OSError as error:
         raise disk_error(error, f"writing {path}") from error
     except KeyboardInterrupt:
-        print(f"interrupted; {len(rows)} of {len(wanted)} rows are kept in {path}, run it again to go on")
+        kept = _kept(path, key, wanted)  # the file's word: a row may be in it and not among `rows` yet
+        print(f"interrupted; {len(kept)} of {len(wanted)} rows are kept in {path}, run it again to go on")
         return INTERRUPTED
     rows.sort(key=lambda row: wanted.index(row.key))
     print(table(rows))
@@ -118,6 +120,12 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         )
         return 1
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
+
+
+def _kept(path: Path, key: str, wanted: Sequence[FaultKey]) -> list[Row]:
+    """The rows of this campaign that the file already holds."""
+    asked = set(wanted)
+    return [row for row in read_rows(path, key) if row.key in asked]
 
 
 def _ending(row: Row) -> str:
