@@ -68,6 +68,7 @@ class RehearsalWorld(ScriptedWorld):
 
     Attributes:
         initial_states: names of the states in which a run may begin.
+        initial_state: that in which this one began.
         tick_rate: ticks a second that suffice: nothing happens between two of them.
     """
 
@@ -83,6 +84,7 @@ class RehearsalWorld(ScriptedWorld):
             arm_positions=robot.ready,
         )
         self._tuning = tuning
+        self.initial_state = InitialState.GOWN_ON_HOOK
         self.tick_rate = tuning.tick_rate
         self._taken: dict[Side, np.ndarray] = {}  # where a hand has taken hold [m]
         self._sample: Observation | None = None  # of this instant
@@ -93,7 +95,8 @@ class RehearsalWorld(ScriptedWorld):
         Raises:
             WorldError: there is no such state.
         """
-        if InitialState.named(name) == InitialState.GOWN_IN_HANDS:
+        self.initial_state = InitialState.named(name)
+        if self.initial_state == InitialState.GOWN_IN_HANDS:
             self._opening[:] = self._tuning.cloth_width
             for side in SIDES:
                 self.send(GripperOpening(side=side, opening=0.0))
@@ -174,7 +177,7 @@ def _distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     return float(np.linalg.norm(start + share * along - point))
 
 
-def rehearsal(seed: int, robot: RobotModel | None = None) -> tuple[RehearsalWorld, ScriptedSenses]:
-    """A world to rehearse the dressing task on, with the usual robot by default, and what is seen there."""
-    world = RehearsalWorld(seed, robot=robot)
+def rehearsal(seed: int) -> tuple[RehearsalWorld, ScriptedSenses]:
+    """A world to rehearse a task on, and what is seen there."""
+    world = RehearsalWorld(seed)
     return world, ScriptedSenses(world)

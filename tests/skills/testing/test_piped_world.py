@@ -16,12 +16,12 @@ from caretree.sim.scene.scene import Scene
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import CAMERAS, Frame, HandTwist, Observation, RoomMap, SensorLost, World, WorldError
 from caretree.skills.scripted.rehearsal import RehearsalWorld
-from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.skills.testing import PipedWorld
 from caretree.skills.testing.piped_world import serve
 from caretree.trees.guard.limits import Limits
 from caretree.trees.run.runner import Run
 from caretree.trees.run.task import load_task
+from caretree.trees.tasks.dressing.rehearsal import GownScript
 
 REHEARSAL = "caretree.skills.scripted.rehearsal:RehearsalWorld"
 BULLET = "caretree.sim.bullet.world:BulletWorld"
@@ -80,7 +80,7 @@ def worlds_in_reach(run):
 def test_the_rehearsed_dressing_is_the_same_and_its_world_is_out_of_reach(piped):
     task, runs = load_task("dressing"), []
     for world in (RehearsalWorld(seed=107), piped(REHEARSAL, seed=107)):
-        runs.append(Run(task, world, seed=107, senses=ScriptedSenses(world)))
+        runs.append(Run(task, world, seed=107, senses=GownScript(world)))
     direct, behind = [run.run() for run in runs]
     assert direct.outcome == "success"
     assert direct.trace_hash == behind.trace_hash

@@ -7,7 +7,7 @@
 | dress | one arm after the other: lifts it, draws the sleeve up; then the front flat | dress.py, arm.py |
 | spread | draws the gown to the middle, sleeves that have slipped down up, and lays the collar straight | spread.py |
 
-What is owed whenever a stage fails is in safe.py, every number in tuning.py.
+What is owed whenever a stage fails is in safe.py, every number in tuning.py, what it is rehearsed on in rehearsal.py.
 """
 
 from __future__ import annotations
@@ -18,12 +18,8 @@ from py_trees.behaviour import Behaviour
 
 from ....perception.classical import ClassicalSenses
 from ....perception.senses import Senses
-from ....sim.mechanics.robot_model import RobotModel
-from ....sim.world import World
 from ....skills.core.context import Context
 from ....skills.core.reasons import Reason
-from ....skills.scripted.rehearsal import rehearsal
-from ....skills.scripted.scripted_senses import ScriptedSenses
 from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe, RecoverBy
 from ...run.stages import TaskStage
@@ -38,6 +34,7 @@ from .lay import holds_gown, is_down, lay
 from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
 from .look_at_sleeves import LookAtSleeves as LookAtSleeves
+from .rehearsal import scripted as scripted
 from .safe import make_safe
 from .spread import chest_covered, none_seen_beside, none_seen_low, outside_out, sleeves_known, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
@@ -91,8 +88,3 @@ def until_worn(context: Context, last: Behaviour) -> RecoverBy:
 
     missed = (Reason.SLEEVE_MISSED, Reason.SLEEVE_BESIDE, Reason.NOTHING_SEEN)
     return RecoverBy("until it is worn", last, dict.fromkeys(missed, anew), attempts=DRESSING.dressed_attempts)
-
-
-def scripted(seed: int, robot: RobotModel | None = None) -> tuple[World, ScriptedSenses]:
-    """The world on which the task is rehearsed: every grasp succeeds, and what is seen is made up."""
-    return rehearsal(seed, robot)

@@ -50,12 +50,15 @@ def right_then_left(context: Context, bed: Scope) -> Behaviour:
     return sequence(
         "right, then left",
         Navigate("go to the right side", bed, goal="bed_right"),
-        dress_arm(
-            context,
-            "right",
-            FIRST_SLEEVE,
-            attempts=DRESSING.first_arm_attempts,
-            worth=lambda: Condition("the right sleeve stands", right_sleeve_stands),
+        unless_worn(
+            arm_scope(context, "right so far", "right"),
+            dress_arm(
+                context,
+                "right",
+                FIRST_SLEEVE,
+                attempts=DRESSING.first_arm_attempts,
+                worth=lambda: Condition("the right sleeve stands", right_sleeve_stands),
+            ),
         ),
         fallback(
             "bring the left sleeve to its side",
@@ -65,8 +68,11 @@ def right_then_left(context: Context, bed: Scope) -> Behaviour:
         # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
         not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
-        at_hand(arm_scope(context, "second sleeve", "left")),
-        dress_arm(context, "left", SECOND_SLEEVE),
+        unless_worn(
+            arm_scope(context, "left so far", "left"),
+            at_hand(arm_scope(context, "second sleeve", "left")),
+            dress_arm(context, "left", SECOND_SLEEVE),
+        ),
         flat(arm_scope(context, "front", "left")),
     )
 
@@ -114,10 +120,15 @@ def on_their_arms(context: Context, seen: str, dressed: str) -> Behaviour:
 
     def on_its_arm(side: Side) -> Behaviour:
         beside = arm_scope(context, f"{side} {seen}", side)
-        on = sequence(f"the {side} sleeve on it", LookAtPerson("look", beside), worn_already(beside))
         arm = dress_arm(context, side, SECOND_SLEEVE, name=f"{side} {dressed}")
-        rest = sequence(f"the {side} arm", at_hand(beside), arm)
         go = Navigate("go and see it", beside, goal=f"bed_{side}")
-        return sequence(f"the {side} arm in its sleeve", go, fallback(f"the {side} arm dressed", on, rest))
+        return sequence(f"the {side} arm in its sleeve", go, unless_worn(beside, at_hand(beside), arm))
 
     return sequence("both arms in their sleeves", *(on_its_arm(side) for side in SIDES))
+
+
+def unless_worn(beside: Scope, *dressing: Behaviour) -> Behaviour:
+    """Dress an arm that is not seen in its sleeve from beside it; lifted inside it, the arm is taken out again (0)."""
+    side = beside["side"]
+    on = sequence(f"the {side} sleeve on it", LookAtPerson("look", beside), worn_already(beside))
+    return fallback(f"the {side} arm dressed", on, sequence(f"the {side} arm", *dressing))

@@ -8,6 +8,7 @@ from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills import CarrySleeve, CheckSleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat, StretchNeckline
 from caretree.skills.belief.lying_sleeves import lying_sleeves
 from caretree.skills.core.reasons import Reason, SkillFailure
+from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.nodes.decorators import RecoverBy
 from caretree.trees.proof.check import fresh_tree
 from caretree.trees.run.runner import Run
@@ -170,6 +171,28 @@ def test_a_sleeve_that_is_still_held_is_laid_back_unless_the_person_has_moved(no
         for reason, branch in again.recoveries.items():
             laid = [node.name for node in branch.iterate() if node.name.endswith("/lay it back")]
             assert laid == ([] if reason is Reason.PERSON_MOVED else [f"{side} arm/again/lay it back"])
+
+
+@pytest.mark.parametrize("worn", ["left", "right"])
+def test_an_arm_that_is_in_its_sleeve_when_the_run_begins_is_not_lifted(monkeypatch, worn):
+    task, lifts = load_task("dressing"), []
+
+    def told(progress):
+        if progress.name.endswith("arm/lift") and progress.status == "success":
+            lifts.append(progress.name)
+
+    world, senses = task.scripted(1)
+    see = senses.worn_sleeve
+
+    def worn_sleeve(frame, *, side, arm_in_map):
+        if side != worn:
+            return see(frame, side=side, arm_in_map=arm_in_map)
+        return ScriptedSenses.worn_sleeve(senses, frame, side=side, arm_in_map=arm_in_map)
+
+    monkeypatch.setattr(senses, "worn_sleeve", worn_sleeve)
+    run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    assert run.run().outcome == "success"
+    assert lifts == [f"{'left' if worn == 'right' else 'right'} arm/lift"]
 
 
 @pytest.mark.parametrize("leaf", ["right arm/lift", "right arm/pull over the hand"])
