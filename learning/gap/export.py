@@ -6,6 +6,7 @@ the model lacked.  What such a file cannot say (an offset, a backlash, a delay) 
 
 from __future__ import annotations
 
+import json
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import Path
@@ -91,8 +92,16 @@ def export(folder: Path, robot: str | None, to: Path) -> list[str]:
     simulator = model.base.get("simulator")
     if robot is None and "robot" not in model.base:
         raise GapError(f"{file}: names no robot, --robot must give a URDF or MJCF")
-    source = Path(robot) if robot else find_urdf(str(model.base["robot"]), folder)
+    source = Path(robot) if robot else find_urdf(str(model.base["robot"]), folder, *_set_of(folder))
     return write_robot_file(file, source, to, find_system(str(simulator)) if simulator else None)
+
+
+def _set_of(folder: Path) -> list[Path]:
+    """Folder of the measurement set that a results folder is of, where it says so."""
+    try:
+        return [Path(json.loads((folder / "find.json").read_text(encoding="utf-8"))["set"])]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
 
 
 def write_robot_file(model: Path | str, source: Path | str, out: Path | str, system: System | None = None) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from ...sim.errors import CaretreeError
 from ...sim.world import SIDES
 from ...sim.yaml_text import load_yaml
 from .errors import GapError
-from .table import read_table, table_of
+from .table import is_table, read_table, table_of
 
 SYSTEMS = ("arm", "axis", "fall", "cloth", "dressing")
 EPISODE_KEYS = ("file", "role", "phases", "pins", "mass")
@@ -28,6 +29,7 @@ PHASE_KEYS = ("name", "t0", "t1", "start", "end")
 NOTE_KEYS = ("name", "source", "description", "notes", "license", "date", "author")  # read by people alone
 ALIKE = 0.5  # of the letters: `masss` is meant as mass
 LARGEST = 1e12  # of a number of a set, in SI
+EXPONENT = re.compile(r"[-+]?[0-9.]+[eE][-+]?[0-9]+")  # a number, though not always one of YAML 1.1
 SHOWN = 40  # characters of a value in a message
 ROLES = ("fit", "heldout", "repeat")
 
@@ -97,9 +99,10 @@ class MeasurementSet:
             return None
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < LARGEST:
             of = f" of {episode.file.name}" if episode else ""
-            raise GapError(
-                f"{self.folder / 'measurement.yaml'}: {key}{of} is {str(value)[:SHOWN]}, a positive number is needed"
-            )
+            needed = f"a positive number below {LARGEST:g} is needed"
+            if isinstance(value, str) and EXPONENT.fullmatch(value):
+                needed = "which YAML reads as text: write 1.0e+3, with point and sign"
+            raise GapError(f"{self.folder / 'measurement.yaml'}: {key}{of} is {str(value)[:SHOWN]}, {needed}")
         return float(value)
 
 
@@ -128,7 +131,8 @@ def load_set(folder: Path | str, own: tuple[str, ...] = ()) -> MeasurementSet:
     except UnicodeDecodeError as error:
         raise GapError(f"{file}: byte {error.start + 1} is not UTF-8 text") from None
     if not isinstance(content, dict) or not content:
-        raise GapError(f"{file}: the file is empty, `system` and `episodes` are needed")
+        what = f"holds {content!r:.40}" if content else "is empty"
+        raise GapError(f"{file}: the file {what}, `system` and `episodes` are needed")
     system = content.get("system")
     if system not in (*SYSTEMS, *own):
         raise GapError(
@@ -171,6 +175,9 @@ def set_of(
     _refuse_unknown(file, settings, SET_KEYS)
     episodes = []
     for role, tables in (("fit", fit), ("repeat", repeats), ("heldout", heldout)):
+        if isinstance(tables, str) or not isinstance(tables, Iterable) or is_table(tables):
+            what = "one table" if is_table(tables) else f"{tables!r:.40}"
+            raise GapError(f"{role} is {what}, it must be a list of tables")
         for k, table in enumerate(tables, start=1):
             name = f"{role}_{k}"
             episodes.append(Episode(name=name, file=Path(name), role=role, columns=table_of(table, name)))

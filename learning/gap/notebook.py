@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from ...sim.effects.model_file import load_model, save_model
+from .errors import GapError
 from .findings import Verdict, plain
 from .measurement import SYSTEMS, set_of
 from .open_study import open_study
-from .own.find_system import absolute, find_system
+from .own.find_system import absolute, find_system, made
 from .own.system import System, check_system
 from .report import write_report
 from .study import Study
@@ -86,15 +87,24 @@ def run(
     started = time.monotonic()
     own, source = None, ""
     if isinstance(system, type):
-        system = system()
+        system = made(system, system.__name__)
+    if not 0.0 < _number(alpha) < 1.0:
+        raise GapError(f"alpha is {alpha!r}, a level between 0 and 1 is needed")
     if isinstance(system, System):
         own, source = check_system(system), _source(type(system))
+    elif not isinstance(system, str):
+        raise GapError(f"system is {system!r:.60}, it must be a System, its class, or one of {', '.join(SYSTEMS)}")
     elif system not in SYSTEMS:
         own, source = find_system(system), absolute(system)
     measured = set_of(own.name if own else str(system), fit, heldout, repeats, **settings)
     study = open_study(measured, alpha, own=own, source=source)
     verdict = study.conclude()
     return Result(verdict=replace(verdict, seconds=time.monotonic() - started), study=study)
+
+
+def _number(given: Any) -> float:
+    """What is given, or no number at all."""
+    return float(given) if isinstance(given, int | float) else float("nan")
 
 
 def _source(kind: type) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,16 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     return {name: data[:, j] for j, name in enumerate(header)}
 
 
+def is_table(given: Any) -> bool:
+    """Whether it has columns by name, as a mapping or a frame has."""
+    return isinstance(given, Mapping) or _names(given) is not None
+
+
+def _names(given: Any) -> Any:
+    """Of the columns of a frame; None for anything else."""
+    return getattr(given, "columns", getattr(getattr(given, "dtype", None), "names", None))
+
+
 def table_of(table: Any, name: str) -> dict[str, np.ndarray]:
     """Columns of a table in memory, under the rules of `read_table`.
 
@@ -60,14 +71,19 @@ def table_of(table: Any, name: str) -> dict[str, np.ndarray]:
         GapError: it has no `t`, columns of unequal length, too few rows, numbers that are not finite, or time that
             does not increase.
     """
-    frame = getattr(table, "columns", getattr(getattr(table, "dtype", None), "names", None))
+    if not is_table(table):
+        raise GapError(f"{name}: {type(table).__name__} is no table, a mapping of names to arrays or a frame is needed")
+    frame = _names(table)
     names = [str(c) for c in (table if frame is None else frame)]
     if "t" not in names:
         raise GapError(f"{name}: column 't' (time in seconds) is missing, there are {', '.join(names)}")
     out: dict[str, np.ndarray] = {}
     for column in ("t", *(c for c in names if c != "t")):
         try:
-            out[column] = np.array(table[column], dtype=float)
+            given = np.asarray(table[column])
+            if np.iscomplexobj(given):
+                raise TypeError
+            out[column] = np.array(given, dtype=float)
         except (TypeError, ValueError):
             raise GapError(f"{name}: column '{column}' does not consist of numbers") from None
         if out[column].shape != (len(out["t"]),) or len(out["t"]) < FEWEST:

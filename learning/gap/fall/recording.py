@@ -6,9 +6,12 @@ import numpy as np
 
 from ..errors import GapError
 from ..measurement import Episode, MeasurementSet, require_columns
-from .fit import Drop
+from .drop import GRAVITY
+from .fit import RELEASE, Drop
 
 MOST_ROWS = 500  # of one drop
+BEGUN = 0.02  # of a fall, by which the body is surely on its way
+STILL = 1.5  # times `RELEASE`, as a body that falls slowly seems to begin late
 
 
 def drop_of(measured: MeasurementSet, episode: Episode) -> Drop:
@@ -35,6 +38,14 @@ def drop_of(measured: MeasurementSet, episode: Episode) -> Drop:
         t, h = t[:lowest], h[:lowest]
     if len(t) < 12 or h[0] - h[-1] < 0.05:
         raise GapError(f"{episode.file}: column 'h' does not fall (rows 2 to {len(episode.t) + 1})")
+    way = h[0] - h.min()
+    begun = int(np.argmax(h < h[0] - BEGUN * way))
+    still = float(t[begun]) - float(np.sqrt(2.0 * BEGUN * way / GRAVITY))
+    if still > STILL * RELEASE:
+        raise GapError(
+            f"{episode.file}: column 'h' stands still for {still:.2g} s (until about row {begun + 2}), a drop's log "
+            f"begins at the release, or at most {RELEASE:g} s before it"
+        )
     k = -(-len(t) // MOST_ROWS)  # a drop is smooth: means over a few milliseconds lose nothing of it
     whole = len(t) // k * k
     t, h = (x[:whole].reshape(-1, k).mean(axis=1) for x in (t, h))

@@ -135,6 +135,8 @@ class FallStudy(Study):
         low, high = (x[len(fit.theta) + len(instants) :] for x in self._ends(fit))
         own = 0.25 * (high - low)
         mean = float(instants.mean())
+        if fit.mode == "free" and instants.std(ddof=1) > step + own.max():
+            return None  # each drop was let go of when it was: a late reading is as late in all of them
         # each drop's own error is shared through the effects, so it does not shrink with the number of drops
         scatter = float(instants.var(ddof=1)) / len(instants) if fit.mode == "free" else 0.0
         error = float(np.sqrt(scatter + own.mean() ** 2))
@@ -298,6 +300,8 @@ class FallStudy(Study):
             )
         if self.late:
             mean = self.late[0]
+            if mean > 0.0:
+                self.notes.append("Logs that all begin so long before the release look just as such a delay does.")
             same = (self._lateness(c.fit) for c in rivals(self.found, self.chosen) if c.fit.mode == "late")
             low, high = np.array([self.late, *(x for x in same if x)])[:, 1:].T
             out.append(

@@ -140,7 +140,7 @@ class ArmModel(RigidModel):
                     target=last,
                     recalibration=False,
                     shape={},
-                    parameters=(Parameter(name="mass", unit="kg"),),
+                    parameters=(Parameter(name="mass", unit="kg", lower=-self.tool.mass),),
                 )
             )
         else:
@@ -150,7 +150,10 @@ class ArmModel(RigidModel):
                     target=last,
                     recalibration=False,
                     shape={},
-                    parameters=(Parameter(name="mass", unit="kg", upper=0.0), *com),
+                    parameters=(
+                        Parameter(name="mass", unit="kg", lower=-self.model.inertias[n - 1].mass, upper=0.0),
+                        *com,
+                    ),
                 )
             )
         return terms

@@ -14,6 +14,7 @@ from .robot_files import find_urdf
 
 WRONG_UNIT = 20.0  # numbers this many times too large or too small are in another unit
 STRONGEST_GRAVITY = 1e3  # [m/s^2]
+PAUSES = 20.0  # over what its rows take one after the other, from which on a log is not one log
 LIKE = 0.9  # correlation from which on a speed column is the slope of the position
 
 
@@ -42,6 +43,12 @@ def columns_of(measured: MeasurementSet) -> JointColumns:
         step = float(np.median(np.diff(episode.t)))
         if step > 0.5:
             raise GapError(f"{episode.file}: column 't' steps by {step:g}, it must be in seconds (row 3)")
+        if episode.t[-1] - episode.t[0] > PAUSES * step * len(episode.t):
+            row = int(np.argmax(np.diff(episode.t)))
+            raise GapError(
+                f"{episode.file}: column 't', row {row + 3} jumps by {episode.t[row + 1] - episode.t[row]:.4g} s where "
+                f"rows are {step:.4g} s apart, give what is before and after as two episodes"
+            )
         for name in names.q:
             x = episode.columns[name]
             row = int(np.argmax(np.abs(x)))

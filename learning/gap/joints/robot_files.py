@@ -17,7 +17,7 @@ def robots_folder() -> Path:
     return Path(sys.prefix, "lib", f"python{sys.version_info[0]}.{sys.version_info[1]}") / SHARED
 
 
-def find_urdf(robot: str, folder: Path) -> Path:
+def find_urdf(robot: str, *folders: Path) -> Path:
     """Path of a robot's URDF.
 
     A name in example-robot-data is that of a file, the beginning of one up to an underscore (`ur10` of
@@ -26,16 +26,16 @@ def find_urdf(robot: str, folder: Path) -> Path:
 
     Args:
         robot: a file, or a name.
-        folder: of the measurement set.
+        *folders: where a file may be besides the working directory: that of the measurement set.
 
     Raises:
         GapError: there is none; the message lists names that resemble the one given.
     """
-    for path in (Path(robot), folder / robot):
+    for path in (Path(robot), *(folder / robot for folder in folders)):
         if path.suffix == ".urdf" and path.is_file():
             return path
     if robot.endswith(".urdf"):
-        raise GapError(f"robot: no URDF file {robot} (looked beside measurement.yaml too)")
+        raise GapError(f"robot: no URDF file {robot} (looked in {' and '.join(map(str, folders))} too)")
     base = robots_folder()
     files = sorted((p for p in base.rglob("*.urdf") if _has_links(p)), key=lambda p: (len(p.stem), str(p)))
     names = {p: (p.stem, p.relative_to(base).parts[0].removesuffix("_description")) for p in files}

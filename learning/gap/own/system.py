@@ -127,16 +127,17 @@ def check_system(system: System) -> System:
     for attribute in ("name", "channels", "effects"):
         if not getattr(system, attribute, None):
             raise GapError(f"{where}: `{attribute}` is missing, a System needs name, channels, effects and predict")
-    if not isinstance(system.name, str) or not NAME.fullmatch(system.name):
+    if not _is_name(system.name):
         raise GapError(f"{where}: name is {system.name!r}, it must be letters, digits and _")
     for attribute in ("channels", "inputs"):
         given = getattr(system, attribute)
         if not isinstance(given, dict) or not all(isinstance(x, str) and x for x in (*given, *given.values())):
             raise GapError(f'{where}: {attribute} is {given!r}, it must be a dict such as {{"q": "rad"}}')
-    for channel, error in system.model_error.items():
-        if channel not in system.channels or not (math.isfinite(error) and error >= 0.0):
-            known = ", ".join(system.channels)
-            raise GapError(f"{where}: model_error {channel!r}: {error!r} must be a finite size of one of {known}")
+    _check_model_error(where, system)
+    for attribute, kind in (("effects", "Effect"), ("start", "Parameter")):
+        given = getattr(system, attribute)
+        if not isinstance(given, tuple | list):
+            raise GapError(f"{where}: {attribute} is {given!r:.60}, it must be a tuple: ({kind}(...),) with its comma")
     seen: dict[str, str] = {}
     for e in system.effects:
         _check_effect(where, e, seen)
@@ -150,9 +151,33 @@ def check_system(system: System) -> System:
     return system
 
 
+def _check_model_error(where: str, system: System) -> None:
+    """A finite size of each channel that it names."""
+    known = ", ".join(system.channels)
+    if not isinstance(system.model_error, dict):
+        raise GapError(f"{where}: model_error is {system.model_error!r:.60}, it must be a dict of sizes of {known}")
+    for channel, error in system.model_error.items():
+        if channel not in system.channels or not _is_number(error) or not (math.isfinite(error) and error >= 0.0):
+            raise GapError(f"{where}: model_error {channel!r}: {error!r} must be a finite size of one of {known}")
+
+
+def _is_name(given: object) -> bool:
+    return isinstance(given, str) and NAME.fullmatch(given) is not None
+
+
+def _is_number(given: object) -> bool:
+    return isinstance(given, int | float | np.integer | np.floating) and not isinstance(given, bool)
+
+
 def _check_effect(where: str, e: Effect, seen: dict[str, str]) -> None:
-    if not isinstance(e, Effect) or not NAME.fullmatch(e.name) or not e.parameters:
+    if not isinstance(e, Effect) or not _is_name(e.name) or not e.parameters:
         raise GapError(f"{where}: {e!r:.80} is no Effect with a name and parameters")
+    if not isinstance(e.target, str) or not e.target:
+        raise GapError(f"{where}: effect {e.name} acts on {e.target!r}, the target must be a name")
+    if not isinstance(e.parameters, tuple | list):
+        raise GapError(f"{where}: parameters of effect {e.name} must be a tuple: (Parameter(...),) with its comma")
+    if e.regressor is not None and not callable(e.regressor):
+        raise GapError(f"{where}: regressor of effect {e.name} is {e.regressor!r:.60}, it must be a function")
     if e.exports and (e.exports not in EXPORTS or len(e.parameters) != 1):
         raise GapError(
             f"{where}: effect {e.name} exports {e.exports!r} with {len(e.parameters)} parameters, "
@@ -164,8 +189,13 @@ def _check_effect(where: str, e: Effect, seen: dict[str, str]) -> None:
 
 
 def _check_parameter(where: str, p: Parameter, seen: dict[str, str]) -> None:
-    if not isinstance(p, Parameter) or not p.lower <= 0.0 <= p.upper or p.lower == p.upper:
-        raise GapError(f"{where}: the bounds of {getattr(p, 'name', p)!r} must let 0 be, which is the model as given")
+    if not isinstance(p, Parameter) or not _is_name(p.name):
+        raise GapError(f"{where}: {p!r:.80} is no Parameter with a name")
+    for attribute in ("lower", "upper", "typical"):
+        if not _is_number(value := getattr(p, attribute)):
+            raise GapError(f"{where}: {attribute} of {p.name} is {value!r}, a number is needed")
+    if not p.lower <= 0.0 <= p.upper or p.lower == p.upper:
+        raise GapError(f"{where}: the bounds of {p.name!r} must let 0 be, which is the model as given")
     if not (math.isfinite(p.typical) and p.typical > 0.0):
         raise GapError(f"{where}: typical of {p.name} is {p.typical}, a positive size that would matter is needed")
     if p.name in seen:

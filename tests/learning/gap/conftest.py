@@ -44,10 +44,11 @@ def axis_set(tmp_path):
 def drop_set(tmp_path):
     """Write a set of drops from 20 m with quadratic drag `coefficient` [1/m] and 1 cm of noise.
 
-    `ballast` is the mass in each episode over the 0.2 kg of the body; `steep` adds a drag with the cube [s/m^2].
+    `ballast` is the mass in each episode over the 0.2 kg of the body; `steep` adds a drag with the cube [s/m^2]; `held`
+    is for how long the body is held in each episode before it is let go of [s].
     """
 
-    def make(coefficient=0.0, episodes=4, ballast=(), steep=0.0) -> Path:
+    def make(coefficient=0.0, episodes=4, ballast=(), steep=0.0, held=()) -> Path:
         folder = tmp_path / "drops"
         folder.mkdir()
         listed = []
@@ -59,6 +60,7 @@ def drop_set(tmp_path):
                 a = -9.81 - (coefficient * abs(v) * v + steep * v**3) / (ballast[k] if ballast else 1.0)
                 h += 1e-3 * (v + 0.5e-3 * a)
                 v += 1e-3 * a
+            heights = [20.0] * (round(held[k] / 0.033) if held else 0) + heights
             t = 0.033 * np.arange(len(heights))
             noise = 0.01 * np.random.default_rng([3, k]).normal(size=len(t))
             np.savetxt(

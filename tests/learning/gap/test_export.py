@@ -1,9 +1,11 @@
+import json
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 import yaml
 from caretree.learning.gap.errors import GapError
+from caretree.learning.gap.export import export
 from caretree.sim.effects.joint.link_inertia import with_point_mass
 
 from caretree.gap import Effect, Parameter, write_robot_file
@@ -46,6 +48,20 @@ def test_friction_is_added_to_what_a_urdf_says_and_the_rest_is_named(tmp_path):
     assert (float(dynamics.get("damping")), float(dynamics.get("friction"))) == (0.75, 1.5)
     assert left == ["offset on shoulder", "armature of shoulder"]
     assert "as drawn" in text
+
+
+def test_the_robot_of_a_model_is_looked_for_in_the_folder_of_its_set_too(tmp_path):
+    of_set, results = tmp_path / "set", tmp_path / "out"
+    of_set.mkdir(), results.mkdir()
+    content = {"format": "caretree-model-1", "system": "arm", "recalibration": [], "robot": "own.urdf"}
+    effects = [entry("viscous_friction", "shoulder", coefficient=0.25)]
+    (results / "model.yaml").write_text(yaml.safe_dump(content | {"effects": effects}))
+    with pytest.raises(GapError, match=r"no URDF file own\.urdf"):
+        export(results, None, tmp_path / "new.urdf")
+    (of_set / "own.urdf").write_text(URDF)
+    (results / "find.json").write_text(json.dumps({"set": str(of_set)}))
+    assert export(results, None, tmp_path / "new.urdf") == []
+    assert float(ET.parse(tmp_path / "new.urdf").getroot().find("joint/dynamics").get("damping")) == 0.75
 
 
 def test_a_payload_in_a_urdf_is_what_pinocchio_makes_of_it(tmp_path):

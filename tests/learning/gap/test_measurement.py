@@ -30,6 +30,22 @@ def test_notes_of_any_other_name_may_stand_in_a_set(axis_set):
     assert load_set(folder).settings["name"] == "drawer"
 
 
+def jump(folder, row):
+    """A clock that is set right in the middle of a log."""
+    lines = (folder / "e1.csv").read_text().splitlines()
+    for k in range(row + 1, len(lines)):
+        t, rest = lines[k].split(",", 1)
+        lines[k] = f"{float(t) + 1.7e9!r},{rest}"
+    (folder / "e1.csv").write_text("\n".join(lines))
+
+
+def edit_text(folder, line):
+    file = folder / "measurement.yaml"
+    text = file.read_text()
+    assert "mass: " in text
+    file.write_text("\n".join(line if x.startswith("mass: ") else x for x in text.splitlines()))
+
+
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
@@ -74,6 +90,9 @@ def test_notes_of_any_other_name_may_stand_in_a_set(axis_set):
         (lambda f: replace_cell(f, 0, 3, "torque"), ("e1.csv", "column 'force' is missing", "row 1")),
         (lambda f: scale(f, 1, 1000.0), ("e1.csv", "column 'q'", "row", "metres")),
         (lambda f: scale(f, 0, 1000.0), ("e1.csv", "column 't'", "seconds")),
+        (lambda f: jump(f, 100), ("e1.csv", "column 't', row 102 jumps by 1.7e+09 s", "as two episodes")),
+        (lambda f: edit_text(f, "mass: 1e3"), ("mass is 1e3", "YAML reads as text", "1.0e+3")),
+        (lambda f: (f / "measurement.yaml").write_text("[system, axis]"), ("the file holds ['system', 'axis']",)),
         (lambda f: scale(f, 2, 1000.0), ("e1.csv", "column 'dq'", "row", "the slope of 'q'", "metres per second")),
         (lambda f: scale(f, 3, 1e9), ("e1.csv", "column 'force'", "row", "in N")),
     ],

@@ -3,7 +3,7 @@ import pytest
 from caretree.learning.gap.errors import GapError
 from caretree.sim.effects.model_file import load_model
 
-from caretree.gap import run
+from caretree.gap import System, run
 
 from .own.slider import Slider, pushes
 
@@ -65,6 +65,17 @@ TABLE = pushes(1)[0]
         ({"fit": [TABLE | {"t": TABLE["t"][::-1]}]}, "time does not increase"),
         ({"fit": [{"t": TABLE["t"], "x": TABLE["x"]}]}, "column 'push' is missing"),
         ({"mas": 1.0}, "there is no setting 'mas', did you mean mass"),
+        ({"fit": TABLE}, "fit is one table, it must be a list of tables"),
+        ({"fit": None}, "fit is None, it must be a list of tables"),
+        ({"heldout": "abc"}, "heldout is 'abc', it must be a list of tables"),
+        ({"fit": [1, 2]}, "fit_1: int is no table"),
+        ({"fit": [np.zeros((20, 3))]}, "fit_1: ndarray is no table"),
+        ({"fit": [TABLE | {"x": TABLE["x"] + 1j}]}, "fit_1: column 'x' does not consist of numbers"),
+        ({"system": None}, "system is None, it must be a System"),
+        ({"system": dict}, "is no class that derives from"),
+        ({"system": System}, "System has no predict"),
+        ({"alpha": 2.0}, "alpha is 2.0, a level between 0 and 1 is needed"),
+        ({"alpha": "x"}, "alpha is 'x'"),
     ],
 )
 def test_what_cannot_be_used_is_one_sentence(given, says):

@@ -24,6 +24,18 @@ def test_vacuum_needs_nothing(drop_set):
     assert (verdict, effects) == ("adequate", ())
 
 
+@pytest.mark.parametrize(("coefficient", "named"), [(0.0, []), (0.02, ["quadratic_drag"])])
+def test_logs_that_begin_before_each_release_are_no_delay(drop_set, coefficient, named):
+    study = open_study(load_set(drop_set(coefficient, held=(0.2, 0.5, 0.3, 0.4))))
+    assert [f.name for f in study.name()[1]] == named
+    assert study.show()[0].after < 0.015
+
+
+def test_a_log_that_begins_long_before_its_release_is_one_sentence(drop_set):
+    with pytest.raises(GapError, match=r"d1\.csv: column 'h' stands still for 2 s .* at most 0\.6 s before it"):
+        open_study(load_set(drop_set(0.02, held=(0.0, 2.0, 0.0, 0.0)))).find()
+
+
 def test_ballast_is_taken_into_account(drop_set):
     folder = drop_set(0.02, episodes=6, ballast=(1, 1, 3, 3, 0.5, 0.5))
     study = open_study(load_set(folder))

@@ -36,6 +36,17 @@ def test_a_sound_class_passes():
         ({"effects": (Effect(name="a", exports="colour", parameters=(number(),)),)}, "exports 'colour'"),
         ({"effects": tuple(Effect(name="a", parameters=(number(n),)) for n in "bc")}, "is there twice"),
         ({"start": (number("rate"),)}, "already one of viscous"),
+        ({"start": number("rate")}, "start is"),
+        ({"effects": Effect(name="a", parameters=(number(),))}, "it must be a tuple: (Effect(...),) with its comma"),
+        ({"effects": (Effect(name="a", parameters=number()),)}, "must be a tuple: (Parameter(...),)"),
+        ({"effects": (Effect(name=3, parameters=(number(),)),)}, "is no Effect"),
+        ({"effects": (Effect(name="a", target=3, parameters=(number(),)),)}, "acts on 3"),
+        ({"effects": (Effect(name="a", regressor="x", parameters=(number(),)),)}, "regressor of effect a is 'x'"),
+        ({"effects": (Effect(name="a", parameters=(number(typical="5"),)),)}, "typical of a is '5'"),
+        ({"effects": (Effect(name="a", parameters=(number(lower="0"),)),)}, "lower of a is '0'"),
+        ({"effects": (Effect(name="a", parameters=("a",)),)}, "'a' is no Parameter"),
+        ({"model_error": 0.1}, "model_error is 0.1"),
+        ({"model_error": {"x": "0.1"}}, "must be a finite size"),
     ],
 )
 def test_what_cannot_work_is_refused_in_one_sentence(attributes, says):
