@@ -13,6 +13,7 @@ show, and `changed(PullTuning(), {"speed": 0.05})` a copy with other numbers.  A
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
@@ -91,15 +92,24 @@ def changed(numbers: N, values: Mapping[str, Any], *, also: Sequence[str] = ()) 
     Raises:
         QuantityError: an unknown name, or a value of another type; the dataclass may refuse values itself.
     """
-    known = {row.name: row.value for row in rows(numbers)}
+    known = {row.name: row for row in rows(numbers)}
     result = numbers
     for name, value in values.items():
         if name not in known:
             near = difflib.get_close_matches(name, [*known, *also], n=1)
             hint = f"; did you mean {near[0]}?" if near else f"; there are {', '.join([*known, *also])}"
             raise QuantityError(f"{type(numbers).__name__} has no number {name!r}{hint}")
-        result = _replaced(result, name.split("."), _as(known[name], value, f"{type(numbers).__name__}.{name}"))
+        whole = f"{type(numbers).__name__}.{name}"
+        number = _as(known[name].value, value, whole)
+        if known[name].unit == "s" and _spans(known[name].value) and not _spans(number):
+            raise QuantityError(f"{whole} is {value!r}, but a span of time in seconds is asked for")
+        result = _replaced(result, name.split("."), number)
     return result
+
+
+def _spans(number: Any) -> bool:
+    """Whether a number, or each of several, is a span of time: something divides by it, or waits for it."""
+    return all(map(_spans, number)) if isinstance(number, tuple) else 0.0 < number < math.inf
 
 
 def _replaced(numbers: Any, path: list[str], value: Any) -> Any:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from .extras import later
@@ -12,6 +14,7 @@ else:
     yaml = later("yaml")
 
 
+EXPONENT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$")
 PARTS_MAX = 1_000_000  # values of a file once its aliases are written out
 
 
@@ -22,14 +25,25 @@ def load_yaml(text: str) -> Any:
         yaml.MarkedYAMLError: it is no YAML, gives a key twice, or holds more than settings need.
     """
     try:
-        node = yaml.compose(text, Loader=yaml.SafeLoader)
+        node = yaml.compose(text, Loader=_loader())
         if node is not None:
             _size(node, {})
-        return yaml.safe_load(text)
+        return yaml.load(text, Loader=_loader())
     except RecursionError:
         raise yaml.MarkedYAMLError(problem="values lie too deep in each other") from None
     except ValueError as error:  # a date that is none, a number too long for Python
         raise yaml.MarkedYAMLError(problem=str(error).split(" (")[0].split(";")[0]) from None
+
+
+@cache
+def _loader() -> type[yaml.SafeLoader]:
+    """The safe loader, to which 1e3 is a number as in YAML 1.2 and everywhere else; YAML 1.1 asks for 1.0e+3."""
+
+    class Loader(yaml.SafeLoader):
+        pass
+
+    Loader.add_implicit_resolver("tag:yaml.org,2002:float", EXPONENT, list("-+.0123456789"))
+    return Loader
 
 
 def _size(node: yaml.Node, known: dict[int, int | None]) -> int:

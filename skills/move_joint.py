@@ -17,6 +17,8 @@ from .core.reasons import Reason
 from .core.scope import Scope
 from .core.skill import Skill
 
+WHOLE_TURN = 2.0 * np.pi  # [rad]
+
 
 @dataclass(frozen=True, kw_only=True)
 class MoveJointTuning(Quantities):
@@ -41,14 +43,18 @@ class MoveJoint(Skill):
     reasons = (Reason.COMMAND_LOST, Reason.MOTION_BLOCKED)
 
     def __init__(self, name: str, context: Context | Scope, **ports: Any) -> None:
-        """Refuse a joint that the robot does not have before anything moves.
+        """Refuse a joint that the robot does not have, and degrees, before anything moves.
 
         Raises:
-            PortError: it does not have it.
+            PortError: it does not have it, or `angle` is more than a whole turn.
         """
         super().__init__(name, context, **ports)
         if isinstance(joint := ports.get("joint"), str):
             self._place_of(joint)
+        if isinstance(angle := ports.get("angle"), int | float) and not abs(angle) <= WHOLE_TURN:
+            raise PortError(
+                f"MoveJoint.angle is {angle:g} rad, but no joint turns farther than 2 pi: is it in degrees?"
+            )
 
     def steps(self) -> Iterator[None]:
         """Send one trajectory and see it through."""

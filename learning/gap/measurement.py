@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -29,7 +28,6 @@ PHASE_KEYS = ("name", "t0", "t1", "start", "end")
 NOTE_KEYS = ("name", "source", "description", "notes", "license", "date", "author")  # read by people alone
 ALIKE = 0.5  # of the letters: `masss` is meant as mass
 LARGEST = 1e12  # of a number of a set, in SI
-EXPONENT = re.compile(r"[-+]?[0-9.]+[eE][-+]?[0-9]+")  # a number, though not always one of YAML 1.1
 SHOWN = 40  # characters of a value in a message
 ROLES = ("fit", "heldout", "repeat")
 
@@ -99,10 +97,10 @@ class MeasurementSet:
             return None
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < LARGEST:
             of = f" of {episode.file.name}" if episode else ""
-            needed = f"a positive number below {LARGEST:g} is needed"
-            if isinstance(value, str) and EXPONENT.fullmatch(value):
-                needed = "which YAML reads as text: write 1.0e+3, with point and sign"
-            raise GapError(f"{self.folder / 'measurement.yaml'}: {key}{of} is {str(value)[:SHOWN]}, {needed}")
+            raise GapError(
+                f"{self.folder / 'measurement.yaml'}: {key}{of} is {str(value)[:SHOWN]}, a positive number below "
+                f"{LARGEST:g} is needed"
+            )
         return float(value)
 
 

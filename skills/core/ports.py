@@ -208,6 +208,8 @@ class Input(_Port[T]):
             self._check(owner, value)
             if _is_nan(value):
                 raise PortError(f"{type(owner).__name__}.{self.name} is {value}, which is no number")
+            if self.unit == "s" and isinstance(value, int | float) and value < 0.0:
+                raise PortError(f"{type(owner).__name__}.{self.name} is {value} s, which is no span of time")
         return value
 
 

@@ -23,6 +23,7 @@ class Inner(Quantities):
 class Outer(Quantities):
     speed: float = quantity(0.5, "m/s", "of the hand", "choice: for a test")
     tries: int = quantity(3, "1", "before it gives up", "choice: for a test")
+    pause: float = quantity(2.0, "s", "between two of them", "choice: for a test")
     inner: Inner = Inner()
 
 
@@ -30,6 +31,7 @@ def test_rows_flatten_what_is_nested():
     assert [(row.name, row.value, row.unit) for row in rows(Outer())] == [
         ("speed", 0.5, "m/s"),
         ("tries", 3, "1"),
+        ("pause", 2.0, "s"),
         ("inner.ends", (0.1, 0.2), "m"),
     ]
 
@@ -50,6 +52,9 @@ def test_a_changed_copy_leaves_the_first_as_it_was():
         ({"speed": "fast"}, "a number"),
         ({"speed": float("nan")}, "a number"),
         ({"tries": 1.5}, "whole number"),
+        ({"pause": 0.0}, "pause is 0.0, but a span of time"),
+        ({"pause": -3}, "a span of time"),
+        ({"pause": float("inf")}, "a span of time"),
         ({"inner.ends": [1.0]}, "2 numbers"),
     ],
 )

@@ -7,6 +7,7 @@ BOMB = "a0: &a0 [1, 1]\n" + "\n".join(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] *
 
 def test_what_is_allowed_is_read_as_ever():
     assert load_yaml("a: [1, 2.5, true]\nb: {c: text}\n") == {"a": [1, 2.5, True], "b": {"c": "text"}}
+    assert load_yaml("[1e3, -2.5E-1, .5e2, 1.0e+1, 1e, e1, 1e3m]") == [1000.0, -0.25, 50.0, 10.0, "1e", "e1", "1e3m"]
     assert load_yaml("") is None
     assert load_yaml("a: &x [1]\nb: *x") == {"a": [1], "b": [1]}
 

@@ -40,3 +40,8 @@ def test_one_that_does_not_turn_is_told():
 def test_a_joint_that_the_robot_does_not_have_is_refused_before_anything_moves():
     with pytest.raises(PortError, match="joint is 'knee', but the robot baxter has s0, s1, e0, e1, w0, w1, w2"):
         LeafBench(lambda context: MoveJoint("turn", context, side="left", joint="knee", angle=0.1), beside_bed())
+
+
+def test_degrees_are_refused_before_anything_moves():
+    with pytest.raises(PortError, match=r"angle is 45 rad, .* is it in degrees"):
+        bench(45.0)

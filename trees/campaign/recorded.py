@@ -18,7 +18,8 @@ class Recorded:
     """What a run was given.
 
     Attributes:
-        task: name, or path of its file.
+        task: name, or path of its file as it was typed.
+        task_file, task_hash: where a user's task file was, and what it was; None for a task of the package.
         seed: of the run.
         world: name.
         world_args: what a world that the package does not bring was given, name -> value.
@@ -38,6 +39,8 @@ class Recorded:
     task: str
     seed: int
     world: str
+    task_file: str | None = None
+    task_hash: str | None = None
     robot: str | None = None
     gown: str | None = None
     person: str | None = None
@@ -68,7 +71,19 @@ def recorded(directory: Path) -> Recorded:
     run = read_finished_run(directory)
     file = directory / RUN_FILE
     given = _value(file, run, "parameters", dict, _is_mapping, {})
-    names = ("robot", "gown", "person", "model", "stage", "look", "engine", "perception", "pregrasp")
+    names = (
+        "task_file",
+        "task_hash",
+        "robot",
+        "gown",
+        "person",
+        "model",
+        "stage",
+        "look",
+        "engine",
+        "perception",
+        "pregrasp",
+    )
     optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(
         task=_value(file, run, "task", str, _is_text),

@@ -15,10 +15,10 @@ from ..report.timeline import read_trace
 from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
-from ..run.task import load_task
 from ..run.trace import canonical
 from ..run.worlds import make_world, prepare_stage
 from .recorded import recorded
+from .recorded_task import FILE, HASH, recorded_task
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,13 @@ class Replay:
         same: every event was the same.
         difference: where the first one differs, in one sentence.
         versions: packages of another version than then, as `name: then, now`.
+        changed: says that the task is another one than then; empty where it is not.
     """
 
     same: bool
     difference: str = ""
     versions: list[str] = field(default_factory=list)
+    changed: str = ""
 
 
 def replay(directory: Path) -> Replay:
@@ -45,7 +47,7 @@ def replay(directory: Path) -> Replay:
     """
     given = recorded(directory)
     before = read_trace(directory / TRACE_FILE)
-    loaded = load_task(given.task, robot=given.robot)
+    loaded, changed = recorded_task(given.task, {FILE: given.task_file, HASH: given.task_hash}, robot=given.robot)
     faults = [parse_fault(text) for text in given.inject]
     inner, senses = make_world(
         given.world,
@@ -85,10 +87,10 @@ def replay(directory: Path) -> Replay:
         inner.close()
     difference = first_difference(before, run.trace.events)
     now, then = versions(), given.versions
-    changed = [
+    others = [
         f"{name}: {then[name]}, now {now[name]}" for name in sorted(now) if name in then and then[name] != now[name]
     ]
-    return Replay(same=not difference, difference=difference, versions=changed)
+    return Replay(same=not difference, difference=difference, versions=others, changed=changed)
 
 
 def first_difference(before: list[dict[str, Any]], after: list[dict[str, Any]]) -> str:

@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 
 from ...sim.record.record import read_run
-from ..run.task import Task, TaskError, load_task
+from ..campaign.key import SOURCES
+from ..campaign.recorded_task import FILE, recorded_task
+from ..run.task import Task, TaskError
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -46,10 +49,20 @@ def main(args: argparse.Namespace) -> int:
 
 
 def _with_judge(directory: Path) -> Task | None:
-    """The task of the record, if it is here and has a judge of its own."""
-    name = str(read_run(directory).get("task"))
+    """The task of the record, if it has a judge of its own; None for one of a name that is not known here.
+
+    Raises:
+        CaretreeError: the record cannot be read, or the file of its task is not there or broken.
+    """
+    run = read_run(directory)
+    name, given = str(run.get("task")), run.get("parameters")
+    parameters = given if isinstance(given, dict) else {}
     try:
-        task = load_task(name)
-    except TaskError:  # a record from elsewhere
+        task, changed = recorded_task(name, parameters)
+    except TaskError as error:
+        if FILE in parameters or Path(name).suffix in SOURCES:
+            raise TaskError(f"{error}; what judges {directory} stands in it") from None
         return None
+    if changed:
+        print(f"caretree: {changed}: the record is judged by what stands there now", file=sys.stderr)
     return task if task.judge is not None else None

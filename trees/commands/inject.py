@@ -9,6 +9,7 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
@@ -94,16 +95,13 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     try:
         done = {row.key for row in rows}
         missing = campaign.rows([key for key in wanted if key not in done])
-        with path.open("a", encoding="utf-8") as file, contextlib.closing(missing):
+        with _opened(path) as file, contextlib.closing(missing):
             for row in missing:
-                file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
-                file.flush()
+                _keep(file, row, key)
                 rows.append(row)
                 if how := _ending(row):
                     told = f"{row.fault}@{row.node}:{row.phase}: {how}"
                     print(f"[{len(rows)}/{len(wanted)}] {told}", flush=True)
-    except OSError as error:
-        raise disk_error(error, f"writing {path}") from error
     except KeyboardInterrupt:
         kept = _kept(path, key, wanted)  # the file's word: a row may be in it and not among `rows` yet
         print(f"interrupted; {len(kept)} of {len(wanted)} rows are kept in {path}, run it again to go on")
@@ -120,6 +118,22 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
         )
         return 1
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
+
+
+def _opened(path: Path) -> TextIO:
+    try:
+        return path.open("a", encoding="utf-8")
+    except OSError as error:
+        raise disk_error(error, f"writing {path}") from error
+
+
+def _keep(file: TextIO, row: Row, key: str) -> None:
+    """Write a row, at once; that nobody reads what is printed of it is another matter."""
+    try:
+        file.write(json.dumps(row.as_dict() | {"key": key}) + "\n")
+        file.flush()
+    except OSError as error:
+        raise disk_error(error, f"writing {file.name}") from error
 
 
 def _kept(path: Path, key: str, wanted: Sequence[FaultKey]) -> list[Row]:

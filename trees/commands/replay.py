@@ -21,6 +21,8 @@ def main(options: argparse.Namespace) -> int:
         print(f"the run in {options.directory} repeats exactly")
         return 0
     print(result.difference)
+    if result.changed:
+        print(result.changed)
     if result.versions:
         print("versions that changed: " + "; ".join(result.versions))
     return 1

@@ -25,6 +25,7 @@ from ...sim.record.record import ERRORS_FILE, LOG_FILE, RUN_FILE, VIDEO_FILE, Ru
 from ...sim.record.recorder import Recorder
 from ...sim.world import Observation, World
 from ...sim.world_kind import WorldKind
+from ..campaign.recorded_task import noted
 from ..cli import IN_THE_RECORD
 from ..proof.check import check_quickly
 from ..report.looks import LookLog, Witness
@@ -169,7 +170,7 @@ def _run(
     world = FaultyWorld(measured, faults) if faults else measured
     settled_rate_hz = tick_rate_of(inner)
     rate_hz = TICK_RATE if faults else settled_rate_hz  # how soon a fault is answered is looked at
-    parameters = {**parameters, "rate_hz": rate_hz, "settled_rate_hz": settled_rate_hz}
+    parameters = {**parameters, **noted(task), "rate_hz": rate_hz, "settled_rate_hz": settled_rate_hz}
     events = _Events()
     run = Run(
         task,

@@ -91,7 +91,7 @@ def edit_text(folder, line):
         (lambda f: scale(f, 1, 1000.0), ("e1.csv", "column 'q'", "row", "metres")),
         (lambda f: scale(f, 0, 1000.0), ("e1.csv", "column 't'", "seconds")),
         (lambda f: jump(f, 100), ("e1.csv", "column 't', row 102 jumps by 1.7e+09 s", "as two episodes")),
-        (lambda f: edit_text(f, "mass: 1e3"), ("mass is 1e3", "YAML reads as text", "1.0e+3")),
+        (lambda f: edit_text(f, "mass: 1e13"), ("mass is 10000000000000.0", "a positive number below 1e+12")),
         (lambda f: (f / "measurement.yaml").write_text("[system, axis]"), ("the file holds ['system', 'axis']",)),
         (lambda f: scale(f, 2, 1000.0), ("e1.csv", "column 'dq'", "row", "the slope of 'q'", "metres per second")),
         (lambda f: scale(f, 3, 1e9), ("e1.csv", "column 'force'", "row", "in N")),

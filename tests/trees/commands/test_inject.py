@@ -115,6 +115,20 @@ def test_an_interrupted_campaign_of_two_jobs_ends_its_processes_and_goes_on(name
     assert "lost" not in told
 
 
+def test_a_reader_of_the_output_that_has_gone_is_no_disk_that_fails(monkeypatch):
+    Path("presses.py").write_text(INTERRUPTING.replace("{signal}", "INT"))
+    Path("interrupted").touch()
+
+    def gone(*words, **options):
+        if str(words[0]).startswith("["):
+            raise BrokenPipeError(32, "Broken pipe")
+
+    monkeypatch.setattr("builtins.print", gone)
+    words = ["inject", "presses.py", "--fault", "dead_sensor", "--fault", "occlusion", "--out", "i"]
+    assert main(words) == 1
+    assert Path("i/inject.jsonl").read_text().count("\n") == 7, "six were not reached, of which nothing is said"
+
+
 def test_rows_of_a_killed_process_are_lost_and_tried_again(capsys):
     text = INTERRUPTING.replace("CAMPAIGN, signal.SIG{signal}", "os.getpid(), signal.SIGKILL")
     Path("dies.py").write_text(text)
