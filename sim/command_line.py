@@ -10,7 +10,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from .errors import CaretreeError
 from .extras import MissingExtra, missing_extra
@@ -32,6 +32,19 @@ class CommandParser(argparse.ArgumentParser):
             CaretreeError: always.
         """
         raise CaretreeError(f"{message} (see {self.prog} --help)")
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse's; what nobody knows is told with the help of the command that it was given to.
+
+        Raises:
+            CaretreeError: an argument is wrong, or unknown.
+        """
+        found, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            command = getattr(found, "command", None)
+            program = f"{self.prog} {command}" if command else self.prog
+            raise CaretreeError(f"unrecognized arguments: {' '.join(unknown)} (see {program} --help)")
+        return found
 
 
 def whole_number(text: str) -> int:

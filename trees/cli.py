@@ -22,7 +22,7 @@ SELF_PARSED = {
     "serve-robot": (".commands.serve_robot", "have a simulated world be the robot behind a ROS 1 master"),
     "robot": (".commands.robot", "say what a robot behind a ROS 1 master lacks, before anything moves"),
     "export": (".commands.export", "write a task's tree, or what robots did, for other programs"),
-    "evaluate": (".commands.evaluate", "say from the record alone whether the person is dressed and unharmed"),
+    "evaluate": (".commands.evaluate", "say from the record alone whether the run reached its goal"),
 }
 # said by --help, which must not import what knows them; a test compares
 WORLDS = ("bullet", "scripted")
@@ -217,8 +217,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     inject.add_argument("--address", metavar="ray://...", help="run them on a Ray cluster; `local` starts one here")
     inject.add_argument("--out", metavar="DIR", help="folder that keeps finished rows (default: one under runs/)")
 
-    replay = commands.add_parser("replay", help="run a record again and say where it differs")
-    replay.add_argument("directory", metavar="DIR")
+    _of_record(commands, "replay", "run a record again and say where it differs")
 
     skills = commands.add_parser("skills", help="list the skills; of one its ports, reasons and numbers")
     skills.add_argument("name", nargs="?", metavar="NAME", help="of a skill: present_sleeve or PresentSleeve")
@@ -227,12 +226,10 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     new.add_argument("name", metavar="TASK", help="name of the task, a Python name such as fetch_gown")
     new.add_argument("--out", default=".", metavar="DIR", help="folder for its files (default: here)")
 
-    view = commands.add_parser("view", help="look at a record in the browser, with a time slider")
-    view.add_argument("directory", metavar="DIR")
+    view = _of_record(commands, "view", "look at a record in the browser, with a time slider")
     view.add_argument("--port", type=port, metavar="N", help="default: the first free one from 8080 on")
 
-    report = commands.add_parser("report", help="draw the page of a record, of a run cut short too")
-    report.add_argument("directory", metavar="DIR")
+    _of_record(commands, "report", "draw the page of a record, of a run cut short too")
 
     completion = commands.add_parser("completion", help="print what makes a shell complete caretree's words")
     completion.add_argument(
@@ -246,6 +243,15 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
             commands.add_parser(name, help=summary)
     commands.add_parser("gap", help="find, name, add and show what a model lacks", add_help=False)
     commands.add_parser("learn", help="datasets, training and evaluation of learned parts", add_help=False)
+    return parser
+
+
+def _of_record(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, what: str
+) -> argparse.ArgumentParser:
+    """The parser of a command on one record."""
+    parser = commands.add_parser(name, help=what, description=f"{what[0].upper()}{what[1:]}.")
+    parser.add_argument("directory", metavar="DIR", help="folder of the record, with run.json in it")
     return parser
 
 

@@ -163,7 +163,9 @@ def read_run(directory: Path) -> dict[str, Any]:
         run = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise RecordError(f"{directory} holds no {RUN_FILE}: it is not a run record") from error
-    except (OSError, ValueError, RecursionError) as error:
+    except OSError as error:
+        raise RecordError(f"{path} cannot be read: {error.strerror or error}") from error
+    except (ValueError, RecursionError) as error:
         raise RecordError(f"{path} is damaged: {error}") from error
     if not isinstance(run, dict):
         raise RecordError(f"{path} holds a {type(run).__name__}, but an object with task and outcome is asked for")

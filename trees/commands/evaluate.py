@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "the person is dressed and, where the record tells, unharmed.  Exit status 0: yes, 1: no, 2: the record "
         "cannot be read.",
     )
-    parser.add_argument("directory", type=Path, metavar="DIR")
+    parser.add_argument("directory", type=Path, metavar="DIR", help="folder of the record, with run.json in it")
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
     parser.set_defaults(main=main)
 

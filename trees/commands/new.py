@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import keyword
+import shlex
 from pathlib import Path
 
 from ...sim.errors import CaretreeError
@@ -23,7 +24,7 @@ def main(options: argparse.Namespace) -> int:
     written = write_task(options.name, Path(options.out))
     for path in written:
         print(path)
-    print(f"next: caretree run {written[0]} --world scripted")
+    print(f"next: caretree run {shlex.quote(str(written[0]))} --world scripted")
     return 0
 
 
@@ -43,6 +44,8 @@ def write_task(name: str, folder: Path) -> list[Path]:
         raise CaretreeError(f"{there[0]} is there already; give another name, or another folder with --out")
     if importlib.util.find_spec(name) is not None:
         raise CaretreeError(f"{name}.py would stand in the way of Python's module {name!r}; give another name")
+    if folder.exists() and not folder.is_dir():
+        raise CaretreeError(f"--out is {folder}, which is a file; a folder is asked for")
     folder.mkdir(parents=True, exist_ok=True)
     texts = Path(__file__).parents[1] / "skeleton"
     for path, text in files.items():

@@ -105,6 +105,7 @@ def build_report(directory: Path) -> str:
         subtitle=f"{task} · seed {seed} · world {world}",
         sentence=_text(sentence),
         facts=_facts(run),
+        asked="Is the person dressed?" if kept(run) is None else "Is the goal reached?",
         verdict=_or_sentence(lambda: _verdict(directory, run)),
         why_failed="" if outcome == "success" else why,
         why=why if outcome == "success" else "",

@@ -115,7 +115,7 @@ def test_an_interrupted_campaign_of_two_jobs_ends_its_processes_and_goes_on(name
     assert "lost" not in told
 
 
-def test_a_reader_of_the_output_that_has_gone_is_no_disk_that_fails(monkeypatch):
+def test_a_reader_of_the_output_that_has_gone_is_no_disk_that_fails(monkeypatch, capsys):
     Path("presses.py").write_text(INTERRUPTING.replace("{signal}", "INT"))
     Path("interrupted").touch()
 
@@ -123,7 +123,7 @@ def test_a_reader_of_the_output_that_has_gone_is_no_disk_that_fails(monkeypatch)
         if str(words[0]).startswith("["):
             raise BrokenPipeError(32, "Broken pipe")
 
-    monkeypatch.setattr("builtins.print", gone)
+    monkeypatch.setattr("builtins.print", gone)  # `capsys` stands behind stdout, which is given up then
     words = ["inject", "presses.py", "--fault", "dead_sensor", "--fault", "occlusion", "--out", "i"]
     assert main(words) == 1
     assert Path("i/inject.jsonl").read_text().count("\n") == 7, "six were not reached, of which nothing is said"
