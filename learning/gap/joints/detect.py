@@ -21,12 +21,13 @@ def smallest_found(search: Search, chosen: tuple[int, ...], index: int, theta: n
     base = replace_residual(search, chosen)
     if index not in chosen:
         rest = chosen
+    beside = np.maximum(search.yyc - base.yyc, 0.0)
     low, high = 0.0, 4.0
-    if not _named(base, rest, index, span, theta * high):
+    if not _named(base, rest, index, span, theta * high, beside):
         return float("inf")
     for _ in range(9):
         middle = 0.5 * (low + high)
-        if _named(base, rest, index, span, theta * middle):
+        if _named(base, rest, index, span, theta * middle, beside):
             high = middle
         else:
             low = middle
@@ -48,11 +49,14 @@ def replace_residual(search: Search, chosen: tuple[int, ...]) -> Search:
     return search.with_residual(b, np.maximum(yy, 1e-12))
 
 
-def _named(base: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray) -> bool:
+def _named(
+    base: Search, rest: tuple[int, ...], index: int, span: np.ndarray, theta: np.ndarray, beside: np.ndarray
+) -> bool:
     gram = base.gram
     extra = gram.G[:, :, :, span] @ theta
     inner = np.einsum("i,fcij,j->fc", theta, gram.G[:, :, span[:, None], span[None, :]], theta)
     yy = gram.yy + 2 * gram.b[:, :, span] @ theta + inner
     trial = base.with_residual(gram.b + extra, yy)
     with_it = (*rest, index)
-    return trial.score(with_it) < trial.score(rest) and trial.crossed(with_it, index, rest)
+    better = trial.score(with_it) < trial.score(rest) and trial.crossed(with_it, index, rest)
+    return better and trial.weighty(with_it, index, rest, beside)

@@ -18,7 +18,7 @@ from ....sim.effects.effect import Parameter
 from .block import Block
 from .gram import Gram
 from .noise import NoiseModel
-from .thresholds import ALPHA, CROSS, MATERIAL, SHARE
+from .thresholds import ALPHA, CROSS, LEFT, MATERIAL, SHARE
 
 Set = tuple[int, ...]
 COLLINEAR = 1e-5
@@ -185,12 +185,19 @@ class Search:
                 total += float(-2 * theta @ self.fold_b[fold][s] + theta @ self.fold_G[fold][np.ix_(s, s)] @ theta)
         return total
 
-    def weighty(self, chosen: Set, added: int, base: Set) -> bool:
-        """Whether `added` explains a fair share of what is explained in the channel it helps most."""
+    def weighty(self, chosen: Set, added: int, base: Set, beside: np.ndarray | float = 0.0) -> bool:
+        """Whether `added` explains a fair share of what is explained, or was left, in the channel it helps most.
+
+        Args:
+            chosen: the set with it.
+            added: the block.
+            base: the set without it.
+            beside: energy per channel (C,) that is explained by what has been taken out of the residual.
+        """
         before, after = self.rss(base), self.rss(chosen)
         c = list(self.blocks[added].channels)
-        explained = np.maximum(self.yyc - after, 1e-30)
-        return bool(np.max((before - after)[c] / explained[c]) > SHARE)
+        gained, explained = (before - after)[c], np.maximum(self.yyc - after + beside, 1e-30)[c]
+        return bool(np.max(gained / explained) > SHARE or np.max(gained / before[c]) > LEFT)
 
     def clash(self, i: int, chosen: Set) -> Set:
         """Members of `chosen` that block `i` replaces: itself in other shape, its special cases, what contains it."""

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 ALPHA = 0.05  # chance of a false alarm over the whole set, all hypotheses together
 MATERIAL = 0.12  # an effect's own part must reach this size, in units of what the model leaves
-SHARE = 0.008  # and at least this part of the energy explained in the channel it helps most
+SHARE = 0.008  # and at least this part of the energy explained in the channel it helps most,
+LEFT = 0.5  # or this part of what is left there without it: much, beside something larger by far
 CROSS = 0.3  # part of a step's gain that must survive on unseen folds
 REMAINDER = 0.06  # `unknown` above this part of the explainable energy left unexplained
 REMAINDER_SIZE = 0.08  # energy of a predictable leftover over the floor's before it counts

@@ -47,6 +47,25 @@ def test_two_effects_are_named_together(axis_set):
     assert {f.name for f in effects} == {"viscous_friction", "offset"}
 
 
+@pytest.mark.parametrize(
+    ("beside", "name", "parameter", "value"),
+    [
+        (lambda q, v, a: 0.3 + 0.0 * q, "offset", "value", 0.3),
+        (lambda q, v, a: 0.5 * a, "mass", "mass", 0.5),
+    ],
+)
+def test_what_is_small_beside_something_far_larger_and_much_of_what_that_leaves_is_named(
+    axis_set, beside, name, parameter, value
+):
+    study = open_study(load_set(axis_set(lambda q, v, a: 60.0 * v + beside(q, v, a), noise=0.05)))
+    _, effects, recalibration, _ = study.name()
+    named = {f.name: {v.name: v for v in f.parameters} for f in (*effects, *recalibration)}
+    assert set(named) == {"viscous_friction", name}
+    assert named[name][parameter].value == pytest.approx(value, rel=0.1)
+    gap = study.show()[0]
+    assert gap.after < 2.0 * gap.floor
+
+
 def test_no_interval_is_trusted_where_something_without_a_name_acts_too(axis_set):
     study = open_study(load_set(axis_set(lambda q, v, a: 8.0 * v + 3.0 * np.sin(150.0 * q), noise=0.1)))
     verdict = study.conclude()
