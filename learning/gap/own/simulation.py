@@ -21,6 +21,7 @@ from .system import Columns, Effect, System
 ROWS = 3000  # an episode is compared at no more than about this many rows
 STEP = 0.05  # of the typical size, for derivatives by difference
 ABSENT = 0.5  # the same where the effect is absent: what it does at a size that would matter is asked for
+HUGE = 1e100  # of a prediction, in any unit
 BAD = 1e3  # a prediction that is not finite is taken for an error of so many times the gap
 ROUNDS = 6  # of fitting a recording's own numbers
 LONGEST = 5.0  # typical sizes, of one such step: a prediction that is far off says little of where to start
@@ -127,7 +128,7 @@ class Simulation:
         where = f"{type(self.system).__name__}.predict"
         try:
             x = np.asarray(self.system.predict(r.columns, MappingProxyType(values)), dtype=float)
-        except Exception as error:  # whatever a user's simulator raises
+        except (Exception, SystemExit) as error:  # whatever a user's simulator raises
             says = " ".join(str(error).split())[:160]
             raise GapError(f"{where} raised {type(error).__name__} on {r.episode.name}: {says}") from None
         rows, channels = len(r.columns["t"]), len(self.system.channels)
@@ -137,11 +138,12 @@ class Simulation:
                 f"{where} returned an array of shape {x.shape} on {r.episode.name}, ({rows}, {channels}) is needed"
             )
         x = x[r.pick]
-        if np.isfinite(x).all():
+        sound = np.abs(x) < HUGE  # its square is finite too
+        if sound.all():
             return x
         if not any(values.values()):
-            raise GapError(f"{where} is not finite on {r.episode.name} for the model as given")
-        return np.where(np.isfinite(x), x, r.measured + BAD * self.scale)
+            raise GapError(f"{where} is not finite, or huge, on {r.episode.name} for the model as given")
+        return np.where(sound, x, r.measured + BAD * self.scale)
 
     def regressor(self, r: Recording, effect: Effect) -> np.ndarray:
         """Columns of an effect the prediction is linear in, thinned (T, C, p).

@@ -85,6 +85,16 @@ class Lost(Slider):
         return np.full(len(log["t"]), np.nan)
 
 
+class Away(Slider):
+    def predict(self, log, values):
+        return np.full(len(log["t"]), 1e308)
+
+
+class Exits(Slider):
+    def predict(self, log, values):
+        raise SystemExit("bye")
+
+
 class Writes(Slider):
     def predict(self, log, values):
         log["x"][0] = 0.0
@@ -97,6 +107,8 @@ class Writes(Slider):
         (Raises, "Raises.predict raised KeyError on fit_1"),
         (Short, r"Short.predict returned an array of shape \(3, 1\)"),
         (Lost, "Lost.predict is not finite"),
+        (Away, "Away.predict is not finite, or huge,"),
+        (Exits, "Exits.predict raised SystemExit on fit_1: bye"),
         (Writes, "Writes.predict raised ValueError"),
     ],
 )
