@@ -33,7 +33,8 @@ class CommandParser(argparse.ArgumentParser):
         """
         raise CaretreeError(f"{message} (see {self.prog} --help)")
 
-    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+    # argparse's own is overloaded by what its namespace may be
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         """As argparse's; what nobody knows is told with the help of the command that it was given to.
 
         Raises:

@@ -246,9 +246,7 @@ def build_parser(command: str = "") -> argparse.ArgumentParser:
     return parser
 
 
-def _of_record(
-    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, what: str
-) -> argparse.ArgumentParser:
+def _of_record(commands: argparse._SubParsersAction[CommandParser], name: str, what: str) -> CommandParser:
     """The parser of a command on one record."""
     parser = commands.add_parser(name, help=what, description=f"{what[0].upper()}{what[1:]}.")
     parser.add_argument("directory", metavar="DIR", help="folder of the record, with run.json in it")
