@@ -11,7 +11,7 @@ import numpy as np
 from ..perception.errors import PerceptionFailure
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SensorLost
-from .belief.lying_sleeves import lying_sleeves
+from .belief.lying_sleeves import lying_sleeves, remember_laid
 from .control.base import drive_to
 from .control.draw_across import DrawAcrossTuning, draw_across
 from .control.hands import hand_now
@@ -110,6 +110,7 @@ class LayGown(Skill):
             neckline.lower = NEAR_HAND
             yield from self._lay_down(neckline)
             yield from self._near_stands()
+        remember_laid(self.context)
         yield from leave_gown(self, tuning.leave)
 
     def _lay_down(self, neckline: HeldNeckline) -> Iterator[None]:

@@ -11,7 +11,7 @@ from caretree.sim.robot import model
 from caretree.sim.robot.baxter import BAXTER
 from caretree.sim.scripted.world import ScriptedWorld, scripted_room
 from caretree.sim.world import SIDES
-from caretree.skills.belief.lying_sleeves import lying_sleeves
+from caretree.skills.belief.lying_sleeves import laid_here, lying_sleeves
 from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
 from caretree.skills.lay_gown import LayGown
@@ -152,6 +152,7 @@ def test_it_is_remembered_whether_the_near_sleeve_stands(stands, lying):
     skills = []
     let_go_at(armhole(STRAIGHT_AT), stands=stands, skills=skills)
     assert lying_sleeves(skills[0].context) == lying
+    assert laid_here(skills[0].context)
 
 
 def test_how_a_gown_lay_before_is_forgotten():

@@ -29,7 +29,7 @@ from .check_over_hand import CheckOverHand as CheckOverHand
 from .check_worn import CheckWorn as CheckWorn
 from .draw_flat import DrawFlat as DrawFlat
 from .draw_over import DrawOver as DrawOver
-from .dress import dress, dressed_anew, right_sleeve_stands
+from .dress import dress, dressed_anew, laid_by_others, right_sleeve_stands
 from .lay import holds_gown, is_down, lay
 from .let_gown_go import LetGownGo as LetGownGo
 from .look_at_collar import LookAtCollar as LookAtCollar
@@ -56,6 +56,7 @@ CONDITIONS = (
     holds_gown,
     holds_gown_with,
     is_down,
+    laid_by_others,
     outside_out,
     none_seen_beside,
     none_seen_low,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import SIDES, Side
-from ....skills.belief.lying_sleeves import lying_sleeves
+from ....skills.belief.lying_sleeves import laid_here, lying_sleeves
 from ....skills.core.context import Context
 from ....skills.core.scope import Scope
 from ....skills.look_at_person import LookAtPerson
@@ -50,7 +50,7 @@ def right_then_left(context: Context, bed: Scope) -> Behaviour:
     return sequence(
         "right, then left",
         Navigate("go to the right side", bed, goal="bed_right"),
-        unless_worn(
+        asked_first(
             arm_scope(context, "right so far", "right"),
             dress_arm(
                 context,
@@ -68,7 +68,7 @@ def right_then_left(context: Context, bed: Scope) -> Behaviour:
         # not before the other sleeve is gone from this side: its strap was taken for that of the first one (147)
         not_slipped(arm_scope(context, "first sleeve", "right"), DRESSING.first_sleeve_up, pulls=1),
         Navigate("go round to the left side", bed, goal="bed_left"),
-        unless_worn(
+        asked_first(
             arm_scope(context, "left so far", "left"),
             at_hand(arm_scope(context, "second sleeve", "left")),
             dress_arm(context, "left", SECOND_SLEEVE),
@@ -120,15 +120,28 @@ def on_their_arms(context: Context, seen: str, dressed: str) -> Behaviour:
 
     def on_its_arm(side: Side) -> Behaviour:
         beside = arm_scope(context, f"{side} {seen}", side)
+        on = sequence(f"the {side} sleeve on it", *seen_worn(beside))
         arm = dress_arm(context, side, SECOND_SLEEVE, name=f"{side} {dressed}")
+        rest = sequence(f"the {side} arm", at_hand(beside), arm)
         go = Navigate("go and see it", beside, goal=f"bed_{side}")
-        return sequence(f"the {side} arm in its sleeve", go, unless_worn(beside, at_hand(beside), arm))
+        return sequence(f"the {side} arm in its sleeve", go, fallback(f"the {side} arm dressed", on, rest))
 
     return sequence("both arms in their sleeves", *(on_its_arm(side) for side in SIDES))
 
 
-def unless_worn(beside: Scope, *dressing: Behaviour) -> Behaviour:
-    """Dress an arm that is not seen in its sleeve from beside it; lifted inside it, the arm is taken out again (0)."""
-    side = beside["side"]
-    on = sequence(f"the {side} sleeve on it", LookAtPerson("look", beside), worn_already(beside))
+def asked_first(so_far: Scope, *dressing: Behaviour) -> Behaviour:
+    """Dress an arm unless it is seen in its sleeve, of which nobody is asked where this run has laid the gown."""
+    side = so_far["side"]
+    asked = Condition(f"the {side} arm may be dressed", laid_by_others)
+    on = sequence(f"the {side} sleeve on it", asked, *seen_worn(so_far))
     return fallback(f"the {side} arm dressed", on, sequence(f"the {side} arm", *dressing))
+
+
+def laid_by_others(context: Context) -> bool:
+    """The gown was not laid in this run: whoever laid it may have dressed an arm, which is not to be lifted then."""
+    return not laid_here(context)
+
+
+def seen_worn(beside: Scope) -> list[Behaviour]:
+    """See from beside an arm that it is in its sleeve."""
+    return [LookAtPerson("look", beside), worn_already(beside)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills import CarrySleeve, CheckSleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat, StretchNeckline
-from caretree.skills.belief.lying_sleeves import lying_sleeves
+from caretree.skills.belief.lying_sleeves import lying_sleeves, remember_laid
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
 from caretree.trees.nodes.decorators import RecoverBy
@@ -173,8 +173,8 @@ def test_a_sleeve_that_is_still_held_is_laid_back_unless_the_person_has_moved(no
             assert laid == ([] if reason is Reason.PERSON_MOVED else [f"{side} arm/again/lay it back"])
 
 
-@pytest.mark.parametrize("worn", ["left", "right"])
-def test_an_arm_that_is_in_its_sleeve_when_the_run_begins_is_not_lifted(monkeypatch, worn):
+@pytest.mark.parametrize(("worn", "laid"), [("left", False), ("right", False), ("right", True)])
+def test_an_arm_that_is_in_its_sleeve_when_the_run_begins_is_not_lifted(monkeypatch, worn, laid):
     task, lifts = load_task("dressing"), []
 
     def told(progress):
@@ -191,8 +191,11 @@ def test_an_arm_that_is_in_its_sleeve_when_the_run_begins_is_not_lifted(monkeypa
 
     monkeypatch.setattr(senses, "worn_sleeve", worn_sleeve)
     run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    if laid:
+        remember_laid(run.context)
     assert run.run().outcome == "success"
-    assert lifts == [f"{'left' if worn == 'right' else 'right'} arm/lift"]
+    other = "left" if worn == "right" else "right"
+    assert lifts == (["right arm/lift", "left arm/lift"] if laid else [f"{other} arm/lift"])
 
 
 @pytest.mark.parametrize("leaf", ["right arm/lift", "right arm/pull over the hand"])
