@@ -1,4 +1,4 @@
-"""A gown that was laid on the person: whether in this run, and which of its sleeves do not stand, to go on first or last."""
+"""A gown that was laid on the person: whether in this run, and which of its sleeves do not stand."""
 
 from __future__ import annotations
 
