@@ -6,7 +6,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from ...sim.command_line import at_least_one
+from ...sim.command_line import RATES, at_least_one
 from ...sim.errors import CaretreeError, RecordError
 from ...sim.extras import need
 from ...sim.log.episode import Episode, episode_of
@@ -28,10 +28,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         "--out", required=True, metavar="DIR", help="folder of the dataset, which must not be there yet"
     )
-    parser.add_argument("--fps", type=at_least_one, default=RATE, metavar="N", help=f"rows a second (default: {RATE})")
+    parser.add_argument("--fps", type=_rows, default=RATE, metavar="N", help=f"rows a second (default: {RATE})")
     parser.add_argument("--task", metavar="TEXT", help="what they do, in words (default: the name of the task)")
     parser.add_argument("--camera", action="append", metavar="NAME", help="this camera alone; can be given again")
     parser.set_defaults(main=main)
+
+
+def _rows(text: str) -> int:
+    """Rows a second, whole, and no more than a log has."""
+    rows = at_least_one(text)
+    if rows > RATES[1]:
+        raise argparse.ArgumentTypeError(f"{text!r}, but at most {RATES[1]:g} rows a second are asked for")
+    return rows
 
 
 def main(options: argparse.Namespace) -> int:

@@ -52,6 +52,7 @@ def test_rate_words_and_cameras_are_chosen():
         (("two", "--out", "d"), "two has a.mcap, b.mcap: one is asked for"),
         (("no.mcap", "--out", "d"), "no.mcap: no such file"),
         (("a", "--out", "d", "--fps", "0"), "--fps"),
+        (("a", "--out", "d", "--fps", "100000"), "at most 1000 rows"),
         (("a", "--out", "d", "--camera", "left_hand"), "a/log.mcap has no pictures of 'left_hand', but of head"),
         (("a", "--out", "a"), "a is there already"),
         (("a",), "--out"),
