@@ -31,6 +31,7 @@ def test_wave_is_proven_for_them_too(capsys):
     assert "wave holds" in capsys.readouterr().out
 
 
+@pytest.mark.no_cover  # counting lines doubles its time
 def test_the_dressing_is_proven_for_them_and_succeeds_on_its_scripted_world(capsys):
     assert main(["check", "dressing", "--robot", "ur5-pair"]) == 0
     said = capsys.readouterr().out
