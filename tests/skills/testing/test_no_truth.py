@@ -120,6 +120,7 @@ NOT_ACTING = (
         for name in (
             "draw_blanket/rehearsal",
             "draw_blanket/room",
+            "dressing/rehearsal",
             "hand_towel/room",
             "undress/rehearsal",
             "undress/room",
@@ -158,17 +159,25 @@ GRANTED = {
     "trees/tasks/__init__.py": [  # lists the tasks that there are
         "pkgutil is not among the libraries that are known to be harmless"
     ],
+    "trees/tasks/draw_blanket/__init__.py": [  # offers a world to rehearse on
+        "caretree.trees.tasks.draw_blanket.rehearsal may know the truth",
+    ],
     "trees/tasks/dressing/__init__.py": [  # offers a world to rehearse on
-        "caretree.skills.scripted.rehearsal may know the truth",
-        "caretree.skills.scripted.scripted_senses may know the truth",
+        "caretree.trees.tasks.dressing.rehearsal may know the truth",
     ],
     "trees/tasks/hand_towel/__init__.py": [  # offers a world to rehearse on
         "caretree.skills.scripted.rehearsal may know the truth",
         "caretree.skills.scripted.scripted_senses may know the truth",
     ],
+    "trees/tasks/undress/__init__.py": [  # offers a world to rehearse on
+        "caretree.trees.tasks.undress.rehearsal may know the truth",
+    ],
     "trees/tasks/wash_arm/__init__.py": [  # offers a world to rehearse on
         "caretree.skills.scripted.rehearsal may know the truth",
         "caretree.skills.scripted.scripted_senses may know the truth",
+    ],
+    "trees/tasks/wipe_forearm/__init__.py": [  # offers a world to rehearse on
+        "caretree.trees.tasks.wipe_forearm.rehearsal may know the truth",
     ],
 }
 FILES = sorted(

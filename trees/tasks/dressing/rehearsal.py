@@ -9,7 +9,6 @@ import numpy as np
 from ....perception.errors import PerceptionFailure, Problem
 from ....perception.estimates import ArmPosture, WornSleeve
 from ....sim.mechanics.robot_model import RobotModel
-from ....sim.scene.initial_state import InitialState
 from ....sim.world import SIDES, Frame, Side, World
 from ....skills.scripted.rehearsal import RehearsalWorld
 from ....skills.scripted.scripted_person import lying_arm
@@ -17,6 +16,7 @@ from ....skills.scripted.scripted_senses import Proprioception, ScriptedSenses
 
 AT_SHOULDER = 0.25  # from a shoulder, within which a strap that is held has drawn the sleeve up [m]
 BESIDE_HAND = 0.2  # from the fingertips, within which the sleeve of a strap that is held is off the arm [m]
+WORN = ("gown_worn", "gown_dressed")  # initial states
 STRAP = 0.02  # between the fingertips, at most, of a hand that holds a strap and not an arm [m]
 
 
@@ -62,7 +62,7 @@ class GownScript(ScriptedSenses):
 
     def _worn(self) -> set[Side]:
         begun = self._world.initial_state if isinstance(self._world, _Begins) else None
-        return set(SIDES) if begun in (InitialState.GOWN_WORN, InitialState.GOWN_DRESSED) else self._drawn_up
+        return set(SIDES) if begun in WORN else self._drawn_up
 
 
 def scripted(seed: int, robot: RobotModel | None = None) -> tuple[World, ScriptedSenses]:
