@@ -141,6 +141,12 @@ def make_record() -> Callable[..., Path]:
     return make
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]):
+    """Files with tests that take minutes come first, so that in the end no worker waits for another one's long test."""
+    long = {item.path for item in items if item.get_closest_marker("no_cover")}
+    items.sort(key=lambda item: item.path not in long)
+
+
 @pytest.fixture(autouse=True, scope="session")
 def signals_of_a_terminal():
     """In the background of a script, or under nohup, SIGINT or SIGHUP are ignored, by the product too.
