@@ -131,8 +131,10 @@ class _StandIns:
 
 
 def mass_twins(block: Block) -> tuple[str, ...]:
-    """Effects with exactly the columns of a recalibrated axis mass."""
-    return tuple(sorted({*AXIS_IS_MASS, "payload"})) if block.key == ("mass", "axis") else ()
+    """Effects with exactly the columns of an axis's recalibrated mass, or of what it takes up."""
+    if block.body != "axis" or block.name not in ("mass", "payload"):
+        return ()
+    return tuple(sorted({*AXIS_IS_MASS, "payload"} - {block.name}))
 
 
 def experiments(model: RigidModel, log: JointLog) -> dict[str, JointLog]:

@@ -14,6 +14,7 @@ from .rigid import BodyTerm, RigidModel
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOTIONS_KEPT = 8  # of which the regressor is remembered
+MOMENTS = tuple(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz")
 MASS_DEVIATION = 0.1  # a link mass in a URDF is usually right to a tenth
 
 
@@ -122,17 +123,8 @@ class ArmModel(RigidModel):
             for i in range(1, n - 1)
             if self.model.inertias[i].mass > 1e-3
         ]
-        com = tuple(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz")
         last = self.model.names[n - 1]
-        terms.append(
-            BodyTerm(
-                name="payload",
-                target=last,
-                recalibration=False,
-                shape={},
-                parameters=(Parameter(name="mass", unit="kg", lower=0.0), *com),
-            )
-        )
+        terms.append(self.payload)
         if self.tool is not None:
             terms.append(
                 BodyTerm(
@@ -152,11 +144,22 @@ class ArmModel(RigidModel):
                     shape={},
                     parameters=(
                         Parameter(name="mass", unit="kg", lower=-self.model.inertias[n - 1].mass, upper=0.0),
-                        *com,
+                        *MOMENTS,
                     ),
                 )
             )
         return terms
+
+    @property
+    def payload(self) -> BodyTerm:
+        """A point mass on the last link, at a centre of its own."""
+        return BodyTerm(
+            name="payload",
+            target=self.model.names[self.model.njoints - 1],
+            recalibration=False,
+            shape={},
+            parameters=(Parameter(name="mass", unit="kg", lower=0.0), *MOMENTS),
+        )
 
     def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Torque per unit of each parameter, (T, n, p).
@@ -222,7 +225,7 @@ class ArmModel(RigidModel):
     def moments(self, term: BodyTerm, values: dict[str, float]) -> dict[str, float]:
         """Mass and first moments of a payload or tool change; a scaled tool brings the URDF tool's own centre."""
         if "mass_com_x" in values or self.tool is None:
-            return {"mass": values["mass"], **{f"mass_com_{a}": values.get(f"mass_com_{a}", 0.0) for a in "xyz"}}
+            return super().moments(term, values)
         return {
             "mass": values["mass"],
             **{f"mass_com_{a}": float(values["mass"] * c) for a, c in zip("xyz", self.tool.lever, strict=True)},

@@ -48,6 +48,17 @@ class AxisModel(RigidModel):
             )
         ]
 
+    @property
+    def payload(self) -> BodyTerm:
+        """Mass on the mass; no term of its own, as the log cannot tell the two apart unless it changes."""
+        return BodyTerm(
+            name="payload",
+            target="axis",
+            recalibration=False,
+            shape={},
+            parameters=(Parameter(name="mass", unit="kg"),),
+        )
+
     def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Acceleration, (T, 1, 1)."""
         return ddq[:, :, None]

@@ -113,6 +113,12 @@ def farther(before: list[np.ndarray], after: list[np.ndarray], noise: np.ndarray
     return bool(a.sum() > b.sum() or weight @ a > weight @ b)
 
 
+def louder(heldout: list[np.ndarray], fitted: list[np.ndarray]) -> bool:
+    """Whether some channel of what is left (T, C) is more in logs held out than in the worst one fitted to."""
+    worst = np.max([np.mean(x**2, axis=0) for x in fitted], axis=0)
+    return bool(np.any(np.mean(np.concatenate(heldout) ** 2, axis=0) > worst))
+
+
 def inadequacy(named: Named, outcome: Outcome, alpha: float) -> float:
     """p-value of the model as given over every effect tried, or of what the effects leave, if that is smaller."""
     search = named.search

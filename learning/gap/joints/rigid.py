@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....sim.effects.effect import Parameter
+from ....sim.effects.joint.link_inertia import BODY_PARAMETERS
 
 Spell = tuple[float, float]  # from when, to before when [s of the recording's clock]
 
@@ -84,6 +85,11 @@ class RigidModel(abc.ABC):
     def body_terms(self) -> list[BodyTerm]:
         """Changes to the bodies that the search may propose."""
 
+    @property
+    @abc.abstractmethod
+    def payload(self) -> BodyTerm:
+        """What the last body may carry beside its own mass, and take up or put down."""
+
     @abc.abstractmethod
     def body_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Change of the joint loads per unit of each parameter of `term`, (T, n, p)."""
@@ -91,6 +97,10 @@ class RigidModel(abc.ABC):
     @abc.abstractmethod
     def patched(self, term: BodyTerm, values: dict[str, float]) -> RigidModel:
         """The model with a body term applied."""
+
+    def moments(self, term: BodyTerm, values: dict[str, float]) -> dict[str, float]:
+        """Mass [kg] and first moments [kg m] of a payload or tool, as a model file has them; none of these without."""
+        return {p.name: values.get(p.name, 0.0) for p in BODY_PARAMETERS}
 
     @abc.abstractmethod
     def with_armature(self, joint: int, inertia: float) -> RigidModel:

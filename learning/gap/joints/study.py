@@ -23,7 +23,7 @@ from .intervals import Intervals, intervals, value_within
 from .localise import places
 from .log import JointLog, read_logs
 from .opening import check_load, columns_of, rigid_model
-from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, makes_worse, unexplained
+from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, louder, makes_worse, unexplained
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .payloads.solid import with_solid_body
 from .placebo import placebos
@@ -90,8 +90,9 @@ class JointStudy(Study):
             known, blocks = told_in(named.carried, fit, self.heldout)
             named = replace(named, carried=known, blocks=blocks)
             constant = confident(constant, self.fitted)
-            left = [unexplained(n, self.heldout) for n in (constant, named)]
-            named = constant if farther(left[0], left[1], named.noise.rms) else named
+            before, after = (unexplained(n, self.heldout) for n in (constant, named))
+            worse = farther(before, after, named.noise.rms) and louder(after, unexplained(named, self.fitted))
+            named = constant if worse else named
         if not named.chosen or not makes_worse(named, self.heldout):
             return named, ""
         worse = " and ".join(f"{b.name} on {b.target}" for b in named.blocks) if self._pays(named) else ""
@@ -208,7 +209,7 @@ class JointStudy(Study):
 
         It tells why effects do not hold on logs held out; nothing of it is added to the model.
         """
-        if self.outcome.verdict != "unknown" or self.named.carried or not isinstance(self.model, ArmModel):
+        if self.outcome.verdict != "unknown" or self.named.carried:
             return None
         named = name_effects(self.model, [*self.fitted, *self.heldout], self.measured.system)
         return named if named.carried else None
@@ -286,7 +287,7 @@ class JointStudy(Study):
                 continue
             values = {p.name: float(v) for p, v in zip(block.parameters, self.named.theta[at : at + n], strict=True)}
             at += n
-            if block.term is not None and not block.recalibration and isinstance(self.model, ArmModel):
+            if block.term is not None and not block.recalibration:
                 values = self.model.moments(block.term, values)
             elif block.term is None:
                 values |= block.shape

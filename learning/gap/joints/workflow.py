@@ -12,7 +12,7 @@ from .gram import Gram, assemble, exchange
 from .lag import lagged
 from .log import JointLog
 from .noise import NoiseModel, estimate_noise, repeat_difference
-from .payloads.carried import PAYLOAD, Carried, Fit, alike, asked_again, with_payloads
+from .payloads.carried import MASS, Carried, Fit, alike, asked_again, with_payloads
 from .payloads.cells import carried
 from .refine import refined
 from .rigid import RigidModel
@@ -112,7 +112,7 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
     blocks = effect_blocks(model, logs, system)
     noise = first_noise(blocks, logs)
     gram = assemble(blocks, logs)
-    found = _payloads(gram, noise, logs)
+    found = _payloads(gram, noise, model, logs)
     named = _settled(gram, noise, model, logs, strict)
     if found is None:
         return named
@@ -135,11 +135,12 @@ def name_effects(model: RigidModel, logs: list[JointLog], system: str, strict: f
     return named
 
 
-def _payloads(gram: Gram, noise: NoiseModel, logs: list[JointLog]) -> Carried | None:
-    """The payloads of an arm, where they change."""
+def _payloads(gram: Gram, noise: NoiseModel, model: RigidModel, logs: list[JointLog]) -> Carried | None:
+    """The payloads, where they change; an axis has a mass alone, with which a payload that does not change is one."""
     at = {id(b): i for i, b in enumerate(gram.blocks)}
     base = sorted(at[id(b)] for b in one_shape_each(gram.blocks))
-    payload = next((i for i in base if gram.blocks[i].name == PAYLOAD), None)
+    alike = {(model.payload.target, name) for name in (model.payload.name, MASS)}
+    payload = next((i for i in base if (gram.blocks[i].body, gram.blocks[i].name) in alike), None)
     return None if payload is None else carried(Search(gram=gram, noise=noise), base, payload, logs)
 
 

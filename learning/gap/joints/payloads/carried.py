@@ -18,10 +18,9 @@ from ..search import Search
 from ..thresholds import MATERIAL
 from .course import LEAST, Span, during_of, lengths, told
 
-PAYLOAD = "payload"
+MASS = "mass"  # of a body, one of the model's own numbers
 RIDGE = 1e-6  # of a column's own square: what the registry says twice is shared out
 DIFFERENT = 0.01  # chance that two payloads that are one are taken for two
-NUMBERS = 5  # a payload has four, and its change a time
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,12 +88,13 @@ def _fused(spells: list[Spell]) -> tuple[Spell, ...]:
 def with_payloads(blocks: list[Block], found: Carried, model: RigidModel) -> list[Block]:
     """Blocks in which every payload has its own, which may be lighter than what the model carries already.
 
-    A wrong tool is what is carried all the time and left out: what it would say, every payload says.
+    A wrong tool is what is carried all the time and left out: what it would say, every payload says.  Where the mass of
+    the body that carries them is asked for as well, that is with what is carried at first, and payloads are beside it.
     """
-    term = next(b.term for b in blocks if b.name == PAYLOAD and b.term is not None)
-    free = tuple(replace(p, lower=-np.inf) for p in term.parameters)
+    free = tuple(replace(p, lower=-np.inf) for p in model.payload.parameters)
     rest = [b for b in blocks if b.name not in BODY_TERMS]
-    return [*rest, *(body_block(replace(term, parameters=free, during=d), model) for d in found.during)]
+    told = found.during[1:] if any(b.key == (MASS, model.payload.target) for b in rest) else found.during
+    return [*rest, *(body_block(replace(model.payload, parameters=free, during=d), model) for d in told)]
 
 
 def alike(found: Carried, search: Search, chosen: Sequence[int]) -> tuple[int, int] | None:
@@ -129,8 +129,8 @@ def _misfit(search: Search, columns: np.ndarray, tie: np.ndarray) -> float:
     return float(search.rows @ np.log(np.maximum(rss, 1e-12 * search.yyc + 1e-30)))
 
 
-def indistinct(search: Search, widening: float, numbers: int = NUMBERS - 1) -> float:
-    """What two payloads have to gain on one."""
+def indistinct(search: Search, widening: float, numbers: int) -> float:
+    """What two payloads have to gain on one, if they differ in so many numbers."""
     sure = float(chi2.isf(DIFFERENT, numbers)) * widening
     return max(sure, numbers * MATERIAL**2 * float(search.rows.mean()))
 

@@ -17,7 +17,7 @@ from scipy.stats import chi2
 from ..log import JointLog
 from ..search import Search
 from ..thresholds import ALPHA, MATERIAL
-from .carried import NUMBERS, Carried, indistinct, inverse
+from .carried import Carried, indistinct, inverse
 from .course import LEAST, Span, during_of, lengths, told
 
 CELL = 0.5  # [s]
@@ -32,7 +32,7 @@ def carried(search: Search, base: Sequence[int], payload: int, logs: list[JointL
     Args:
         search: over all blocks of the logs, none of which knows of a change.
         base: indices of the blocks fitted beside, in order, `payload` among them.
-        payload: index of the payload's block.
+        payload: index of the block that is the payload, or like it while nothing changes.
         logs: what to look at, in order.
     """
     cells = _Cells(search, base, payload, logs)
@@ -82,8 +82,9 @@ class _Cells:
         wide = float(search.widening[payload])
         self.place = float(chi2.isf(ALPHA / len(self._log), 1)) * wide
         material = MATERIAL**2 * float(search.rows.mean())  # what a number has to explain, however sure it is
-        self._price = max(chi2.isf(ALPHA / len(self._log), NUMBERS) * wide, NUMBERS * material)
-        self._same = indistinct(search, wide)
+        numbers = k + 1  # its own, and a time
+        self._price = max(chi2.isf(ALPHA / len(self._log), numbers) * wide, numbers * material)
+        self._same = indistinct(search, wide, k)
 
     def _take(self, c: int) -> list[np.ndarray]:
         """Columns of one channel, (T, K) per log, and their products into the cells."""

@@ -29,6 +29,8 @@ def lengths(every: list[list[Span]], logs: list[JointLog], state: int) -> list[f
 def told(log: JointLog, left: np.ndarray, loads: np.ndarray, weight: np.ndarray, price: float) -> list[Span]:
     """Which of some loads acts when in one recording: the likeliest course, every change for a price.
 
+    What is over within `LEAST` is part of a change.
+
     Args:
         log: of the recording.
         left: (T, C) residual without any of the loads.
@@ -51,7 +53,20 @@ def told(log: JointLog, left: np.ndarray, loads: np.ndarray, weight: np.ndarray,
         if i == 0 or before != state:
             out.append((state, i, stop))
             state, stop = before, i
-    return _placed(log, out[::-1], left, loads, weight)
+    return _placed(log, _lasting(out[::-1], log.dt), left, loads, weight)
+
+
+def _lasting(spans: list[Span], dt: float) -> list[Span]:
+    """Spans without those that are over too soon, in whose place what was before goes on, or what comes at first."""
+    out: list[Span] = []
+    for state, a, b in spans:
+        if out and (out[-1][0] == state or (b - a) * dt < LEAST):
+            out[-1] = (out[-1][0], out[-1][1], b)
+        elif out and (out[0][2] - out[0][1]) * dt < LEAST:  # only the first can be that short
+            out[0] = (state, out[0][1], b)
+        else:
+            out.append((state, a, b))
+    return out
 
 
 def _placed(log: JointLog, spans: list[Span], left: np.ndarray, loads: np.ndarray, weight: np.ndarray) -> list[Span]:

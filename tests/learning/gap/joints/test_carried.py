@@ -63,6 +63,23 @@ def test_a_payload_that_stays_is_one(tmp_path):
     assert verdict.effects[0].when == ()
 
 
+def test_what_a_mass_on_a_rail_takes_up_half_way_is_told_beside_friction_and_is_in_its_model(axis_set, tmp_path):
+    later = np.arange(800) >= 330  # rows of 10 ms
+    study = open_study(load_set(axis_set(lambda q, v, a: 4.0 * a * later + 2.0 * np.sign(v), noise=0.05)))
+    verdict = study.conclude()
+    assert verdict.verdict == "effects"
+    assert {f.name for f in verdict.effects} == {"coulomb_friction", "payload"}
+    payload = next(f for f in verdict.effects if f.name == "payload")
+    (mass,) = payload.parameters
+    assert payload.equivalent == ("armature", "gain_error")
+    assert mass.value == pytest.approx(4.0, abs=0.1)
+    told = [(c.episode, round(c.t, 1), round(c.after)) for c in verdict.changes]
+    assert told == [("e0", 3.3, 4), ("e1", 3.3, 4), ("e2", 3.3, 4)]
+    save_model(tmp_path / "model.yaml", study.patch())
+    held = load_model(tmp_path / "model.yaml").effects
+    assert [e.parameters["mass"] for e in held if e.name == "payload"] == [mass.value]
+
+
 def test_a_payload_exchanged_after_the_fitted_recording_is_said_and_not_added(tmp_path):
     study = arm_set(tmp_path, [[(0.0, 1.0)], [(0.0, 1.0), (8.0, 3.0)]])
     verdict = study.conclude()

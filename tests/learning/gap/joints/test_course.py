@@ -39,6 +39,14 @@ def test_a_load_that_comes_and_goes_is_told_to_the_row():
     assert abs(end - 13.0) <= 0.1
 
 
+def test_what_is_over_at_once_is_no_load_of_its_own():
+    a = log()
+    left = np.zeros((len(T[a.inner]), 1))
+    left[:20], left[200:220] = 1.0, 1.0  # one second each
+    spans = told(a, left, np.stack([0.0 * left, 0.0 * left + 1.0]), np.ones(1), 5.0)
+    assert spans == [(0, 0, len(left))]
+
+
 def test_what_is_worth_less_than_its_price_is_no_change():
     a = log()
     left = np.zeros((len(T[a.inner]), 1))
