@@ -40,6 +40,7 @@ class JointLog:
         slow: (n,) speed below which the sign of the velocity is not known.
         trim: rows at either end that the filters spoil.
         step: samples recorded per row.
+        left_out: (T,) rows that say nothing; None where all count.
     """
 
     name: str
@@ -57,11 +58,13 @@ class JointLog:
     slow: np.ndarray
     trim: int
     step: int = 1
+    left_out: np.ndarray | None = None
 
-    @property
-    def inner(self) -> slice:
-        """Rows the filters left sound."""
-        return slice(self.trim, len(self.t) - self.trim)
+    @cached_property
+    def inner(self) -> slice | np.ndarray:
+        """Rows the filters left sound, without those that are left out."""
+        rows = slice(self.trim, len(self.t) - self.trim)
+        return rows if self.left_out is None else np.arange(len(self.t))[rows][~self.left_out[rows]]
 
     def motion(self, joint: int) -> JointMotion:
         """The motion of one joint, before the shared filter."""

@@ -27,6 +27,7 @@ from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, louder, make
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .payloads.solid import with_solid_body
 from .placebo import placebos
+from .rests import has_dry_friction, moving, rested
 from .rigid import RigidModel
 from .rivals import Unsearched, beside, determined, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
@@ -47,8 +48,7 @@ class JointStudy(Study):
         check_load(self.measured, columns, model)
         logs = read_logs(list(self.measured.episodes), columns, model)
         if isinstance(model, AxisModel) and not model.mass_known:
-            fit = [log for log in logs if log.role != "heldout"]
-            model = AxisModel(_start_mass(fit))
+            model = AxisModel(_start_mass(_but_held_out(logs)))
             self.notes.append(
                 f"No mass was given; {model.mass:.4g} kg fits this log best and stands for the model's own."
             )
@@ -63,12 +63,27 @@ class JointStudy(Study):
     @property
     def fitted(self) -> list[JointLog]:
         """Logs that parameters may be fitted to."""
-        return [log for log in self._logs[1] if log.role != "heldout"]
+        return _but_held_out(self._used[0])
 
     @property
     def heldout(self) -> list[JointLog]:
         """Logs kept for the comparison."""
-        return [log for log in self._logs[1] if log.role == "heldout"]
+        return [log for log in self._used[0] if log.role == "heldout"]
+
+    @cached_property
+    def _used(self) -> tuple[list[JointLog], Named]:
+        """The logs, without rests where what moves has dry friction, and what the search names."""
+        model, logs = self._logs
+        moved = [moving(log) for log in logs]
+        if any(m is not log for m, log in zip(moved, logs, strict=True)):
+            named = name_effects(model, _but_held_out(moved), self.measured.system)
+            if has_dry_friction(named.blocks):
+                self.notes.append(
+                    f"{rested(moved):.3g} s in which nothing moves are left out, as dry friction may be anything up to its "
+                    "level there."
+                )
+                return moved, named
+        return logs, name_effects(model, _but_held_out(logs), self.measured.system)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -83,7 +98,7 @@ class JointStudy(Study):
     @cached_property
     def _searched(self) -> tuple[Named, str]:
         """The search's result, and what it had named where that made the held-out logs worse and was given up."""
-        named = confident(name_effects(self.model, self.fitted, self.measured.system), self.fitted)
+        named = confident(self._used[1], self.fitted)
         constant = named.constant
         if named.carried and constant:
             fit = Fit(blocks=named.blocks, theta=named.theta, weight=named.search.weight, model=self.model)
@@ -104,7 +119,7 @@ class JointStudy(Study):
         What does neither was chance in those fitted, and nothing is missing for it.
         """
         whole, price = tuple(range(len(named.blocks))), float(named.search.price[list(named.chosen)].sum())
-        for logs in (self._logs[1], self.heldout):
+        for logs in (self._used[0], self.heldout):
             search = Search(gram=assemble(list(named.blocks), logs), noise=named.noise)
             if search.rows @ (np.log(search.rss(())) - np.log(search.rss(whole))) > price:
                 return True
@@ -137,7 +152,7 @@ class JointStudy(Study):
         return (
             inadequacy(self.named, self.outcome, self.alpha),
             self.named.noise.source,
-            tuple(places(self.measured, self.model.joints, self._logs[1], self.named, self.outcome, self.channels)),
+            tuple(places(self.measured, self.model.joints, self._used[0], self.named, self.outcome, self.channels)),
         )
 
     def name(self) -> tuple[VerdictName, tuple[EffectFinding, ...], tuple[EffectFinding, ...], str]:
@@ -191,7 +206,7 @@ class JointStudy(Study):
         """In which stretches of which recordings it acts; () for all."""
         if block.term is None or block.term.during is None:
             return ()
-        during, ends = block.term.during, {log.name: log.t[[0, -1]] for log in self._logs[1]}
+        during, ends = block.term.during, {log.name: log.t[[0, -1]] for log in self._used[0]}
         return tuple(
             (name, float(max(a, start)), float(min(b, stop)))
             for name, (start, stop) in ends.items()
@@ -201,7 +216,7 @@ class JointStudy(Study):
     def changes(self) -> tuple[Change, ...]:
         """See `Study.changes`."""
         n = self._everywhere or self.named
-        return tuple(changes_of(n.carried, n.blocks, n.theta, [x.name for x in self._logs[1]])) if n.carried else ()
+        return tuple(changes_of(n.carried, n.blocks, n.theta, [x.name for x in self._used[0]])) if n.carried else ()
 
     @cached_property
     def _everywhere(self) -> Named | None:
@@ -222,7 +237,7 @@ class JointStudy(Study):
             return self.outcome.guess
         told = [f"{c.before:.2f} to {c.after:.2f} kg at {c.t:.1f} s of {c.episode}" for c in self.changes()]
         if not told:
-            begun = carried_at_first(n.carried, n.blocks, n.theta, [x.name for x in self._logs[1]])
+            begun = carried_at_first(n.carried, n.blocks, n.theta, [x.name for x in self._used[0]])
             told = [f"{mass:.2f} kg in {name}" for name, mass in begun]
         return f"the payload is not the same all the time ({', '.join(told)}); fit to recordings that have all of it"
 
@@ -385,6 +400,10 @@ class JointStudy(Study):
                 )
             )
         return out
+
+
+def _but_held_out(logs: list[JointLog]) -> list[JointLog]:
+    return [log for log in logs if log.role != "heldout"]
 
 
 def _start_mass(logs: list[JointLog]) -> float:
