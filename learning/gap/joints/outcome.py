@@ -9,10 +9,10 @@ from scipy.stats import chi2
 
 from ..findings import EffectFinding, Value, VerdictName
 from .block import Block
-from .events import Burst, burst_share, bursts, stands_out
 from .log import JointLog
-from .remainder import Remainder, leftover
-from .symbolic import guess
+from .remains.events import Burst, burst_share, bursts, stands_out
+from .remains.remainder import Remainder, leftover
+from .remains.symbolic import guess
 from .thresholds import BURST_SHARE, REMAINDER, REMAINDER_SIZE, TRANSFER
 from .workflow import Named, explained
 

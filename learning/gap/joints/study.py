@@ -79,8 +79,8 @@ class JointStudy(Study):
             named = name_effects(model, _but_held_out(moved), self.measured.system)
             if has_dry_friction(named.blocks):
                 self.notes.append(
-                    f"{rested(moved):.3g} s in which nothing moves are left out, as dry friction may be anything up to its "
-                    "level there."
+                    f"{rested(moved):.3g} s in which nothing moves are left out: dry friction may be anything "
+                    "up to its level there."
                 )
                 return moved, named
         return logs, name_effects(model, _but_held_out(logs), self.measured.system)

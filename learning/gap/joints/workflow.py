@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .block import Block, effect_blocks
-from .generic import generic_columns, scales
 from .gram import Gram, assemble, exchange
 from .lag import lagged
 from .log import JointLog
@@ -15,6 +14,7 @@ from .noise import NoiseModel, estimate_noise, repeat_difference
 from .payloads.carried import MASS, Carried, Fit, alike, asked_again, with_payloads
 from .payloads.cells import carried
 from .refine import refined
+from .remains.generic import generic_columns, scales
 from .rigid import RigidModel
 from .search import Search
 from .widen import widened

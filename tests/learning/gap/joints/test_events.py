@@ -1,5 +1,5 @@
 import numpy as np
-from caretree.learning.gap.joints.events import Burst, stands_out
+from caretree.learning.gap.joints.remains.events import Burst, stands_out
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.learning.gap.joints.log import JointLog
-from caretree.learning.gap.joints.remainder import leftover
+from caretree.learning.gap.joints.remains.remainder import leftover
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 

@@ -15,11 +15,11 @@ import numpy as np
 from scipy.stats import f as fisher
 from scipy.stats import t as student
 
-from .block import Block
+from ..block import Block
+from ..gram import fold_edges
+from ..log import JointLog
+from ..noise import autocorrelation, estimate_noise
 from .generic import clock_columns, generic_columns, other_columns, past_columns, place_columns, scales
-from .gram import fold_edges
-from .log import JointLog
-from .noise import autocorrelation, estimate_noise
 
 RIDGES = (1e-3, 1e-1, 3.0)
 WAVES = 60

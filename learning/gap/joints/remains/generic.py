@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .log import JointLog
+from ..log import JointLog
 
 FEATURES = 36
 

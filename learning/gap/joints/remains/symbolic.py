@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 
-from .log import JointLog
+from ..log import JointLog
 from .remainder import Remainder
 
 
@@ -68,7 +68,7 @@ def guess(logs: list[JointLog], left: list[np.ndarray], found: Remainder) -> str
 
 
 def _filtered(X: np.ndarray, logs: list[JointLog]) -> np.ndarray:
-    from ..smoothing import lowpass
+    from ...smoothing import lowpass
 
     at, out = 0, []
     for log in logs:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..regions import intervals
-from .log import JointLog
+from ...regions import intervals
+from ..log import JointLog
 
 SHORT = 0.3  # [s]
 LONGEST = 0.35  # a burst may last this part of an episode
