@@ -15,6 +15,7 @@ from collections.abc import Sequence
 
 from ..sim.command_line import CommandParser, answered, at_least_one, port, rate, seed
 from ..sim.errors import CaretreeError
+from ..sim.portable_blas import portable_blas
 
 SELF_PARSED = {
     "trials": (".commands.trials", "run many seeds and count successes, by stage and overall"),
@@ -274,6 +275,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without an accent must not end a run
+    portable_blas()
     gc.set_threshold(MADE_UNTIL_LOOKED_THROUGH)
     given = list(sys.argv[1:] if argv is None else argv)
     return answered("caretree", lambda: _dispatch(given), extra=EXTRAS.get(given[0]) if given else None)

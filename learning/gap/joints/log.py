@@ -12,13 +12,17 @@ from ....sim.effects.effect import JointEffect, JointMotion, Shape, Spread
 from ..errors import GapError
 from ..measurement import Episode
 from ..smoothing import bandwidth, derivative, lowpass, lowpass_both, resample
+from .readings import unsound
 from .rigid import RigidModel
 
 ROWS = 6000  # an episode is thinned to at most about this many rows
 FINE = 16  # rows per period of the cutoff where the log has as many: a sign, a threshold has to be met when it happens
 FEWEST = 10  # rows of an episode that the filters have to leave sound
 THINNED = 0.4  # cutoff of the filter a log is thinned through, over the rate of the rows
+OFF_SCALE = 0.02  # by which a speed may be larger or smaller than the slope of the position
+OFF_PHASE = 0.1  # [rad] by which it may be late at the motion's cutoff
 RINGING = 5e-4  # of the usual speed: the error of a smoothed speed where a motion starts or ends, 99 of 100 samples
+SMEARED = 0.75  # periods of the shared filter's cutoff by which one stretch reaches into the next
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
 
@@ -103,6 +107,17 @@ class JointLog:
             replace(m, t=t, **{name: table[:, j, k] for k, name in enumerate(names)}) for j, m in enumerate(motions)
         ]
 
+    def without(self, stretches: list[tuple[float, float]]) -> JointLog:
+        """The log without some stretches [s], and what the filters smear of them; as it is if too little is left."""
+        if not stretches:
+            return self
+        reach = SMEARED / self.cutoff
+        left_out = np.zeros(len(self.t), dtype=bool) if self.left_out is None else self.left_out.copy()
+        for a, b in stretches:
+            left_out |= (self.t >= a - reach) & (self.t <= b + reach)
+        out = replace(self, left_out=left_out)
+        return out if len(self.t[out.inner]) >= FEWEST else self
+
     def wide(self) -> JointLog:
         """The same log without the shared filter, to see what lies outside the motion's bandwidth."""
         return replace(self, name=f"{self.name}~", cutoff=float("inf"), residual=self.raw - self.rigid)
@@ -135,13 +150,17 @@ def _matrix(episode: Episode, names: tuple[str, ...]) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True)
 class _Raw:
-    """One episode on a uniform grid: arrays (T, n); `dq` is None where the file has no speeds."""
+    """One episode on a uniform grid: arrays (T, n); `dq` is None where the file has no speeds.
+
+    `unsound` are the stretches [s] in which the sensor of some load stands still or is cut off.
+    """
 
     t: np.ndarray
     dt: float
     q: np.ndarray
     load: np.ndarray
     dq: np.ndarray | None
+    unsound: list[tuple[float, float]]
 
 
 def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -> list[JointLog]:
@@ -163,7 +182,15 @@ def _resampled(episode: Episode, names: JointColumns) -> _Raw:
     if has_dq:
         parts.append(_matrix(episode, names.dq))
     t, table, dt = resample(episode.t, np.concatenate(parts, axis=1))
-    return _Raw(t=t, dt=dt, q=table[:, :n], load=table[:, n : 2 * n], dq=table[:, 2 * n :] if has_dq else None)
+    columns = [(episode.columns[q], episode.columns[load]) for q, load in zip(names.q, names.load, strict=True)]
+    return _Raw(
+        t=t,
+        dt=dt,
+        q=table[:, :n],
+        load=table[:, n : 2 * n],
+        dq=table[:, 2 * n :] if has_dq else None,
+        unsound=[span for q, load in columns for span in unsound(episode.t, q, load)],
+    )
 
 
 def _bandwidth_of(series: list[tuple[np.ndarray, float]]) -> tuple[float, np.ndarray]:
@@ -188,17 +215,26 @@ def _speed_noise(raw: list[_Raw], cut: float, noise_q: np.ndarray) -> tuple[np.n
     if len(speeds) < len(raw):
         return noise_v, np.zeros(len(noise_q), dtype=bool)
     sensor = _bandwidth_of([(dq, step) for _, dq, step in speeds])[1] * np.sqrt(2 * cut * dt)
-    agree = np.median([[_agree(q[:, j], dq[:, j], step) for j in range(dq.shape[1])] for q, dq, step in speeds], axis=0)
+    agree = np.median(
+        [[_agree(q[:, j], dq[:, j], step, cut) for j in range(dq.shape[1])] for q, dq, step in speeds], axis=0
+    )
     use_speed = (sensor < noise_v) & (agree > 0.98)
     return np.where(use_speed, sensor, noise_v), use_speed
 
 
-def _agree(q: np.ndarray, dq: np.ndarray, dt: float) -> float:
-    slope = np.gradient(q, dt)
+def _agree(q: np.ndarray, dq: np.ndarray, dt: float, cut: float) -> float:
+    """Correlation of a speed with the slope of the position within the motion's bandwidth; 0 where it is no such speed.
+
+    It is none where it is late, early, too large or too small by more than a little: then something between the two
+    would be called a delay, a friction or a mass.
+    """
+    slope, speed = (lowpass(x, dt, cut) for x in (np.gradient(q, dt), dq))
     if dq.std() == 0 or slope.std() == 0:
         return 1.0 if slope.std() == dq.std() else 0.0
-    scale = float(np.polyfit(lowpass(slope, dt, 0.05 / dt), lowpass(dq, dt, 0.05 / dt), 1)[0])
-    return float(np.corrcoef(lowpass(slope, dt, 0.05 / dt), lowpass(dq, dt, 0.05 / dt))[0, 1]) * (0.9 < scale < 1.1)
+    bend = np.gradient(slope, dt)
+    scale, late = np.linalg.lstsq(np.column_stack([slope, -bend, np.ones(len(q))]), speed, rcond=None)[0][:2]
+    phase = 2.0 * np.pi * cut * late
+    return float(np.corrcoef(slope, speed)[0, 1]) * bool(abs(scale - 1.0) < OFF_SCALE and abs(phase) < OFF_PHASE)
 
 
 def _prepare(
@@ -229,7 +265,7 @@ def _prepare(
             f"{episode.file}: rows 2 to {len(episode.t) + 1} last {t[-1] - t[0]:.3g} s, too short to be differentiated "
             f"at {shared:.3g} Hz, which this set's motion needs"
         )
-    return JointLog(
+    log = JointLog(
         name=episode.name,
         role=episode.role,
         t=t,
@@ -246,6 +282,7 @@ def _prepare(
         trim=trim,
         step=step,
     )
+    return log.without(raw.unsound)
 
 
 def spread(logs: list[JointLog], joint: int) -> Spread:

@@ -13,7 +13,7 @@ from .log import JointLog
 from .remains.events import Burst, burst_share, bursts, stands_out
 from .remains.remainder import Remainder, leftover
 from .remains.symbolic import guess
-from .thresholds import BURST_SHARE, REMAINDER, REMAINDER_SIZE, TRANSFER
+from .thresholds import BURST_SHARE, LEFT, REMAINDER, REMAINDER_SIZE, SHARE, TRANSFER
 from .workflow import Named, explained
 
 
@@ -55,6 +55,7 @@ def judge(
     unit: str,
     worse: str = "",
     model_error: np.ndarray | None = None,
+    doubts: str = "",
 ) -> Outcome:
     """Look at what the named effects leave and decide.
 
@@ -66,6 +67,7 @@ def judge(
         unit: of the load.
         worse: what had been named before the held-out logs were seen to be worse with it, or "".
         model_error: (C,) what the model leaves although nothing is missing, root mean square, or None.
+        doubts: why the loads cannot be those of the model, or "".
     """
     error2 = np.zeros(logs[0].residual.shape[1]) if model_error is None else model_error**2
     left = unexplained(named, logs)
@@ -80,10 +82,12 @@ def judge(
     explains = np.maximum(total - rest, 0.0)
     missing = _Missing(remainders=remainders, weight=1.0 / floor2, explained=explains, error2=error2)
     strange = bool(named.blocks) and _strange(named, heldout, left, error2) > REMAINDER
-    unknown = (bool(missing.energy.any()) and missing.share > REMAINDER) or strange
+    unknown = (bool(missing.energy.any()) and missing.much) or strange
     text = ""
-    unknown = unknown or bool(worse)
-    if worse:
+    unknown = unknown or bool(worse) or bool(doubts)
+    if doubts:
+        text = doubts
+    elif worse:
         text = f"{worse} would explain the fitted recordings and make the held-out ones worse"
     elif strange:
         text = "the effects that explain the fitted recordings do not hold on the held-out ones"
@@ -244,6 +248,12 @@ class _Missing:
         """Part of everything that can be explained."""
         energy = self.energy
         return float(self.weight @ energy / (self.weight @ (energy + self.explained) + 1e-30))
+
+    @property
+    def much(self) -> bool:
+        """Whether that is much of what can be explained, or some of it and most of what is left of a channel."""
+        most = any(e > LEFT * r.base for e, r in zip(self.energy, self.remainders, strict=True))
+        return self.share > REMAINDER or (most and self.share > SHARE)
 
     @property
     def _counted(self) -> list[Remainder]:

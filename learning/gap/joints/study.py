@@ -17,6 +17,7 @@ from .axis_model import AxisModel
 from .block import Block
 from .bootstrap import confident, kept_part
 from .detect import smallest_found
+from .doubts import doubts
 from .gram import assemble
 from .heldout_gap import gap_of
 from .intervals import Intervals, intervals, value_within
@@ -27,7 +28,7 @@ from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, louder, make
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .payloads.solid import with_solid_body
 from .placebo import placebos
-from .rests import has_dry_friction, moving, rested
+from .rests import has_dry_friction, left_out, moving
 from .rigid import RigidModel
 from .rivals import Unsearched, beside, determined, parting, rivals
 from .rollout import acting, patched_joints, rollout_gap
@@ -74,12 +75,15 @@ class JointStudy(Study):
     def _used(self) -> tuple[list[JointLog], Named]:
         """The logs, without rests where what moves has dry friction, and what the search names."""
         model, logs = self._logs
+        lost = left_out(logs)
+        if lost:
+            self.notes.append(f"{lost:.3g} s in which a load stands still or is cut off are left out.")
         moved = [moving(log) for log in logs]
         if any(m is not log for m, log in zip(moved, logs, strict=True)):
             named = name_effects(model, _but_held_out(moved), self.measured.system)
             if has_dry_friction(named.blocks):
                 self.notes.append(
-                    f"{rested(moved):.3g} s in which nothing moves are left out: dry friction may be anything "
+                    f"{left_out(moved) - lost:.3g} s in which nothing moves are left out: dry friction may be anything "
                     "up to its level there."
                 )
                 return moved, named
@@ -133,7 +137,15 @@ class JointStudy(Study):
     @cached_property
     def outcome(self) -> Outcome:
         """What the search's result amounts to, after a look at what it leaves."""
-        return judge(self.named, self.fitted, self.heldout, self.model.joints, self.unit, self._searched[1])
+        return judge(
+            self.named,
+            self.fitted,
+            self.heldout,
+            self.model.joints,
+            self.unit,
+            self._searched[1],
+            doubts=doubts(self.model, self.fitted, self.channels),
+        )
 
     @cached_property
     def kept(self) -> np.ndarray:
