@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -171,6 +171,7 @@ def set_of(
     """
     file = Path("measurement.yaml")
     _refuse_unknown(file, settings, SET_KEYS)
+    settings = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
     episodes = []
     for role, tables in (("fit", fit), ("repeat", repeats), ("heldout", heldout)):
         if isinstance(tables, str) or not isinstance(tables, Iterable) or is_table(tables):
@@ -179,6 +180,7 @@ def set_of(
         for k, table in enumerate(tables, start=1):
             name = f"{role}_{k}"
             episodes.append(Episode(name=name, file=Path(name), role=role, columns=table_of(table, name)))
+    _refuse_copies(file, episodes)
     held = [e for e in episodes if e.role == "heldout"]
     if not held or len(held) == len(episodes):
         raise GapError(f"{len(episodes) - len(held)} tables to fit and {len(held)} held out, one of each is needed")
@@ -292,7 +294,18 @@ def _with_roles(file: Path, episodes: list[Episode]) -> tuple[Episode, ...]:
     episodes = [e if e.role else replace(e, role="fit") for e in episodes]
     if all(e.role == "heldout" for e in episodes):
         raise GapError(f"{file}: every episode is held out, at least one must have role fit")
+    _refuse_copies(file, episodes)
     return tuple(episodes)
+
+
+def _refuse_copies(file: Path, episodes: Sequence[Episode]) -> None:
+    """Refuse a recording that is held out and fitted: nothing would be shown on it."""
+    for held in (e for e in episodes if e.role == "heldout"):
+        for other in (e for e in episodes if e.role != "heldout"):
+            if held.columns.keys() == other.columns.keys() and all(
+                np.array_equal(x, other.columns[name]) for name, x in held.columns.items()
+            ):
+                raise GapError(f"{file}: {held.name}, which is held out, is the same recording as {other.name}")
 
 
 def require_columns(episode: Episode, names: list[str]) -> None:

@@ -80,7 +80,10 @@ def table_of(table: Any, name: str) -> dict[str, np.ndarray]:
     out: dict[str, np.ndarray] = {}
     for column in ("t", *(c for c in names if c != "t")):
         try:
-            given = np.asarray(table[column])
+            given = table[column]
+            if np.ma.is_masked(given):
+                raise GapError(f"{name}: column '{column}', row {np.argmax(np.ma.getmaskarray(given))} is masked")
+            given = np.asarray(given)
             if np.iscomplexobj(given):
                 raise TypeError
             out[column] = np.array(given, dtype=float)

@@ -33,7 +33,7 @@ class Frame:
 
 def test_a_built_in_system_from_arrays_says_what_files_say(tmp_path):
     *fit, held = axis_tables()
-    result = run("axis", fit=fit, heldout=[held], mass=10.0)
+    result = run("axis", fit=fit, heldout=[held], mass=np.float32(10.0))
     assert [f.name for f in result.verdict.effects] == ["viscous_friction"]
     assert result.verdict.effects[0].parameters[0].value == pytest.approx(6.0, rel=0.1)
     assert repr(result).startswith("effects: viscous_friction on axis; held-out gap")
@@ -74,6 +74,8 @@ TABLE = pushes(1)[0]
         ({"system": None}, "system is None, it must be a System"),
         ({"system": dict}, "is no class that derives from"),
         ({"system": System}, "System has no predict"),
+        ({"fit": [TABLE | {"x": np.ma.masked_equal(TABLE["x"], TABLE["x"][3])}]}, "fit_1: column 'x', row 3 is masked"),
+        ({}, "heldout_1, which is held out, is the same recording as fit_1"),
         ({"alpha": 2.0}, "alpha is 2.0, a level between 0 and 1 is needed"),
         ({"alpha": "x"}, "alpha is 'x'"),
     ],

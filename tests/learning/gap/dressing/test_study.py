@@ -203,12 +203,12 @@ def test_what_no_effect_makes_is_unknown(lift):
 def test_tables_in_place_of_records_are_refused():
     t = np.arange(40) / 10.0
     with pytest.raises(GapError, match="takes records of runs, given as `run: FOLDER`"):
-        open_study(set_of("dressing", [{"t": t, "fx": t}], [{"t": t, "fx": t}]))
+        open_study(set_of("dressing", [{"t": t, "fx": t}], [{"t": t, "fx": -t}]))
 
 
 def test_a_set_of_records_is_read_strictly(tmp_path):
     write_record(tmp_path / "a", ARMS)
-    write_record(tmp_path / "b", ARMS)
+    write_record(tmp_path / "b", ARMS + (0.0, 0.0, 0.01))
 
     def asked(*episodes, **more):
         content = {"system": "dressing", "episodes": list(episodes), **more}

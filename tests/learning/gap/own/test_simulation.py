@@ -41,7 +41,7 @@ class Aside(System):
 
 def test_a_channel_that_is_predicted_well_outweighs_no_other_where_a_start_is_fitted():
     t = np.arange(100) / 15.0
-    tables = [{"t": t, "x": np.full(100, 4.0 * drag), "y": np.full(100, drag - 0.2)} for drag in (0.1, 1.0, 0.1)]
+    tables = [{"t": t, "x": np.full(100, 4.0 * drag), "y": np.full(100, drag - 0.2)} for drag in (0.1, 1.0, 0.5)]
     system = Aside()
     measured = set_of(system.name, tables[:2], tables[2:])
     sim = Simulation(system, [recording(e, system) for e in measured.fitted])
