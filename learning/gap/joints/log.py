@@ -23,6 +23,7 @@ OFF_SCALE = 0.02  # by which a speed may be larger or smaller than the slope of 
 OFF_PHASE = 0.1  # [rad] by which it may be late at the motion's cutoff
 RINGING = 5e-4  # of the usual speed: the error of a smoothed speed where a motion starts or ends, 99 of 100 samples
 SMEARED = 0.75  # periods of the shared filter's cutoff by which one stretch reaches into the next
+ENDS = 2.0  # the same at the ends of a log that is cut in mid-motion, where a true model leaves four times the noise
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
 
@@ -259,7 +260,7 @@ def _prepare(
     shared = min(SHARED * cut, 0.5 / dt)
     residual = lowpass(smooth - rigid, dt, shared)
     slow = np.maximum(4.0 * noise_v, RINGING * np.quantile(np.abs(speed), 0.95, axis=0) + 1e-9)
-    trim = int(min(len(t) // 10, np.ceil(0.7 / (shared * dt))))
+    trim = int(min(len(t) // 10, np.ceil(ENDS / (shared * dt))))
     if len(t) - 2 * trim < FEWEST:
         raise GapError(
             f"{episode.file}: rows 2 to {len(episode.t) + 1} last {t[-1] - t[0]:.3g} s, too short to be differentiated "
