@@ -31,6 +31,7 @@ import py_trees
 from py_trees.common import Status
 
 from ...perception.errors import PerceptionFailure
+from ...sim.blame import told
 from ...sim.world import EmergencyStop, SensorLost
 from ..motion.errors import MotionError, PathBlocked, Unreachable
 from .context import Context
@@ -153,7 +154,7 @@ class Skill(py_trees.behaviour.Behaviour):
             self.failure = Failure(reason_of(stop), str(stop), self.name)
         except Exception as error:
             self.context.report(error)
-            self.failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", self.name)
+            self.failure = Failure(Reason.INTERNAL_ERROR, told(error), self.name)
         self.feedback_message = self.failure.sentence()
         return Status.FAILURE
 

@@ -7,7 +7,8 @@ The runner wraps every world in it, so that a task author cannot leave it out.  
 - keeps every link off the person and off the robot's other links (`keep_clear.py`);
 - scales pulling down as the cloth load grows, stops at the limit, and then lets only relieving motion pass
   (`load_limit.py`);
-- stops the run when the senses are stale, frozen or gone (`watchdog.py`), or the emergency stop is pressed.
+- stops the run when the senses are stale, frozen or gone (`watchdog.py`), when the clock no longer says the time
+  (`sure_clock.py`), or the emergency stop is pressed.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ...sim.freshness import fresh_frame, fresh_observation
 from ...sim.world import (
     SIDES,
     BaseVelocity,
+    Clock,
     Command,
     EmergencyStop,
     Frame,
@@ -42,6 +44,7 @@ from .link_motion import LinkMotion
 from .load_limit import LoadLimit
 from .motions_under_way import MotionsUnderWay
 from .overspeed import Overspeed
+from .sure_clock import SureClock
 from .watchdog import Watchdog
 
 
@@ -72,7 +75,8 @@ class GuardedWorld:
         self.limits = limits
         self._on_command = on_command
         self._before_command, self._on_sample = before_command, on_sample
-        self.clock = inner.clock
+        self._sure_clock = SureClock(inner.clock)
+        self.clock: Clock = self._sure_clock
         self.room = inner.room
         self._inner = inner
         self.robot = inner.robot
@@ -83,7 +87,7 @@ class GuardedWorld:
         self._grips = DeclaredGrips(self.zone)
         self._load = LoadLimit(limits)
         self._overspeed = Overspeed(limits, self.zone, links)
-        self._under_way = MotionsUnderWay(inner.clock)
+        self._under_way = MotionsUnderWay(self.clock)
         self._scaling = CommandScaling(
             links,
             limits=limits,
@@ -152,9 +156,12 @@ class GuardedWorld:
         """Judge the state once per tick.
 
         Returns:
-            What must stop the whole run (dead senses, the emergency stop), or None.  An excess of load or speed stops
-            the motion at once and is held against the running skill instead.
+            What must stop the whole run (a dead clock, dead senses, the emergency stop), or None.  An excess of load
+            or speed stops the motion at once and is held against the running skill instead.
         """
+        self.clock.now()
+        if self._sure_clock.fault:
+            return Failure(Reason.WORLD_LOST, self._sure_clock.fault, "robot")
         try:
             pressed = self.observe().emergency_stop
         except SensorLost as lost:

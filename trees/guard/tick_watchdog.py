@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable
 from types import TracebackType
 
+from ...sim.blame import OF_FOREIGN_CODE
 from ...skills.core.reasons import Failure, Reason
 from .limits import DEFAULT, Limits
 
@@ -40,7 +41,7 @@ class TickWatchdog:
     def __init__(
         self, stop: Callable[[], None], limits: Limits = DEFAULT, *, now: Callable[[], float] = time.monotonic
     ) -> None:
-        self.error: Exception | None = None
+        self.error: BaseException | None = None
         self._stop = stop
         self._late = limits.late_tick
         self._now = now
@@ -91,7 +92,7 @@ class TickWatchdog:
             self._failure = Failure(Reason.MOTION_BLOCKED, f"no {what} for {max(tick, sample):.1f} s", "watchdog")
         try:
             self._stop()
-        except Exception as error:
+        except OF_FOREIGN_CODE as error:  # whatever a driver raises, the next look stops again
             self.error = error
         return True
 

@@ -24,6 +24,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ...perception.senses import Senses
+from ...sim.blame import told
 from ...sim.compiled import load
 from ...sim.errors import CaretreeError, DisplayError
 from ...sim.faults import FaultyWorld
@@ -146,7 +147,7 @@ class Run:
         self._ticker = Ticker(
             self.context,
             self.guard,
-            world.clock,
+            self.guard.clock,
             limits,
             period=1.0 / rate_hz,
             stepped=stepped,
@@ -227,7 +228,7 @@ class Run:
             failure = Failure(Reason.TIMEOUT, str(error), error.node or "runner")
         except BaseException as error:  # py_trees leaves ancestors running after an exception in a node
             self.context.report(error)
-            failure = Failure(Reason.INTERNAL_ERROR, f"{type(error).__name__}: {error}", "runner")
+            failure = Failure(Reason.INTERNAL_ERROR, told(error), "runner")
         try:
             return self._end(failure)
         except BaseException:  # interrupted once more
@@ -279,7 +280,8 @@ class Run:
             outcome = "safe_stop" if made_safe or owed else "failure"
             reason = failure.sentence()
         if not stood:
-            outcome, reason = "safe_stop", f"{reason} The robot did not come to rest: {Reason.MOTION_BLOCKED.value}"
+            why = f"{self._safe_stop.refused}." if self._safe_stop.refused else Reason.MOTION_BLOCKED.value
+            outcome, reason = "safe_stop", f"{_ended(reason)} The robot did not come to rest: {why}"
         self.trace.add("end", outcome=outcome, reason=failure.reason.name if failure else None)
         stages = tuple(node.result for node in _in_order(self.root) if isinstance(node, Stage))
         return RunResult(
@@ -292,6 +294,11 @@ class Run:
             trace_hash=self.trace.digest(),
             stopped_from_outside=failure is not None and failure.reason in FROM_OUTSIDE,
         )
+
+
+def _ended(sentence: str) -> str:
+    """With the full stop that a detail at its end does not bring."""
+    return sentence if sentence.endswith((".", "!", "?", "]")) else f"{sentence}."
 
 
 def _nearest(name: str, names: list[str]) -> str:

@@ -12,12 +12,14 @@ Errors are kept: nothing may keep the rest from happening.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from ...sim.blame import OF_FOREIGN_CODE, told
 from ...sim.world import SIDES, GripperOpening, World
 from ...skills.core.context import Context
 from ...skills.core.skill import Skill
@@ -47,6 +49,7 @@ class SafeStop:
 
     Attributes:
         interrupted: somebody pressed Ctrl-C meanwhile.
+        refused: why the robot did not take the last stop, one clause; empty where it did.
     """
 
     def __init__(
@@ -61,6 +64,7 @@ class SafeStop:
         before_tick: Callable[[], None],
     ) -> None:
         self.interrupted = False
+        self.refused = self._last_error = ""
         self._root, self._world, self._guard, self._context = root, world, guard, context
         self._limits, self._ticker, self._before_tick = limits, ticker, before_tick
 
@@ -74,7 +78,7 @@ class SafeStop:
                     each.status = Status.INVALID
                 elif each.status != Status.INVALID:
                     each.stop(Status.INVALID)
-            except (Exception, TookTooLongError) as error:
+            except (*OF_FOREIGN_CODE, TookTooLongError) as error:
                 self._context.report(error)
                 each.status = Status.INVALID
                 self._context.lease.release(each)
@@ -100,32 +104,40 @@ class SafeStop:
         """Stop until nothing moves, open the fingers if asked to; True when the robot stands still.
 
         A command may be lost on its way, so stop and open are sent until they are seen to have worked for some
-        ticks on end.
+        ticks on end.  Whatever of the robot is asked here may raise: nothing of it keeps the rest from being sent.
         """
-        ends = self._context.now() + self._limits.stop_patience
+        ends = self._try(self._context.now, default=-np.inf) + self._limits.stop_patience
         calm, wanted = 0, CALM_TICKS if release else 2  # one look may be older than the motion
         before = np.zeros(2)
         for _ in range(10_000):  # a dead clock must not keep us here
-            self._ticker.begin()
+            self._try(self._ticker.begin)
             self._try(self._ticker.advance_lease)
-            self._try(self._guard.stop)
-            if release:
-                for side in SIDES:
-                    self._try(lambda side=side: self._world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
-            rests = bool(self._try(self._guard.still, default=False))
-            seen = self._try(self._guard.observe)
-            opening = np.zeros(2) if seen is None else seen.gripper_opening
-            opened = not release or bool((opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all())
-            opened |= seen is not None and seen.emergency_stop  # then they do not move
-            before = opening
-            calm = calm + 1 if rests and opened and not self._context.lease.releasing() else 0
-            if calm >= wanted or self._context.now() >= ends:
+            self._stop_and_open(release)
+            rests = not self.refused and self._try(self._guard.still, default=False)
+            opened, before = self._try(partial(self._fingers, before), default=(False, np.zeros(2)))
+            done = rests and (opened or not release) and not self._context.lease.releasing()
+            calm = calm + 1 if done else 0
+            if calm >= wanted or self._try(self._context.now, default=np.inf) >= ends:
                 break
             if self._try(lambda: self._ticker.pass_time() or True, default=False) is False:
                 break
         self._context.lease.clear()
-        self._try(self._guard.stop)
+        self._stop_and_open(release and calm == 0)  # the first ones may have been lost where no time could pass
         return calm > 0
+
+    def _stop_and_open(self, release: bool) -> None:
+        """Send both, whatever comes of it; the fingers after the stop, which leaves them where they are."""
+        stopped = self._try(lambda: self._guard.stop() or True, default=False)
+        self.refused = "" if stopped else f"stop() failed: {self._last_error}"
+        for side in SIDES if release else ():
+            self._try(lambda side=side: self._world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
+
+    def _fingers(self, before: np.ndarray) -> tuple[bool, np.ndarray]:
+        """Whether they are seen open and not closing, or cannot move; and how far apart they stand (2,) [m]."""
+        seen = self._guard.observe()
+        opening = seen.gripper_opening
+        opened = (opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all()
+        return bool(opened or seen.emergency_stop), opening
 
     def _tick_safe(self, safe: Behaviour) -> bool:
         """Tick a safe branch to its end; False when it fails or takes too long."""
@@ -146,9 +158,10 @@ class SafeStop:
         self._ticker.limit.start()
         try:
             return action()
-        except (Exception, KeyboardInterrupt, TookTooLongError) as error:
+        except (*OF_FOREIGN_CODE, KeyboardInterrupt, TookTooLongError) as error:
             self.interrupted |= isinstance(error, KeyboardInterrupt)
             self._context.report(error)
+            self._last_error = told(error)
             return default
         finally:
             self._ticker.limit.pause()
