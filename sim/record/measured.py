@@ -65,16 +65,16 @@ class MeasuredLog:
         """Write the file; none where nothing was measured.
 
         Raises:
-            RecordError: the disk is full.
+            RecordError: the disk is full, or the samples differ in shape.
         """
         if not self._rows:
             return
-        poses = np.array([seen.pose_hand_in_map for seen in self._rows])
-        turns = _quaternions(poses[..., :3, :3])
         arms = self._arms
         path = directory / MEASURED_FILE
         part = path.with_name(path.name + ".part")
         try:
+            poses = np.array([seen.pose_hand_in_map for seen in self._rows])
+            turns = _quaternions(poses[..., :3, :3])
             with part.open("wb") as file:
                 np.savez_compressed(
                     file,
@@ -93,6 +93,9 @@ class MeasuredLog:
         except OSError as error:
             part.unlink(missing_ok=True)
             raise disk_error(error, f"writing {path}") from error
+        except ValueError as error:  # arrays that do not fit together
+            part.unlink(missing_ok=True)
+            raise RecordError(f"{path} cannot be written: {error}") from error
 
 
 def _quaternions(turns: np.ndarray) -> np.ndarray:

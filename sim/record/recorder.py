@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..blame import told
 from ..errors import RecordError
 from ..fence import said
 from .background import Background
@@ -223,6 +224,17 @@ class Recorder:
             self._make_room()
             raise
 
+    @contextmanager
+    def _kept(self) -> Iterator[None]:
+        """Keep any error for the end of `finish`: none may keep the outcome from being written."""
+        with suppress(RecordError), self._noted():
+            try:
+                yield
+            except RecordError:
+                raise
+            except Exception as error:
+                raise RecordError(f"the record in {self.directory} is not whole: {told(error)}") from error
+
     def _make_room(self) -> None:
         if self._reserve is not None:
             self._reserve.free()
@@ -254,10 +266,10 @@ class Recorder:
     def _finish(self, result: RunResult) -> None:
         began = time.perf_counter(), time.thread_time()
         if self._spool is not None and self._spool.frames:
-            with suppress(RecordError), self._noted():
+            with self._kept():
                 write_npz(self._spool.folder, self.directory / TRUTH_FILE)
                 shutil.rmtree(self._spool.folder)
-        with suppress(RecordError), self._noted():
+        with self._kept():
             self.measured.write(self.directory)
         ended = time.perf_counter(), time.thread_time()
         whole = time.process_time() - self._started[1]
@@ -286,7 +298,7 @@ class Recorder:
         """Close what is open; an error keeps neither the others nor run.json from being written."""
         for file in (self._background, self._trace, self._spool, self._video):  # nobody films into a closed video
             if file is not None:
-                with suppress(RecordError), self._noted():
+                with self._kept():
                     try:
                         file.close()
                     except OSError as error:

@@ -8,23 +8,13 @@ import numpy as np
 
 from ..freshness import fresh_frame
 from ..mechanics.robot_model import RobotModel
+from ..observation_form import ObservationForm
 from ..world import CAMERAS, SIDES, Frame, Observation, SensorLost, SensorStale
 from .world_trial import FRAME_STALE, PERIOD, STALE, WorldTrial
 
 FROZEN = 1.0  # [s] in which a wrench that repeats every bit is dead, as the guard has it
 WATCHED = 1.5  # [s]
 AHEAD = 1e-3  # [s] by which a stamp may be ahead of the clock
-SHAPES: dict[str, tuple[int, ...]] = {
-    "time": (),
-    "head_pan": (),
-    "pose_base_in_map": (3,),
-    "twist_base": (3,),
-    "gripper_opening": (2,),
-    "gripper_force": (2,),
-    "wrench_hand_in_map": (2, 6),
-    "pose_hand_in_map": (2, 4, 4),
-    "emergency_stop": (),
-}
 
 
 def it_says_what_its_robot_is_made_of(trial: WorldTrial) -> None:
@@ -36,11 +26,10 @@ def it_says_what_its_robot_is_made_of(trial: WorldTrial) -> None:
 def an_observation_is_whole(trial: WorldTrial) -> None:
     """It has every number, finite and of the right shape, and poses that are poses."""
     seen = trial.world.observe()
-    arms = dict.fromkeys(("arm_positions", "arm_velocities", "arm_efforts"), (2, trial.world.robot.dof))
-    for name, shape in (SHAPES | arms).items():
-        value = getattr(seen, name)
-        trial.hold(np.shape(value) == shape, f"{name} has shape {np.shape(value)}, but {shape} is asked for")
-        trial.hold(np.isfinite(value).all(), f"{name} holds a number that is not finite")
+    fault = ObservationForm(trial.world.robot).fault(seen)
+    trial.hold(not fault, fault)
+    for name in (each.name for each in fields(Observation)):
+        trial.hold(np.isfinite(getattr(seen, name)).all(), f"{name} holds a number that is not finite")
     trial.hold((seen.gripper_opening >= 0.0).all(), f"gripper_opening is {seen.gripper_opening}, but 0 or more")
     for n, side in enumerate(SIDES):
         trial.hold(_is_pose(seen.pose_hand_in_map[n]), f"pose_hand_in_map of the {side} hand is no pose")

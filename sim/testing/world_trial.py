@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..freshness import fresh_observation
+from ..observation_form import ObservationForm
 from ..scripted.clock import SteppedClock
 from ..waiting import wait
 from ..world import SIDES, Command, JointTrajectory, Observation, Side, World
@@ -76,7 +77,7 @@ class WorldTrial:
 
     def observe(self) -> Observation:
         """The latest observation, if it is fresh; raises SensorLost."""
-        return fresh_observation(self.world.observe(), self.now(), STALE)
+        return fresh_observation(self.world.observe(), self.now(), STALE, ObservationForm(self.world.robot))
 
     def let_pass(self, seconds: float) -> list[Observation]:
         """What is seen while `seconds` of world time pass, at least once at their end."""

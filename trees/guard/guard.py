@@ -18,7 +18,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from ...sim.abilities import HasKinematics
-from ...sim.freshness import fresh_frame, fresh_observation
+from ...sim.freshness import AHEAD, fresh_frame, fresh_observation
+from ...sim.observation_form import ObservationForm
 from ...sim.world import (
     SIDES,
     BaseVelocity,
@@ -80,6 +81,7 @@ class GuardedWorld:
         self.room = inner.room
         self._inner = inner
         self.robot = inner.robot
+        self._form = ObservationForm(inner.robot)
         self.zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
         kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
@@ -175,11 +177,13 @@ class GuardedWorld:
     # -- World -------------------------------------------------------------------------------------------
 
     def observe(self) -> Observation:
-        """Latest proprioception, judged; raises SensorLost, also where it is too old."""
+        """Latest proprioception, judged; raises SensorLost, also where it is too old or is none."""
         seen, now = self._inner.observe(), self.clock.now()
         if seen is self._last and now == self._judged_at:  # asked again at this very instant: it has been judged
             return seen
-        seen = fresh_observation(seen, now, self.limits.stale_after)
+        seen = fresh_observation(seen, now, self.limits.stale_after, self._form)
+        if self._last is not None and (back := self._last.time - seen.time) > AHEAD:
+            raise SensorLost(f"the time of the joint state went back by {back:.1f} s")
         self._watchdog.sample(seen, now)
         for fault in self._load.judge(seen):
             self._hold_against(fault)

@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from caretree.sim.errors import RecordError
+from caretree.sim.record.measured import MeasuredLog
 from caretree.sim.record.record import RunResult, StageResult, is_finished, read_finished_run, read_run
 from caretree.sim.record.recorder import PICTURE_GAP_MAX, Recorder
 from caretree.sim.record.spool import open_spool
 from caretree.sim.record.truth import TruthFrame, TruthStatic
 from caretree.sim.record.video import VideoWriter, read_pictures
+from caretree.sim.scripted.world import ScriptedWorld
 
 RESULT = RunResult(
     outcome="failure",
@@ -222,6 +224,27 @@ def test_an_error_of_closing_does_not_keep_the_outcome_from_being_written(tmp_pa
         record.finish(RESULT)
     assert read_finished_run(tmp_path)["outcome"] == "failure"
     assert (tmp_path / "truth.npz").exists()
+
+
+@pytest.mark.parametrize("shape", [(2, 6), None])
+def test_measurements_that_cannot_be_written_do_not_keep_the_outcome_from_it(tmp_path, shape):
+    record = recorder(tmp_path)
+    seen = ScriptedWorld().observe()
+    record.measured.sample(seen)
+    positions = None if shape is None else np.zeros(shape)
+    record.measured.sample(dataclasses.replace(seen, arm_positions=positions, pose_hand_in_map=positions))
+    with pytest.raises(RecordError, match="measured.npz cannot be written"):
+        record.finish(RESULT)
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
+    assert not list(tmp_path.glob("measured*"))
+
+
+def test_an_error_of_the_program_does_not_keep_the_outcome_from_being_written(tmp_path, monkeypatch):
+    record = recorder(tmp_path)
+    monkeypatch.setattr(MeasuredLog, "write", lambda self, directory: directory + 1)
+    with pytest.raises(RecordError, match="is not whole: TypeError"):
+        record.finish(RESULT)
+    assert read_finished_run(tmp_path)["outcome"] == "failure"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full on this system to fill up")

@@ -169,3 +169,34 @@ def test_a_detail_ends_before_the_next_sentence():
     result = run_of(lambda context: guarded_task(context, True, ticks=100), Broken()).run()
     assert "driver broke (at test_adapter_errors.py:" in result.reason
     assert "). The robot did not come to rest" in result.reason
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (
+            lambda seen: replace(seen, arm_positions=seen.arm_positions[:, :6]),
+            "arm_positions has shape (2, 6), but (2,",
+        ),
+        (
+            lambda seen: replace(seen, gripper_opening=1000.0 * seen.gripper_opening),
+            "gripper_opening is [85.0, 85.0]",
+        ),
+        (lambda seen: replace(seen, time=seen.time + 1.7e9), "s ahead of the clock"),
+        (lambda seen: replace(seen, time=seen.time - 0.4), "the time of the joint state went back by 0."),
+        (lambda seen: None, "observe gave no Observation, but None"),
+        (lambda seen: vars(seen), "observe gave no Observation, but a dict"),
+    ],
+)
+def test_an_observation_without_its_form_is_lost(wrong, said):
+    class Wrong(Adapter):
+        def observe(self):
+            seen = super().observe()
+            return wrong(seen) if self.broken else seen
+
+    world = Wrong()
+    result = run_of(lambda context: guarded_task(context, True, ticks=100), world).run()
+    assert result.outcome == "safe_stop"
+    assert result.reason.startswith(Reason.SENSOR_LOST.value)
+    assert said in result.reason
+    assert world.opened == {"left", "right"}
