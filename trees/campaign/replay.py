@@ -16,7 +16,7 @@ from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
 from ..run.trace import canonical
-from ..run.worlds import make_world, prepare_stage
+from ..run.worlds import closed_after, make_world, prepare_stage
 from .recorded import recorded
 from .recorded_task import FILE, HASH, recorded_task
 
@@ -61,7 +61,7 @@ def replay(directory: Path) -> Replay:
         engine=given.engine,
         arguments=given.world_args,
     )
-    try:
+    with closed_after(inner):
         measured = inner if given.log_rate is None else logged(inner, None, given.log_rate)
         world = FaultyWorld(measured, faults) if faults else measured
         run = Run(
@@ -83,8 +83,6 @@ def replay(directory: Path) -> Replay:
         run.run()
         if run.interrupted:
             raise KeyboardInterrupt
-    finally:
-        inner.close()
     difference = first_difference(before, run.trace.events)
     now, then = versions(), given.versions
     others = [

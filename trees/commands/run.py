@@ -38,7 +38,15 @@ from ..run.runner import Run
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.tuning import Given, read_given
-from ..run.worlds import TICK_RATE, make_world, prepare_stage, read_world_arguments, senses_for, tick_rate_of
+from ..run.worlds import (
+    TICK_RATE,
+    closed_after,
+    make_world,
+    prepare_stage,
+    read_world_arguments,
+    senses_for,
+    tick_rate_of,
+)
 from ..watch.watchers import Watchers
 
 SIGNS = {"running": ">", "success": "+", "failure": "x", "stopped": "-"}
@@ -124,7 +132,7 @@ def main(options: argparse.Namespace) -> int:
                     engine=options.engine,
                     arguments=arguments,
                 )
-                try:
+                with closed_after(inner):
                     senses = senses or senses_for(options.senses, task, inner, options.seed)
                     if start is None:
                         prepare_stage(inner, task, options.stage)
@@ -134,8 +142,6 @@ def main(options: argparse.Namespace) -> int:
                         return _run(
                             options, task, inner, measured, senses, faults, given, parameters, claim, signals, watchers
                         )
-                finally:
-                    inner.close()
         finally:
             claim.release()
 

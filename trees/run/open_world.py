@@ -15,17 +15,17 @@ import importlib
 import importlib.util
 import inspect
 import sys
-import traceback
 from collections.abc import Callable, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from ...sim.blame import OF_FOREIGN_CODE, told
 from ...sim.errors import CaretreeError
 from ...sim.extras import later, missing_extra
 from ...sim.mechanics.robot_model import RobotModel
-from ...sim.world import World
+from ...sim.world import RoomMap, World
 from ...sim.yaml_text import load_yaml
 from .parameters import PLAIN, BuildParameter, Parameter, ParameterError
 from .time_limit import LOADING, TimeLimit, TookTooLongError
@@ -42,7 +42,7 @@ OWN = {  # made like any other
 }
 EXTRA = {"remote": "remote", "ros1": "ros"}  # of these
 HOW = "or give package.module:Class or file.py:Class"
-FROM_ITS_CODE = (Exception, SystemExit, GeneratorExit, TookTooLongError)
+FROM_ITS_CODE = (*OF_FOREIGN_CODE, TookTooLongError)
 REQUIRED: Any = inspect.Parameter.empty
 
 
@@ -146,6 +146,9 @@ class OpenWorld:
                 f"world {self.name} does not say what its robot is made of: its `robot` has to be a RobotModel, for "
                 "instance caretree.sim.known_robots.robot_named('baxter')"
             )
+        for what in ("clock", "room"):
+            if (fault := _lacking(world, what)) is not None:
+                raise CaretreeError(f"world {self.name} {fault}")
         return world
 
     def _there(self) -> str:
@@ -244,11 +247,28 @@ def _kind(hint: Any) -> tuple[type | tuple[Any, ...] | None, Parameter]:
     return (hint, declared) if hint in PLAIN else (None, declared)
 
 
+def _lacking(world: World, what: str) -> str | None:
+    """What a world has forgotten of its contract, `clock` or `room`; None where it has it."""
+    found = getattr(world, what, None)
+    if what == "room" and not isinstance(found, RoomMap):
+        return (
+            "has no map: its `room` has to be a RoomMap, for instance caretree.sim.scripted.world.scripted_room(), but "
+            f"is {_kind_of(found)}"
+        )
+    if what == "clock":
+        lacks = [name for name in ("now", "wait_until") if not callable(getattr(found, name, None))]
+        if lacks:
+            return (
+                f"has no clock: its `clock` has to have now() and wait_until(time), but is {_kind_of(found)} without "
+                f"{' and '.join(lacks)}"
+            )
+    return None
+
+
+def _kind_of(found: object) -> str:
+    return "None" if found is None else f"a {type(found).__name__}"
+
+
 def _said(error: BaseException) -> str:
     """One clause for an error of somebody else's code, with the place it came from."""
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [each for each in frames if not each.filename.startswith((sys.prefix, sys.base_prefix, "<"))]
-    foreign = [each for each in own if Path(each.filename) != Path(__file__)]
-    place = f" (at {Path(foreign[-1].filename).name}:{foreign[-1].lineno})" if foreign else ""
-    text = str(error) if isinstance(error, (CaretreeError, OSError, TookTooLongError)) else ""
-    return (text or f"{type(error).__name__}: {error}") + place
+    return str(error) if isinstance(error, TookTooLongError) else told(error)  # which names its place itself

@@ -52,6 +52,39 @@ class Broken(ScriptedWorld):
         raise ValueError("no cable")
 
 
+class NoClock(ScriptedWorld):
+    def __init__(self) -> None:
+        super().__init__()
+        del self.clock
+
+
+class HalfClock(ScriptedWorld):
+    def __init__(self) -> None:
+        super().__init__()
+        self.clock = 3.0
+
+
+class NoRoom(ScriptedWorld):
+    def __init__(self) -> None:
+        super().__init__()
+        self.room = None
+
+
+class Leaves(ScriptedWorld):
+    def __init__(self, what: Literal["send", "close"]) -> None:
+        super().__init__()
+        self.what = what
+
+    def send(self, command):
+        if self.what == "send":
+            raise SystemExit(3)
+        return super().send(command)
+
+    def close(self):
+        if self.what == "close":
+            raise OSError("the socket is gone")
+
+
 def three() -> int:
     return 3
 """
@@ -109,7 +142,10 @@ def test_values_have_the_types_that_the_class_asks_for():
         ("lab_robot:Takes", [], "takes driver, which --world-arg cannot give"),
         ("lab_robot:Broken", [], "cannot be made: ValueError: no cable (at lab_robot.py:"),
         ("lab_robot:three", [], "makes a int, but a World is asked for"),
-        ("lab_robot:Nobody", [], "has no class Nobody; its worlds are Lab, Needs, Takes, Broken"),
+        ("lab_robot:NoClock", [], "has no clock: its `clock` has to have now() and wait_until(time), but is None"),
+        ("lab_robot:HalfClock", [], "but is a float without now and wait_until"),
+        ("lab_robot:NoRoom", [], "has no map: its `room` has to be a RoomMap, for instance"),
+        ("lab_robot:Nobody", [], "has no class Nobody; its worlds are Lab, Needs, Takes, Broken, NoClock"),
         ("lab_robot.py:Nobody", [], "has no class Nobody"),
         ("nowhere:Robot", [], "cannot be loaded: ModuleNotFoundError: No module named 'nowhere'"),
         ("nowhere.py:Robot", [], "there is no file nowhere.py"),
@@ -156,3 +192,22 @@ def test_a_changed_world_makes_other_trials(tmp_path):
     assert world_file("bullet") is None
     assert world_file("nowhere.at.all:Robot") is None
     assert world_file("nowhere.py:Robot") is None
+
+
+def test_a_driver_that_ends_the_program_ends_the_run_and_its_record_says_so(tmp_path, capsys):
+    given = ["--world", "lab_robot:Leaves", "--world-arg", "what=send", "--out", "r"]
+    assert main(["run", "wave", *given]) == 1
+    assert "sys.exit(3) was called (at lab_robot.py:" in capsys.readouterr().out
+    run = json.loads((tmp_path / "r/run.json").read_text())
+    assert run["outcome"] == "safe_stop"
+    assert "sys.exit(3) was called" in run["reason"]
+    assert (tmp_path / "r/errors.log").exists()
+
+
+def test_a_world_that_cannot_be_closed_is_told_and_the_outcome_stays(tmp_path, capsys):
+    given = ["--world", "lab_robot:Leaves", "--world-arg", "what=close", "--out", "r"]
+    assert main(["run", "wave", *given]) == 0
+    told = capsys.readouterr()
+    assert "success" in told.out
+    assert told.err.startswith("caretree: the world could not be closed: the socket is gone (at lab_robot.py:")
+    assert told.err.count("\n") == 1
