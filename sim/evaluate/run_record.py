@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import RecordError
-from ..record.record import TRUTH_FILE, read_run
+from ..record.record import RUN_FILE, TRUTH_FILE, read_run
 from ..record.spool import DAMAGED
 from ..record.truth import OBJECT
 from ..scene.person_spec import PERSON_PARTS
@@ -38,6 +38,23 @@ NEEDED = (
         "face",
     ),
 )
+
+
+class NotRecordedError(RecordError):
+    """A record lacks what every run of its task writes: the record is to blame, not the judge that asks for it."""
+
+
+class _Parameters(dict[str, Any]):
+    """Values of the task's parameters; asked for one that is not there, the record is blamed."""
+
+    def __init__(self, values: Mapping[str, Any], file: Path) -> None:
+        super().__init__(values)
+        self._file = file
+
+    def __missing__(self, name: str) -> Any:
+        raise NotRecordedError(
+            f"{self._file} is damaged: it lacks the task's parameter {name!r}, which the judge asks for"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,15 +110,20 @@ class RunRecord:
         rows: what tells whether the person is unharmed.
 
     Raises:
-        RecordError: the record lacks truth.npz, or it is damaged.
+        RecordError: the record lacks truth.npz, or one of its files is damaged.
     """
 
     def __init__(self, directory: Path | str) -> None:
         self.directory = Path(directory)
         run = read_run(self.directory)
-        given = run.get("parameters")
-        parameters = dict(given.get("build") or {}) if isinstance(given, dict) else {}
-        self._fill(int(run.get("seed") or 0), parameters, read_arrays(self.directory, NEEDED))
+        file = self.directory / RUN_FILE
+        given, seed = run.get("parameters") or {}, run.get("seed") or 0
+        build = (given.get("build") or {}) if isinstance(given, dict) else None
+        if not isinstance(build, dict):
+            raise RecordError(f"{file} is damaged: parameters is {str(given)[:60]!r}")
+        if not isinstance(seed, int) or isinstance(seed, bool):
+            raise RecordError(f"{file} is damaged: seed is {str(seed)[:60]!r}, but a whole number is asked for")
+        self._fill(seed, _Parameters(build, file), read_arrays(self.directory, NEEDED))
         self._made: dict[str, np.ndarray] | None = None
 
     @classmethod

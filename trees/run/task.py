@@ -35,7 +35,7 @@ from py_trees.behaviour import Behaviour
 from ...perception.senses import Senses
 from ...sim.abilities import SupportsObjects
 from ...sim.errors import CaretreeError
-from ...sim.evaluate.run_record import Judgement, RunRecord
+from ...sim.evaluate.run_record import Judgement, NotRecordedError, RunRecord
 from ...sim.known_robots import robot_named
 from ...sim.mechanics.robot_model import RobotModel
 from ...sim.scripted.world import ScriptedWorld
@@ -122,7 +122,7 @@ class Task:
         """What the task's own judge says of the record in `directory`.
 
         Raises:
-            RecordError: the record lacks its truth.
+            RecordError: the record lacks its truth, or is damaged.
             TaskError: there is no judge, its code fails, or it returns something else.
         """
         if self.judge is None:
@@ -131,6 +131,8 @@ class Task:
         try:
             with TimeLimit(LOADING):
                 found = self.judge(record)
+        except NotRecordedError:
+            raise
         except FROM_ITS_CODE as error:
             raise TaskError(_located(self.file, error)) from error
         if not isinstance(found, Judgement):

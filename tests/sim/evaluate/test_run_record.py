@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 from caretree.sim.errors import RecordError
-from caretree.sim.evaluate.run_record import Checks, Judgement, RunRecord
+from caretree.sim.evaluate.run_record import Checks, Judgement, NotRecordedError, RunRecord
 from caretree.sim.record.record import RUN_FILE, TRUTH_FILE
 
 
@@ -31,6 +31,29 @@ def test_a_judge_is_given_truth_and_what_was_asked_for_but_not_what_the_tree_say
         record.object("mug")
     with pytest.raises(RecordError, match="no part 'nose', but torso"):
         record.force("nose")
+
+
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({"seed": "x"}, "run.json is damaged: seed is 'x', but a whole number is asked for"),
+        ({"seed": 1.5}, "run.json is damaged: seed is '1.5'"),
+        ({"parameters": "none"}, "run.json is damaged: parameters is 'none'"),
+        ({"parameters": {"build": [3]}}, "run.json is damaged: parameters is"),
+    ],
+)
+def test_an_edited_record_is_one_sentence(directory, entries, said):
+    run = json.loads((directory / RUN_FILE).read_text())
+    (directory / RUN_FILE).write_text(json.dumps(run | entries))
+    with pytest.raises(RecordError, match=said):
+        RunRecord(directory)
+
+
+def test_the_record_is_to_blame_for_a_parameter_that_it_lacks(directory):
+    parameters = RunRecord(directory).parameters
+    with pytest.raises(NotRecordedError, match=r"run.json is damaged: it lacks the task's parameter 'arm'"):
+        parameters["arm"]
+    assert parameters.get("arm") is None
 
 
 def test_checks_collect_numbers_and_problems(directory):

@@ -51,3 +51,14 @@ def test_harmed_and_unknown(make_record, tmp_path, capsys):
 def test_unreadable_is_one_sentence(tmp_path):
     with pytest.raises(CaretreeError, match="is not a folder"):
         evaluate(str(tmp_path / "nowhere"))
+
+
+def test_an_edited_record_is_to_blame_and_not_the_task(make_record, tmp_path):
+    directory = make_record(tmp_path / "run")
+    run = json.loads((directory / "run.json").read_text())
+    (directory / "run.json").write_text(json.dumps(run | {"task": "wipe_forearm", "parameters": {}}))
+    with pytest.raises(CaretreeError, match=r"run/run\.json is damaged: it lacks the task's parameter 'arm'"):
+        evaluate(str(directory))
+    (directory / "run.json").write_text(json.dumps(run | {"task": "wipe_forearm", "seed": "x"}))
+    with pytest.raises(CaretreeError, match=r"run/run\.json is damaged: seed is 'x'"):
+        evaluate(str(directory))
