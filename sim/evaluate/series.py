@@ -23,7 +23,7 @@ SPEED_WINDOW = 3  # frames over which a hand's speed is averaged: one frame alon
 
 @dataclass(frozen=True, kw_only=True)
 class Series:
-    """Curves of one run.
+    """Curves of one run; those of the gown are not a number where the task has none.
 
     Attributes:
         t: (T,) world clock [s].
@@ -61,7 +61,7 @@ def read_series(directory: Path) -> Series:
     Raises:
         RecordError: the record is missing or damaged.
     """
-    truth = read_truth(directory)
+    truth = read_truth(directory, gown=False)
     extra = read_arrays(directory, ("gripper_pose", "person_force", "person_parts"))
     shapes = {"gripper_pose": (len(truth.t), 2, 7), "person_force": (len(truth.t), len(extra["person_parts"]))}
     for name, shape in shapes.items():
@@ -69,7 +69,7 @@ def read_series(directory: Path) -> Series:
             raise RecordError(f"{directory}: {name} has shape {extra[name].shape}, but {shape} is asked for")
     hands = extra["gripper_pose"][:, :, :3].astype(np.float64)
     with np.errstate(invalid="ignore"):  # a record of broken physics is drawn with gaps
-        moved = motion(truth.t, truth.vertices, truth.faces, truth.rest_vertices, truth.arms, truth.arm_radii)
+        p99, longest = _stretch(truth)
         return Series(
             t=truth.t,
             load=np.linalg.norm(truth.gripper_load.astype(np.float64), axis=2),
@@ -78,9 +78,9 @@ def read_series(directory: Path) -> Series:
             person_parts=tuple(str(name) for name in extra["person_parts"]),
             distance=_distance(truth, hands),
             speed=_speed(truth.t, hands),
-            upper_arm=_upper_arm(truth),
-            stretch_p99=moved.stretch_p99,
-            stretch_max=moved.stretch_max,
+            upper_arm=_upper_arm(truth) if truth.has_gown else np.full((len(truth.t), 2), np.nan),
+            stretch_p99=p99,
+            stretch_max=longest,
             clearance=None if truth.unharmed is None else _clearance(truth, truth.unharmed),
             wrists=None if truth.unharmed is None else wrists_above_bed(truth, truth.unharmed),
         )
@@ -88,6 +88,14 @@ def read_series(directory: Path) -> Series:
 
 def _chunks(count: int) -> list[np.ndarray]:
     return [np.arange(first, min(first + CHUNK, count)) for first in range(0, count, CHUNK)]
+
+
+def _stretch(truth: Truth) -> tuple[np.ndarray, np.ndarray]:
+    """(T,) 99th percentile and longest of the gown's edges over their rest lengths."""
+    if not truth.has_gown:
+        return np.full(len(truth.t), np.nan), np.full(len(truth.t), np.nan)
+    moved = motion(truth.t, truth.vertices, truth.faces, truth.rest_vertices, truth.arms, truth.arm_radii)
+    return moved.stretch_p99, moved.stretch_max
 
 
 def _upper_arm(truth: Truth) -> np.ndarray:

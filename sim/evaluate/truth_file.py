@@ -52,9 +52,18 @@ class Truth:
     unharmed: UnharmedRows | None = None
     lacks: tuple[str, ...] = ()
 
+    @property
+    def has_gown(self) -> bool:
+        """Whether there is one."""
+        return bool(len(self.rest_vertices) and len(self.faces))
 
-def read_truth(directory: Path) -> Truth:
+
+def read_truth(directory: Path, *, gown: bool = True) -> Truth:
     """What decides, checked for shape, type and range of the vertex numbers.
+
+    Args:
+        directory: of the record.
+        gown: there has to be one; a task may have taken it out of the room.
 
     Raises:
         RecordError: one of these is wrong, or there are fewer than two frames.
@@ -66,7 +75,7 @@ def read_truth(directory: Path) -> Truth:
     check_indices(path, arrays, INDICES, sizes["V"])
     if sizes["T"] < 2:
         raise RecordError(f"{path} holds {sizes['T']} frames, but at least 2 are asked for")
-    if not sizes["V"] or not len(arrays["faces"]):
+    if gown and not (sizes["V"] and len(arrays["faces"])):
         raise RecordError(f"{path} holds a garment without vertices or faces")
     rows = {name: arrays.pop(name) for name in ROWS if name in arrays}
     loops = {name: arrays.pop(f"loop_{name}") for name in LOOPS}

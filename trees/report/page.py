@@ -105,7 +105,7 @@ def build_report(directory: Path) -> str:
         subtitle=f"{task} · seed {seed} · world {world}",
         sentence=_text(sentence),
         facts=_facts(run),
-        asked="Is the person dressed?" if kept(run) is None else "Is the goal reached?",
+        asked="Is the person dressed?" if _dresses(run) and kept(run) is None else "Is the goal reached?",
         verdict=_or_sentence(lambda: _verdict(directory, run)),
         why_failed="" if outcome == "success" else why,
         why=why if outcome == "success" else "",
@@ -177,9 +177,21 @@ def _verdict(directory: Path, run: Mapping[str, Any]) -> str:
     """The task's own judge, or the project's evaluator, from the truth alone; other tasks ask nobody."""
     if (judgement := kept(run)) is not None:
         return _own(judgement)
-    if Path(str(run.get("task"))).stem not in JUDGED:
-        return '<p class="soft">Not asked of this task; <code>caretree evaluate DIR</code> asks it of any record.</p>'
-    return _judged(evaluate(directory))
+    if _dresses(run):
+        return _judged(evaluate(directory))
+    if not (directory / TRUTH_FILE).exists():
+        says = f"Not asked of this task: the record holds no {TRUTH_FILE}, by which alone it could be judged."
+    else:
+        says = (
+            "Not asked of this task when it ended; <code>caretree evaluate DIR</code> asks the task's own judge, "
+            "or, where it has none, whether the person is dressed."
+        )
+    return f'<p class="soft">{says}</p>'
+
+
+def _dresses(run: Mapping[str, Any]) -> bool:
+    """Whether somebody should be dressed in the end."""
+    return Path(str(run.get("task"))).stem in JUDGED
 
 
 def _own(judgement: Judgement) -> str:

@@ -2,7 +2,11 @@
 
 import numpy as np
 import pytest
+from caretree.sim.errors import RecordError
 from caretree.sim.evaluate.series import read_series
+from caretree.sim.evaluate.verdict import evaluate
+
+from ...gownless import without_gown
 
 
 def test_curves_of_a_known_run(make_record, tmp_path):
@@ -31,3 +35,14 @@ def test_old_records_have_the_other_curves(damaged_record):
     assert series.clearance is None
     assert series.wrists is None
     assert len(series.load) == len(series.t)
+
+
+def test_a_task_without_a_gown_has_the_other_curves(make_record, tmp_path):
+    series = read_series(without_gown(make_record(tmp_path / "run")))
+    assert np.isnan(series.upper_arm).all()
+    assert np.isnan(series.stretch_max).all()
+    assert series.person_force.max() == pytest.approx(2.0)
+    assert series.distance[-1, 0] == pytest.approx(np.hypot(0.08, 0.15) - 0.05, abs=1e-5)
+    assert series.clearance is not None
+    with pytest.raises(RecordError, match="holds a garment without vertices or faces"):
+        evaluate(tmp_path / "run")

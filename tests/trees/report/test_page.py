@@ -17,6 +17,8 @@ from caretree.trees.report.looks import LookLog, Witness
 from caretree.trees.report.page import FRAMES_MAX, key_moments, write_report
 from caretree.trees.report.timeline import Span
 
+from ...gownless import without_gown
+
 
 class Tags(HTMLParser):
     """Fails on tags that are not closed in order."""
@@ -118,6 +120,30 @@ def test_what_was_asked_of_the_run_is_shown_and_a_task_that_dresses_nobody_is_no
         assert f"<b>{value}</b><span>{name}</span>" in page
     assert "Not asked of this task" in page
     assert "dressed</span>" not in page
+
+
+def test_a_task_without_a_gown_shows_its_forces(make_record, tmp_path):
+    directory = without_gown(make_record(tmp_path / "run"))
+    run = json.loads((directory / "run.json").read_text())
+    judgement = {"success": True, "problems": [], "numbers": {}}
+    (directory / "run.json").write_text(json.dumps(run | {"task": "wipe_forearm", "judgement": judgement}))
+    page = write_report(directory).read_text()
+    parsed(page)
+    assert "Not available" not in page
+    assert 'alt="curves over time"' in page
+
+
+@pytest.mark.parametrize("truth", [True, False])
+def test_a_run_that_was_not_judged_says_what_could_judge_it(make_record, tmp_path, truth):
+    directory = make_record(tmp_path / "run", result=None)
+    run = json.loads((directory / "run.json").read_text())
+    (directory / "run.json").write_text(json.dumps(run | {"task": "wipe_forearm"}))
+    if truth:
+        assert main(["report", str(directory)]) == 0
+    page = write_report(directory).read_text()
+    assert "Is the goal reached?" in page
+    assert ("asks the task's own judge" in page) == truth
+    assert ("holds no truth.npz, by which alone it could be judged" in page) != truth
 
 
 def test_claim_against_the_geometry_is_shown(make_record, tmp_path):
