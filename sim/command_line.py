@@ -10,6 +10,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn
 
 from .errors import CaretreeError
@@ -19,6 +20,7 @@ BAD_INPUT = 2
 INTERRUPTED = 130  # as shells count a Ctrl-C
 SEEDS = 2**32
 PORTS = 2**16
+PICTURES = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "pdf", "ps", "eps", "svg", "svgz")  # matplotlib's
 RATES = (0.1, 1000.0)  # [Hz] ticks or measurements a second
 
 
@@ -105,6 +107,17 @@ def rate(text: str) -> float:
     if not RATES[0] <= value <= RATES[1]:
         raise argparse.ArgumentTypeError(f"{text!r} is no rate: {RATES[0]:g} to {RATES[1]:g} Hz is asked for")
     return value
+
+
+def picture_file(text: str) -> str:
+    """Type of an argument that names a picture to write: its suffix says of which kind, before any work is done for it.
+
+    Raises:
+        ArgumentTypeError: there is no such kind.
+    """
+    if Path(text).suffix[1:].lower() not in PICTURES:
+        raise argparse.ArgumentTypeError(f"{text!r} is no picture; it may end in .{', .'.join(PICTURES)}")
+    return text
 
 
 def drop_output() -> None:

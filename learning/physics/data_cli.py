@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...sim.command_line import CommandParser, seed
+from ...sim.command_line import CommandParser, picture_file, seed
 from ...sim.errors import CaretreeError
 from ..shards import add_cluster_options
 
@@ -47,12 +47,12 @@ def parser() -> argparse.ArgumentParser:
     clip.add_argument("--engine", choices=("fast", "bullet"), default="bullet")
     clip.add_argument("--disturbed", action="store_true", help="with noise, holes and a misplaced camera")
     clip.add_argument("--seed", type=seed, default=0, metavar="N")
-    clip.add_argument("--filmstrip", metavar="FILE", help="also a picture of its frames")
+    clip.add_argument("--filmstrip", type=picture_file, metavar="FILE", help="also a picture of its frames")
 
     show = sub.add_parser("show", help="draw filmstrips of clips")
     show.add_argument("path", nargs="+", metavar="PATH", help="clips, or folders of datasets")
     show.add_argument("--clips", type=int, default=3, metavar="N", help="of each dataset (default 3)")
-    show.add_argument("--out", required=True, metavar="FILE", help="the picture to write")
+    show.add_argument("--out", type=picture_file, required=True, metavar="FILE", help="the picture to write")
 
     sensitivity = sub.add_parser("sensitivity", help="what a clip shows of each parameter")
     sensitivity.add_argument("--points", type=int, default=20, metavar="N", help="gowns looked at (default 20)")

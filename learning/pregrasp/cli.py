@@ -83,7 +83,9 @@ def parser() -> argparse.ArgumentParser:
     test.add_argument(
         "--engine", choices=("spring", "bullet"), default="spring", help="that tries the policy (default spring)"
     )
-    test.add_argument("--bullet", type=int, default=0, metavar="N", help="repeat N attempts in PyBullet (0.5 s each)")
+    test.add_argument(
+        "--bullet", type=whole_number, default=0, metavar="N", help="repeat N attempts in PyBullet (0.5 s each)"
+    )
     test.add_argument("--seed", type=seed, default=0, metavar="N", help="of which attempts these are (default 0)")
     test.add_argument("--out", type=Path, metavar="FILE", help="also write the tables, Markdown")
     return top

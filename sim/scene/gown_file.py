@@ -11,6 +11,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -62,8 +63,7 @@ class GownFile:
         if self.base not in GOWNS:
             raise CaretreeError(f"unknown base gown '{self.base}'; there are {', '.join(GOWNS)}")
         for name, value in self.values.items():
-            if name not in UNITS:
-                raise CaretreeError(f"unknown parameter '{name}' of a gown; there are {', '.join(UNITS)}")
+            _check_known(name)
             least = "at least" if name in _ZERO_IS_FINE else "above"
             if not (0 <= value < float("inf")) or (value == 0 and name not in _ZERO_IS_FINE):
                 raise CaretreeError(f"{name} is {value:g} {UNITS[name]}, a finite number {least} 0 is asked for")
@@ -117,6 +117,13 @@ def read_gown(path: str | Path) -> GownFile:
         raise CaretreeError(f"{path}: {error}") from None
 
 
+def _check_known(name: object) -> None:
+    if name not in UNITS:
+        alike = difflib.get_close_matches(str(name), UNITS, n=1)
+        meant = f"; {alike[0]} is meant?" if alike else ""
+        raise CaretreeError(f"unknown parameter '{name}' of a gown; there are {', '.join(UNITS)}{meant}")
+
+
 def _checked(content: object) -> GownFile:
     if not isinstance(content, Mapping) or content.get("format") != FORMAT:
         raise CaretreeError(f"this is no gown file, it must begin with `format: {FORMAT}`")
@@ -128,6 +135,7 @@ def _checked(content: object) -> GownFile:
         raise CaretreeError("a gown file needs `base`, the name of a gown, and `parameters`")
     values, intervals = {}, {}
     for name, entry in entries.items():
+        _check_known(name)
         numbers = entry if isinstance(entry, Mapping) else {"value": entry}
         if not set(numbers) <= {"value", "low", "high", "unit"} or "value" not in numbers:
             raise CaretreeError(f"parameter '{name}' needs `value`, and may have low, high and unit")

@@ -5,7 +5,7 @@ import errno
 import os
 
 import pytest
-from caretree.sim.command_line import CommandParser, answered, drop_output, seed, whole_number
+from caretree.sim.command_line import CommandParser, answered, drop_output, picture_file, seed, whole_number
 from caretree.sim.errors import CaretreeError
 
 
@@ -15,6 +15,7 @@ def parser():
     run = sub.add_parser("run")
     run.add_argument("--seed", type=seed, default=0)
     run.add_argument("--steps", type=whole_number, default=1)
+    run.add_argument("--picture", type=picture_file)
     return top
 
 
@@ -26,6 +27,8 @@ def parser():
         (["run", "--seed", "4294967296"], "is no seed"),
         (["run", "--seed", "\u0661"], "is no seed"),
         (["run", "--steps", "1.5"], "'1.5' is no whole number"),
+        (["run", "--picture", "s.xyz"], r"'s.xyz' is no picture; it may end in .png, .jpg, .* \(see tool run --help\)"),
+        (["run", "--picture", "s"], "'s' is no picture"),
         (["run", "--stepz", "1"], "unrecognized arguments: --stepz 1"),
     ],
 )
@@ -36,9 +39,9 @@ def test_a_wrong_argument_is_one_sentence(arguments, said):
 
 
 def test_right_arguments_are_numbers():
-    assert parser().parse_args(["run", "--seed", "4294967295", "--steps", "3"]) == argparse.Namespace(
-        command="run", seed=4294967295, steps=3
-    )
+    assert parser().parse_args(
+        ["run", "--seed", "4294967295", "--steps", "3", "--picture", "lab/s.PNG"]
+    ) == argparse.Namespace(command="run", seed=4294967295, steps=3, picture="lab/s.PNG")
 
 
 @pytest.mark.parametrize(

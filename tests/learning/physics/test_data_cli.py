@@ -91,6 +91,10 @@ def test_sensitivity_prints_its_table(tmp_path, capsys):
         (["physics", "clip", "x.npz", "--gown", "silk.yaml"], "silk.yaml: there is no such gown file"),
         (["physics", "show", "x.npz", "--out", "x.png"], "x.npz: there is no such clip"),
         (["physics", "show", "x.npz", "--out", "x.png", "--clips", "0"], "--clips is 0, at least 1"),
+        (["physics", "show", "x.npz", "--out", "s.xyz"], "'s.xyz' is no picture; it may end in .png,"),
+        (["physics", "clip", "x.npz", "--filmstrip", "s"], "'s' is no picture; it may end in .png,"),
+        (["pregrasp", "evaluate", "made", "--bullet", "-1"], "'-1' is no whole number"),
+        (["pregrasp", "data", "made", "--seeds", "5-3"], "'5-3' ends before it begins; a span is written like 110-139"),
         (["physics", "sensitivity", "--points", "0"], "--points is 0, at least 1"),
     ],
 )

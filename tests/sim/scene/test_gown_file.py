@@ -37,6 +37,7 @@ def test_a_scene_takes_a_gown_file(tmp_path):
         ("format: caretree-gown-1\nbase: light\n", "needs `base`, the name of a gown, and `parameters`"),
         (HEAD.replace("light", "silk") + "  mass: 0.4\n", "unknown base gown 'silk'; there are medium, large, light"),
         (HEAD + "  colour: 3\n", "unknown parameter 'colour' of a gown; there are mass,"),
+        (HEAD + "  mas: {value: 0.4, unit: kg}\n", "unknown parameter 'mas' of a gown; there are .*; mass is meant?"),
         (HEAD + "  mass: heavy\n", "of 'mass' must be numbers"),
         (HEAD + "  mass: true\n", "of 'mass' must be numbers"),
         (HEAD + "  mass: 0\n", "mass is 0 kg, a finite number above 0"),
