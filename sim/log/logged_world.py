@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from ..abilities import HasKinematics, SupportsFaults
+from ..blame import OF_FOREIGN_CODE
 from ..errors import CaretreeError
+from ..observation_form import ObservationForm
 from ..scripted.clock import SteppedClock
 from ..world import Clock, Command, Frame, Observation, Side, World, WorldError
 from . import messages
@@ -59,7 +61,7 @@ class LoggedWorld(World):
         self._file = file
         self._measured = -float("inf")
         self._looked: dict[str, float] = {}
-        self._observed = messages.Observed(self.robot)
+        self._observed, self._form = messages.Observed(self.robot), ObservationForm(self.robot)
         if file is not None:
             file.attach(messages.ROBOT, "application/json", messages.roles(self.robot))
             with contextlib.suppress(CaretreeError, OSError):  # a robot without its files, or known by name alone
@@ -68,7 +70,7 @@ class LoggedWorld(World):
     def observe(self) -> Observation:
         """What the world measures; written once for each time at which it was measured."""
         seen = self.inner.observe()
-        if seen.time > self._measured:
+        if not self._form.fault(seen) and seen.time > self._measured:  # others are refused by whoever asks
             self._measured = seen.time
             self._write(seen.time, self._observed.messages(seen))
         return seen
@@ -84,19 +86,26 @@ class LoggedWorld(World):
     def send(self, command: Command) -> Command:
         """Send a command; written as it was really sent."""
         sent = self.inner.send(command)
-        now = self.clock.now()
+        now = self._now()
         self._write(now, [messages.sent(now, sent)])
         return sent
 
     def stop(self) -> None:
         """Stop first, write then."""
         self.inner.stop()
-        now = self.clock.now()
+        now = self._now()
         self._write(now, [messages.stopped(now)])
 
     def close(self) -> None:
         """Release the inner world."""
         self.inner.close()
+
+    def _now(self) -> float:
+        """The world's time, or that of the last measurement where its clock has died: it is stopped nevertheless."""
+        try:
+            return float(self.clock.now())
+        except OF_FOREIGN_CODE:
+            return max(self._measured, 0.0)
 
     def _write(self, time: float, these: Iterable[messages.Message], *, at_once: bool = False) -> None:
         if self._file is not None:

@@ -69,7 +69,9 @@ class Failure:
     def sentence(self) -> str:
         """What the operator reads."""
         where = f" [{self.node}]" if self.node else ""
-        return f"{self.reason.value}{where}" + (f" {self.detail}" if self.detail else "")
+        detail = f" {self.detail}" if self.detail else ""
+        ended = self.reason is not Reason.INTERNAL_ERROR or not detail or detail.endswith((".", "!", "?"))
+        return f"{self.reason.value}{where}{detail}{'' if ended else '.'}"
 
 
 class SkillFailure(Exception):  # noqa: N818 it is the outcome of a skill, not a defect

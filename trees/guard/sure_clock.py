@@ -30,6 +30,7 @@ class SureClock:
 
     def now(self) -> float:
         """The world's time, or the last one known [s]."""
+        now = None
         try:
             now = self._inner.now()
             if self._last <= now < math.inf:  # nearly always
@@ -37,6 +38,8 @@ class SureClock:
                 return now
             # one that went back stands still until it has caught up: whoever waits ends that (`waiting.py`)
             self._failed = "" if now < self._last else f"the clock says {now}, but a time is asked for"
+        except (TypeError, ValueError) as error:  # most likely no number
+            self._failed = f"the clock says {now!r}, but a time is asked for: {told(error)}"
         except OF_FOREIGN_CODE as error:
             self._failed = f"the clock does not say the time: {told(error)}"
         self.fault = self.fault or self._failed

@@ -1,9 +1,11 @@
 """Whatever a robot's adapter raises or says, the robot is told to stop and to open, and the run has an outcome."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from caretree.sim.log.logged_world import logged
 from caretree.sim.scripted.clock import SteppedClock
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import GripperOpening
@@ -62,9 +64,9 @@ def raises(error):
     [
         (raises(RuntimeError("clock gone")), "RuntimeError: clock gone (at test_adapter_errors.py:"),
         (raises(SystemExit("no master")), "sys.exit('no master') was called"),
-        (lambda: None, "TypeError"),
+        (lambda: None, "the clock says None, but a time is asked for"),
         (lambda: float("nan"), "the clock says nan, but a time is asked for"),
-        (lambda: "12", "TypeError"),
+        (lambda: "12", "the clock says '12', but a time is asked for"),
     ],
 )
 def test_a_clock_that_no_longer_tells_the_time_keeps_nothing_from_being_stopped(answer, said):
@@ -169,6 +171,39 @@ def test_a_detail_ends_before_the_next_sentence():
     result = run_of(lambda context: guarded_task(context, True, ticks=100), Broken()).run()
     assert "driver broke (at test_adapter_errors.py:" in result.reason
     assert "). The robot did not come to rest" in result.reason
+
+
+def test_an_error_of_an_adapter_is_told_in_a_whole_sentence():
+    class Broken(Adapter):
+        def send(self, command):
+            if self.broken and not isinstance(command, GripperOpening):
+                raise RuntimeError("driver broke")
+            return super().send(command)
+
+    result = run_of(lambda context: guarded_task(context, True, ticks=20), Broken()).run()
+    assert result.reason.endswith(").")
+
+
+def test_a_log_keeps_no_stop_from_a_robot_whose_clock_has_died():
+    class Stops(Adapter):
+        def stop(self):
+            self.stops += 1
+
+    world = Stops()
+    world.clock = BrokenClock(world, lambda: None)
+    result = run_of(lambda context: guarded_task(context, True, ticks=100), logged(world, None)).run()
+    assert "the clock says None" in result.reason
+    assert "stop() failed" not in result.reason
+    assert world.opened == {"left", "right"}
+
+
+def test_a_log_passes_on_what_is_no_observation():
+    class Silent(Adapter):
+        def observe(self) -> Any:
+            return None if self.broken else super().observe()
+
+    result = run_of(lambda context: guarded_task(context, True, ticks=100), logged(Silent(), None)).run()
+    assert "observe gave no Observation, but None" in result.reason
 
 
 @pytest.mark.parametrize(
