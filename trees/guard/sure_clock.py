@@ -30,7 +30,7 @@ class SureClock:
 
     def now(self) -> float:
         """The world's time, or the last one known [s]."""
-        now = None
+        now = self  # until there is an answer
         try:
             now = self._inner.now()
             if self._last <= now < math.inf:  # nearly always
@@ -38,10 +38,10 @@ class SureClock:
                 return now
             # one that went back stands still until it has caught up: whoever waits ends that (`waiting.py`)
             self._failed = "" if now < self._last else f"the clock says {now}, but a time is asked for"
-        except (TypeError, ValueError) as error:  # most likely no number
-            self._failed = f"the clock says {now!r}, but a time is asked for: {told(error)}"
         except OF_FOREIGN_CODE as error:
-            self._failed = f"the clock does not say the time: {told(error)}"
+            answered = now is not self  # with something that is no number
+            said = f"says {now!r}, but a time is asked for" if answered else f"does not say the time: {told(error)}"
+            self._failed = f"the clock {said}"
         self.fault = self.fault or self._failed
         return self._last
 

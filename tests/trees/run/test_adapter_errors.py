@@ -63,6 +63,7 @@ def raises(error):
     ("answer", "said"),
     [
         (raises(RuntimeError("clock gone")), "RuntimeError: clock gone (at test_adapter_errors.py:"),
+        (raises(TypeError("a bad message")), "the clock does not say the time: TypeError: a bad message"),
         (raises(SystemExit("no master")), "sys.exit('no master') was called"),
         (lambda: None, "the clock says None, but a time is asked for"),
         (lambda: float("nan"), "the clock says nan, but a time is asked for"),
