@@ -233,7 +233,7 @@ def test_measurements_that_cannot_be_written_do_not_keep_the_outcome_from_it(tmp
     record.measured.sample(seen)
     positions = None if shape is None else np.zeros(shape)
     record.measured.sample(dataclasses.replace(seen, arm_positions=positions, pose_hand_in_map=positions))
-    with pytest.raises(RecordError, match="measured.npz cannot be written"):
+    with pytest.raises(RecordError, match=r"measured\.npz cannot be written"):
         record.finish(RESULT)
     assert read_finished_run(tmp_path)["outcome"] == "failure"
     assert not list(tmp_path.glob("measured*"))
