@@ -12,7 +12,7 @@ from ....sim.effects.effect import JointEffect, JointMotion, Shape, Spread
 from ..errors import GapError
 from ..measurement import Episode
 from ..smoothing import bandwidth, derivative, lowpass, lowpass_both, resample
-from .readings import unsound
+from .readings import unsound, without_spikes
 from .rigid import RigidModel
 
 ROWS = 6000  # an episode is thinned to at most about this many rows
@@ -178,7 +178,8 @@ def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -
 
 def _resampled(episode: Episode, names: JointColumns) -> _Raw:
     n = len(names.q)
-    parts = [_matrix(episode, names.q), _matrix(episode, names.load)]
+    load = np.stack([without_spikes(episode.columns[name]) for name in names.load], axis=1)
+    parts = [_matrix(episode, names.q), load]
     has_dq = all(name in episode.columns for name in names.dq)
     if has_dq:
         parts.append(_matrix(episode, names.dq))

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caretree.learning.gap.joints.readings import unsound
+from caretree.learning.gap.joints.readings import unsound, without_spikes
 from caretree.learning.gap.measurement import load_set
 from caretree.learning.gap.open_study import open_study
 
@@ -40,6 +40,16 @@ def test_a_load_that_is_cut_off_is_told_at_every_peak():
 )
 def test_nothing_is_left_out_of_a_sound_load(x):
     assert unsound(T, Q, x) == []
+
+
+def test_single_samples_far_off_both_neighbours_are_put_right_and_steps_stay():
+    x = load() + np.where(T > 6.0, 15.0, 0.0)
+    spoilt = x.copy()
+    spoilt[[100, 700, 2000]] += (60.0, -40.0, 25.0)
+    mended = without_spikes(spoilt)
+    assert np.abs(mended - x).max() < 1.0
+    assert (mended != spoilt).sum() == 3
+    assert (without_spikes(x) == x).all()
 
 
 def test_a_joint_at_rest_may_have_a_steady_load():
