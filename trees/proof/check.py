@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import collections
-import re
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import py_trees
@@ -27,7 +25,6 @@ from .explore import FROM_OUTSIDE, Explorer
 from .leaves import leaf_findings
 from .wiring import Wiring
 
-PACKAGE = Path(__file__).parents[2]
 # py_trees' own nodes that break a law of this project when skills are below them.
 REFUSED = {
     py_trees.decorators.Retry: "keeps the data of failed attempts; use caretree.trees.decorators.Retry",
@@ -121,27 +118,12 @@ def rehearse(task: Task) -> CheckReport:
     for event in run.trace.events:
         if event.get("reason") == Reason.INTERNAL_ERROR.name and event.get("detail"):
             errors.setdefault(event["detail"], event["node"])
-    report.findings += [
-        f"{node}: on the scripted world, it makes an error{_place(error, run.context.errors)}: {error}"
-        for error, node in errors.items()
-    ]
+    report.findings += [f"{node}: on the scripted world, it makes an error: {error}" for error, node in errors.items()]
     if run.context.errors and not errors:  # a node of py_trees' own, or the runner
         report.findings.append(f"on its scripted world: {result.reason}")
     elif result.outcome != "success" and not errors:
         report.notes.append(f"on its scripted world it ends as {result.outcome.replace('_', ' ')}: {result.reason}")
     return report
-
-
-def _place(error: str, tracebacks: list[str]) -> str:
-    """Where an error was made: the last line of the task's own, or of anybody's; empty where no traceback tells."""
-    for text in tracebacks:
-        if text.rstrip().endswith(error):
-            lines = re.findall(r'^  File "(.+?)", line (\d+)', text, flags=re.MULTILINE)
-            own = [place for place in lines if not Path(place[0]).is_relative_to(PACKAGE)]
-            if lines:
-                file, line = (own or lines)[-1]
-                return f" at {file}:{line}"
-    return ""
 
 
 def fresh_tree(task: Task) -> Behaviour:

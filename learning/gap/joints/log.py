@@ -19,6 +19,7 @@ ROWS = 6000  # an episode is thinned to at most about this many rows
 FINE = 16  # rows per period of the cutoff where the log has as many: a sign, a threshold has to be met when it happens
 FEWEST = 10  # rows of an episode that the filters have to leave sound
 THINNED = 0.4  # cutoff of the filter a log is thinned through, over the rate of the rows
+SPEED = 0.98  # correlation with the slope of the position from which on a column is a speed
 OFF_SCALE = 0.02  # by which a speed may be larger or smaller than the slope of the position
 OFF_PHASE = 0.1  # [rad] by which it may be late at the motion's cutoff
 RINGING = 5e-4  # of the usual speed: the error of a smoothed speed where a motion starts or ends, 99 of 100 samples
@@ -46,6 +47,7 @@ class JointLog:
         trim: rows at either end that the filters spoil.
         step: samples recorded per row.
         left_out: (T,) rows that say nothing; None where all count.
+        odd_speeds: columns that are not the slope of their joint's position, and are not used.
     """
 
     name: str
@@ -64,6 +66,7 @@ class JointLog:
     trim: int
     step: int = 1
     left_out: np.ndarray | None = None
+    odd_speeds: tuple[str, ...] = ()
 
     @cached_property
     def inner(self) -> slice | np.ndarray:
@@ -172,8 +175,9 @@ def read_logs(episodes: list[Episode], names: JointColumns, model: RigidModel) -
     """
     raw = [_resampled(episode, names) for episode in episodes]
     cut, noise_q = _bandwidth_of([(r.q, r.dt) for r in raw])
-    noise_v, use_speed = _speed_noise(raw, cut, noise_q)
-    return [_prepare(episode, r, cut, use_speed, noise_v, model) for episode, r in zip(episodes, raw, strict=True)]
+    noise_v, use_speed, odd = _speed_noise(raw, cut, noise_q)
+    logs = [_prepare(episode, r, cut, use_speed, noise_v, model) for episode, r in zip(episodes, raw, strict=True)]
+    return [replace(log, odd_speeds=tuple(np.array(names.dq)[odd])) for log in logs]
 
 
 def _resampled(episode: Episode, names: JointColumns) -> _Raw:
@@ -206,22 +210,22 @@ def _bandwidth_of(series: list[tuple[np.ndarray, float]]) -> tuple[float, np.nda
     return cut, np.median([[s for _, s in row] for row in per], axis=0)
 
 
-def _speed_noise(raw: list[_Raw], cut: float, noise_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) noise of each joint's speed, and whether its measured speed is used rather than the slope of its position.
+def _speed_noise(raw: list[_Raw], cut: float, noise_q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each joint's speed, (n,): its noise, whether the measured one is used, and whether that is none at all.
 
-    The same speed by either route; the quieter is taken, unless the speed column is no speed at all.
+    Else it is the slope of the position, the same speed by another route; the quieter is taken.
     """
     dt = float(np.median([r.dt for r in raw]))
     noise_v = noise_q * 2 * np.pi * cut * np.sqrt(2 * cut * dt / 3)
     speeds = [(r.q, r.dq, r.dt) for r in raw if r.dq is not None]
     if len(speeds) < len(raw):
-        return noise_v, np.zeros(len(noise_q), dtype=bool)
+        return noise_v, np.zeros(len(noise_q), dtype=bool), np.zeros(len(noise_q), dtype=bool)
     sensor = _bandwidth_of([(dq, step) for _, dq, step in speeds])[1] * np.sqrt(2 * cut * dt)
     agree = np.median(
         [[_agree(q[:, j], dq[:, j], step, cut) for j in range(dq.shape[1])] for q, dq, step in speeds], axis=0
     )
-    use_speed = (sensor < noise_v) & (agree > 0.98)
-    return np.where(use_speed, sensor, noise_v), use_speed
+    use_speed = (sensor < noise_v) & (agree > SPEED)
+    return np.where(use_speed, sensor, noise_v), use_speed, (sensor < noise_v) & (agree <= SPEED)
 
 
 def _agree(q: np.ndarray, dq: np.ndarray, dt: float, cut: float) -> float:
@@ -233,8 +237,9 @@ def _agree(q: np.ndarray, dq: np.ndarray, dt: float, cut: float) -> float:
     slope, speed = (lowpass(x, dt, cut) for x in (np.gradient(q, dt), dq))
     if dq.std() == 0 or slope.std() == 0:
         return 1.0 if slope.std() == dq.std() else 0.0
-    bend = np.gradient(slope, dt)
-    scale, late = np.linalg.lstsq(np.column_stack([slope, -bend, np.ones(len(q))]), speed, rcond=None)[0][:2]
+    # fitted from the speed, which is taken only where it is the quieter one: noise in what is fitted from would bias it
+    columns = np.column_stack([speed, np.gradient(speed, dt), np.ones(len(q))])
+    scale, late = np.linalg.lstsq(columns, slope, rcond=None)[0][:2]
     phase = 2.0 * np.pi * cut * late
     return float(np.corrcoef(slope, speed)[0, 1]) * bool(abs(scale - 1.0) < OFF_SCALE and abs(phase) < OFF_PHASE)
 

@@ -75,7 +75,9 @@ class JointStudy(Study):
     def _used(self) -> tuple[list[JointLog], Named]:
         """The logs, without rests where what moves has dry friction, and what the search names."""
         model, logs = self._logs
-        lost = left_out(logs)
+        lost, odd = left_out(logs), ", ".join(logs[0].odd_speeds)
+        if odd:
+            self.notes.append(f"Not used as speed, as it is late against the slope of the position, or off it: {odd}.")
         if lost:
             self.notes.append(f"{lost:.3g} s in which a load stands still or is cut off are left out.")
         moved = [moving(log) for log in logs]
