@@ -32,6 +32,7 @@ class Curve:
     spans: tuple[tuple[float, float], ...] = ()
 
 
+GAP = 3.0  # of the usual step, from which on nothing is drawn between two samples: what is between them is left out
 INK, GREY, BLUE, RED = "#222222", "#9a9a9a", "#1f6fb4", "#c8452e"
 
 
@@ -45,11 +46,12 @@ def draw(curves: list[Curve], width: float = 7.4) -> str:
     axes = figure.subplots(len(curves), 2, squeeze=False, sharex="row")
     for (left, right), c in zip(axes, curves, strict=True):
         thin = slice(None, None, max(1, len(c.t) // 1500))
-        left.plot(c.t[thin], c.measured[thin], color=INK, lw=1.0, label="measured")
-        left.plot(c.t[thin], c.before[thin], color=RED, lw=0.9, label="model as given")
-        left.plot(c.t[thin], c.after[thin], color=BLUE, lw=0.9, ls=(0, (4, 2)), label="with the effects")
-        right.plot(c.t[thin], (c.measured - c.before)[thin], color=RED, lw=0.8)
-        right.plot(c.t[thin], (c.measured - c.after)[thin], color=BLUE, lw=0.8)
+        t, measured = c.t[thin], _broken(c.t[thin], c.measured[thin])
+        left.plot(t, measured, color=INK, lw=1.0, label="measured")
+        left.plot(t, _broken(t, c.before[thin]), color=RED, lw=0.9, label="model as given")
+        left.plot(t, _broken(t, c.after[thin]), color=BLUE, lw=0.9, ls=(0, (4, 2)), label="with the effects")
+        right.plot(t, measured - c.before[thin], color=RED, lw=0.8)
+        right.plot(t, measured - c.after[thin], color=BLUE, lw=0.8)
         right.axhspan(-2 * c.floor, 2 * c.floor, color=GREY, alpha=0.3, lw=0)
         for a, b in c.spans[:40]:
             right.axvspan(a, b, color="#f2c14e", alpha=0.25, lw=0)
@@ -66,3 +68,9 @@ def draw(curves: list[Curve], width: float = 7.4) -> str:
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
+
+
+def _broken(t: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """`x` (T,) without the first sample after every gap in `t`, so that no line is drawn over it."""
+    step = np.diff(t, prepend=t[0])
+    return np.where(step > GAP * np.median(step), np.nan, x)
