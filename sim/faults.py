@@ -211,7 +211,9 @@ class FaultyWorld(World):
 
     def _active(self, fault: str) -> bool:
         """Whether a fault goes on, in a call that it changes."""
-        active = self.clock.now() < self._until.get(fault, -FOREVER)
+        if fault not in self._until:  # no clock is asked then: one that is gone must keep no stop from the robot
+            return False
+        active = self.clock.now() < self._until[fault]
         if active:
             self._feel(fault)
         return active

@@ -84,6 +84,15 @@ def test_a_lost_command_is_lost_without_a_word_and_so_is_a_stop():
     assert len(inner.sent) == sent + 1
 
 
+def test_a_stop_gets_through_where_the_clock_is_gone_before_any_fault():
+    inner, world = faulty("lost_command")
+    stopped = []
+    inner.stop = lambda: stopped.append("stop")
+    inner.clock.now = lambda: 1 / 0
+    world.stop()
+    assert stopped == ["stop"]
+
+
 def test_a_force_spike_is_large_and_short():
     inner, world = faulty("force_spike")
     begin(world)
