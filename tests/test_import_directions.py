@@ -27,6 +27,7 @@ ALLOWED_SIM = {
     "onnx_record",
     "faults",
     "fence",
+    "portable_blas",
     "freshness",
     "observation_form",
     "waiting",
