@@ -20,11 +20,11 @@ FINE = 16  # rows per period of the cutoff where the log has as many: a sign, a 
 FEWEST = 10  # rows of an episode that the filters have to leave sound
 THINNED = 0.4  # cutoff of the filter a log is thinned through, over the rate of the rows
 SPEED = 0.98  # correlation with the slope of the position from which on a column is a speed
-OFF_SCALE = 0.02  # by which a speed may be larger or smaller than the slope of the position
-OFF_PHASE = 0.1  # [rad] by which it may be late at the motion's cutoff
+OFF_SCALE = 0.03  # by which a speed may be larger or smaller than the slope of the position; robots looked at: 0.013
+OFF_PHASE = 0.4  # [rad] by which it may be late at the cutoff; robots looked at: 0.21, what was made late: 0.9 and more
 RINGING = 5e-4  # of the usual speed: the error of a smoothed speed where a motion starts or ends, 99 of 100 samples
 SMEARED = 0.75  # periods of the shared filter's cutoff by which one stretch reaches into the next
-ENDS = 2.0  # the same at the ends of a log that is cut in mid-motion, where a true model leaves four times the noise
+ENDS = 0.7  # the same at the ends of a log; two periods tell more equals and cost real logs of seconds too much
 SHARED = 0.7  # cutoff of the filter both sides of the balance go through, relative to the motion's
 
 

@@ -13,7 +13,7 @@ from .log import JointLog
 from .remains.events import Burst, burst_share, bursts, stands_out
 from .remains.remainder import Remainder, leftover
 from .remains.symbolic import guess
-from .thresholds import BURST_SHARE, LEFT, REMAINDER, REMAINDER_SIZE, SHARE, TRANSFER
+from .thresholds import BURST_SHARE, MOST, REMAINDER, REMAINDER_SIZE, SHARE, TRANSFER
 from .workflow import Named, explained
 
 
@@ -252,7 +252,7 @@ class _Missing:
     @property
     def much(self) -> bool:
         """Whether that is much of what can be explained, or some of it and most of what is left of a channel."""
-        most = any(e > LEFT * r.base for e, r in zip(self.energy, self.remainders, strict=True))
+        most = any(e > MOST * r.base for e, r in zip(self.energy, self.remainders, strict=True))
         return self.share > REMAINDER or (most and self.share > SHARE)
 
     @property

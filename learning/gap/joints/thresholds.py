@@ -11,6 +11,7 @@ SHARE = 0.008  # and at least this part of the energy explained in the channel i
 LEFT = 0.5  # or this part of what is left there without it: much, beside something larger by far
 CROSS = 0.3  # part of a step's gain that must survive on unseen folds
 REMAINDER = 0.06  # `unknown` above this part of the explainable energy left unexplained
+MOST = 0.8  # or above this part of what is left in a channel, if that is also `SHARE` of what is explained
 REMAINDER_SIZE = 0.08  # energy of a predictable leftover over the floor's before it counts
 BURST_SHARE = 0.35  # part of a channel's leftover that bursts must hold before they are called contact
 CONFIDENCE = 0.8  # part of the bootstrap resamples that must keep an effect
