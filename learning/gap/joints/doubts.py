@@ -12,6 +12,7 @@ from .rigid import RigidModel
 BETTER = 0.5  # of what the model misses is left with the other sign, or without gravity
 BOTH_WAYS = 0.05  # of the rows at least have either sign in the model
 RIPPLE = 0.02  # of the largest load, by which the filter that thins a log reaches below its least
+WEIGHTLESS = 0.3  # of what moves the heaviest joint, from which on what holds it up is in its load too
 SIZE = 0.3  # by which a load goes rather with the model's size than with its value, as a correlation
 
 
@@ -35,7 +36,11 @@ def doubts(model: RigidModel, logs: Sequence[JointLog], columns: Sequence[str]) 
         if _alike(x, y) < 0 and np.mean((x + y) ** 2) < BETTER * np.mean((x - y) ** 2):
             return f"column '{name}' is nearly minus the model's load: its sign, or that of the joint, is the other one"
     weight = np.concatenate([_held(model, log) for log in logs])
-    if np.mean((measured - rigid + weight) ** 2) < BETTER * np.mean((measured - rigid) ** 2):
+    c = int(np.argmax(weight.std(axis=0)))
+    parts = np.column_stack([rigid[:, c] - weight[:, c], weight[:, c]])  # in currents both are small, not one alone
+    moving, held = np.linalg.lstsq(parts, measured[:, c], rcond=None)[0]
+    lighter = np.mean((measured - rigid + weight) ** 2) < BETTER * np.mean((measured - rigid) ** 2)
+    if lighter and abs(held) < WEIGHTLESS * moving:
         return f"columns {columns[0]} to {columns[-1]} hardly have gravity in them, which the model has"
     return ""
 
