@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from ..extras import later
 from ..yaml_text import load_yaml
 from .body.body_registry import BODY_EFFECTS
-from .effect import EffectError
+from .effect import EffectError, check_values
+from .joint.arm_geometry import GEOMETRY
 from .joint.joint_registry import JOINT_EFFECTS
 from .joint.link_inertia import BODY_PARAMETERS, BODY_TERMS
 
@@ -150,6 +151,10 @@ def check_effect(system: str, e: EffectEntry) -> None:
             if set(e.parameters) != wanted:
                 raise EffectError(f"effect {e.name} has parameters {sorted(e.parameters)}, it takes {sorted(wanted)}")
             return
+        if e.name in GEOMETRY and system == "arm":
+            told = tuple(p for p in GEOMETRY[e.name] if p.name in e.parameters) or GEOMETRY[e.name][:1]
+            check_values(e.name, e.parameters, told, GEOMETRY[e.name])
+            return
         registry: dict[str, Any] = dict(JOINT_EFFECTS)
     elif system == "fall":
         registry = dict(BODY_EFFECTS)
@@ -165,6 +170,6 @@ def check_effect(system: str, e: EffectEntry) -> None:
 
         registry = dict(CLOTH_EFFECTS)
     if e.name not in registry:
-        names = ", ".join(registry)
+        names = ", ".join([*registry, *(GEOMETRY if system == "arm" else ())])
         raise EffectError(f"effect '{e.name}' does not exist for system {system}, it must be one of {names}")
     registry[e.name].check(e.parameters)

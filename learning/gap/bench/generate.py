@@ -11,6 +11,7 @@ from .case import Truth
 from .fall_case import drop_again, write_fall_case
 from .joint_case import write_joint_case
 from .payload_case import write_payload_case
+from .placement_case import write_placement_case
 
 
 def generate(system: str, seed: int, folder: Path) -> Truth:
@@ -24,6 +25,8 @@ def generate(system: str, seed: int, folder: Path) -> Truth:
         truth = write_fall_case(seed, where)
     elif system == "payload":
         truth = write_payload_case(seed, where)
+    elif system == "placement":
+        truth = write_placement_case(seed, where)
     else:
         from .cloth_case import write_cloth_case
 

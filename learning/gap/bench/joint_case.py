@@ -165,9 +165,10 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
     added = [np.zeros_like(u) for u in loads]
     used = set()
     for _ in range({"none": 0, "recalibration": 0, "single": 1, "two": 2, "outside": 1}[kind]):
-        name, target, j, load, size, values = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+        asked = (system, kind, used, t, motions, loads, noise, names, arm)
+        name, target, j, load, size, values = hidden_effect(rng, *asked)
         while size < LEAST:
-            name, target, j, load, size, values = _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm)
+            name, target, j, load, size, values = hidden_effect(rng, *asked)
         used |= ALIKE.get(name, {name})
         late = (j, values["time"]) if name == "delay" else late
         for e, x in enumerate(load):
@@ -187,7 +188,7 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
     return added
 
 
-def _hidden(rng, system, kind, used, t, motions, loads, noise, names, arm):
+def hidden_effect(rng, system, kind, used, t, motions, loads, noise, names, arm):
     """Draw one effect: name, target, the joint it loads most, loads (T, n) per episode, size there, and parameters."""
     size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
     pool = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from .case import STEPS, Truth, coloured
+from .arm_log import ArmReading, write_arm_log
+from .case import Truth
 from .joint_case import ROBOTS, arm_motions, inverse_dynamics
 
 CARRIES = {"ur5": 5.0, "ur10": 10.0, "panda": 3.0, "z1": 2.0, "xarm7": 3.5}  # [kg], makers' data sheets
@@ -54,9 +55,7 @@ def write_payload_case(seed: int, folder: Path) -> Truth:
     spells, changes = _spells(rng, kind, t[-1], episodes, heldout, bodies)
     dry, viscous = (rng.uniform(0.5, 4.0, len(names)) * noise * (rng.random() < 0.5) for _ in range(2))
     speed = np.sqrt(np.mean(np.concatenate([v for _, v, _ in motions]) ** 2, axis=0)) + 1e-12
-    step = noise * rng.choice(STEPS)
-    position_step = rng.choice([0.0, 2e-5, 5e-5])
-    give_speed = rng.random() < 0.6
+    reading = ArmReading.drawn(rng, noise)
     entries = []
     for e, ((q, v, a), load) in enumerate(zip(motions, loads, strict=True)):
         carried = [_carrying(pin, model, b, (q, v, a)) for b in bodies]
@@ -64,18 +63,8 @@ def write_payload_case(seed: int, folder: Path) -> Truth:
         which = np.array([body for _, body in spells[e]])[held]
         total = np.where((which == 1)[:, None], carried[1], carried[0]) + load
         total = total + dry * np.sign(v) + viscous * v / speed
-        total = total + np.stack([coloured(rng, len(t), t[1], s) for s in noise], axis=1)
-        total = np.where(step > 0, np.round(total / np.where(step > 0, step, 1)) * step, total)
-        q = np.round(q / position_step) * position_step if position_step > 0 else q
-        v = v + 3e-4 * np.abs(v).max(axis=0) * rng.normal(size=v.shape)
-        n = q.shape[1]
-        table = {"t": t, **{f"q{j + 1}": q[:, j] for j in range(n)}}
-        table |= {f"dq{j + 1}": v[:, j] for j in range(n)} if give_speed else {}
-        table |= {f"tau{j + 1}": total[:, j] for j in range(n)}
         file = folder / f"episode_{e + 1}.csv"
-        np.savetxt(
-            file, np.stack(list(table.values()), axis=1), delimiter=",", header=",".join(table), comments="", fmt="%.8g"
-        )
+        write_arm_log(file, rng, t, (q, v), total, reading)
         entries.append({"file": file.name, "role": "heldout" if e >= episodes - heldout else "fit"})
     content = {"system": "arm", "robot": robot, "episodes": entries}
     (folder / "measurement.yaml").write_text(yaml.safe_dump(content, sort_keys=False))

@@ -16,7 +16,7 @@ from typing import Any
 from ..errors import GapError
 from .score import Row, judge_case, side_by_side
 
-SYSTEMS = ("arm", "axis", "fall", "cloth", "payload")
+SYSTEMS = ("arm", "axis", "fall", "cloth", "payload", "placement")
 
 
 @cache
@@ -85,7 +85,7 @@ def run(
     """Score seeds first:last of every system and print the table.
 
     Args:
-        systems: among arm, axis, fall, cloth, payload.
+        systems: among arm, axis, fall, cloth, payload, placement.
         seeds: `first:last`.
         half: `tune` (even seeds), `report` (odd) or `both`.
         out: folder for sets, truths, rows and the table; what is there is not done again.

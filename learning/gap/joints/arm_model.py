@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ....sim.effects.effect import Parameter
+from ....sim.effects.joint.arm_geometry import BASE, GEOMETRY, ZERO, tilt_changes, tilts, with_tilted_base
 from ....sim.effects.joint.link_inertia import with_point_mass, with_scaled_mass
 from ..errors import GapError
 from .rigid import BodyTerm, RigidModel
@@ -15,6 +16,7 @@ from .rigid import BodyTerm, RigidModel
 GRAVITY = (0.0, 0.0, -9.81)
 MOTIONS_KEPT = 8  # of which the regressor is remembered
 MOMENTS = tuple(Parameter(name=f"mass_com_{a}", unit="kg m") for a in "xyz")
+SMALL = 1e-5  # an angle at which loads are straight in it [rad]
 MASS_DEVIATION = 0.1  # a link mass in a URDF is usually right to a tenth
 
 
@@ -25,13 +27,15 @@ class ArmModel(RigidModel):
         urdf: where the model was read from.
         model: pinocchio's model of the measured joints.
         tool: pinocchio's inertia of what is fixed to the last link, None where nothing is.
+        zeros: (n,) what each joint's reading lacks [rad]; None for nothing.
     """
 
-    def __init__(self, urdf: Path, model: Any, tool: Any) -> None:
+    def __init__(self, urdf: Path, model: Any, tool: Any, zeros: np.ndarray | None = None) -> None:
         import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
         self._pin = pin
         self.urdf, self.model, self.tool = urdf, model, tool
+        self._zeros = np.zeros(model.njoints - 1) if zeros is None else zeros
         self.data = model.createData()
         self.joints = tuple(model.names[1:])
         self.prismatic = tuple("P" in model.joints[i].shortname()[10:12] for i in range(1, model.njoints))
@@ -81,7 +85,8 @@ class ArmModel(RigidModel):
         return tuple(float(x) if x > 0 else float("inf") for x in self.model.effortLimit)
 
     def configuration(self, q: np.ndarray) -> np.ndarray:
-        """Pinocchio's configuration of joint angles (n,): continuous joints become cosine and sine."""
+        """Pinocchio's configuration of joint angles as read (n,): continuous joints become cosine and sine."""
+        q = q + self._zeros
         if not any(self._round):
             return np.ascontiguousarray(q)
         out = []
@@ -150,6 +155,19 @@ class ArmModel(RigidModel):
             )
         return terms
 
+    def geometry_terms(self) -> list[BodyTerm]:
+        """How the base may stand, and where the zeros of turning joints may be; gravity alone shows either."""
+        gravity = np.asarray(self.model.gravity.linear)
+        if not gravity.any():
+            return []
+        zeros = [
+            BodyTerm(name="encoder_offset", target=joint, recalibration=False, shape={}, parameters=(ZERO,))
+            for joint, slides in zip(self.joints, self.prismatic, strict=True)
+            if not slides
+        ]
+        tilt = BodyTerm(name="base_tilt", target=BASE, recalibration=False, shape={}, parameters=tilts(gravity))
+        return [tilt, *zeros]
+
     @property
     def payload(self) -> BodyTerm:
         """A point mass on the last link, at a centre of its own."""
@@ -168,6 +186,10 @@ class ArmModel(RigidModel):
         which the point mass is taken, so that its inertia about the joint axes is not.
         """
         pin, model = self._pin, self.model
+        if term.name == "base_tilt":
+            return self._tilt_columns(term, q)
+        if term.name == "encoder_offset":
+            return self._zero_columns(term, q, dq, ddq)
         index = model.getJointId(term.target)
         if term.name == "mass":
             inertia = model.inertias[index]
@@ -182,6 +204,22 @@ class ArmModel(RigidModel):
                 point = pin.Inertia(1.0, c, np.zeros((3, 3))).toDynamicParameters()
                 mix[4:, 0] = point[4:]
         return self.inertial_columns(term.target, q, dq, ddq) @ mix
+
+    def _tilt_columns(self, term: BodyTerm, q: np.ndarray) -> np.ndarray:
+        """Torque of gravity per turn of the base about each axis, exact at the term's own turn, (T, n, p)."""
+        pin, out = self._pin, []
+        names = [p.name for p in term.parameters]
+        for change in tilt_changes(np.asarray(self.model.gravity.linear), names, term.shape):
+            turned = self.model.copy()
+            turned.gravity.linear = change
+            data = turned.createData()
+            out.append(np.array([pin.computeGeneralizedGravity(turned, data, self.configuration(a)) for a in q]))
+        return np.stack(out, axis=2)
+
+    def _zero_columns(self, term: BodyTerm, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+        """Torque per angle that one joint's reading lacks, exact at the term's own angle, (T, n, 1)."""
+        angle = term.shape.get("angle", 0.0) or SMALL
+        return ((self.patched(term, {"angle": angle}).load(q, dq, ddq) - self.load(q, dq, ddq)) / angle)[:, :, None]
 
     def inertial_columns(self, body: str, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
         """Torque per unit of each of a body's ten inertial parameters, (T, n, 10), in pinocchio's order."""
@@ -208,11 +246,16 @@ class ArmModel(RigidModel):
 
     def patched(self, term: BodyTerm, values: dict[str, float]) -> ArmModel:
         """The arm with a body changed by `values`."""
+        model, zeros = self.model, self._zeros
         if term.name == "mass":
-            model = with_scaled_mass(self.model, term.target, values["mass"])
+            model = with_scaled_mass(model, term.target, values["mass"])
+        elif term.name == "base_tilt":
+            model = with_tilted_base(model, values)
+        elif term.name == "encoder_offset":
+            zeros = zeros + values["angle"] * (np.array(self.joints) == term.target)
         else:
-            model = with_point_mass(self.model, term.target, self.moments(term, values))
-        return ArmModel(self.urdf, model, self.tool)
+            model = with_point_mass(model, term.target, self.moments(term, values))
+        return ArmModel(self.urdf, model, self.tool, zeros)
 
     def with_armature(self, joint: int, inertia: float) -> ArmModel:
         """The arm with a rotor's inertia [kg m^2] on one joint."""
@@ -220,10 +263,12 @@ class ArmModel(RigidModel):
         armature = np.array(model.armature)
         armature[joint] += inertia
         model.armature = armature
-        return ArmModel(self.urdf, model, self.tool)
+        return ArmModel(self.urdf, model, self.tool, self._zeros)
 
     def moments(self, term: BodyTerm, values: dict[str, float]) -> dict[str, float]:
-        """Mass and first moments of a payload or tool change; a scaled tool brings the URDF tool's own centre."""
+        """Numbers of a change as a model file has them; a scaled tool brings the URDF tool's own centre."""
+        if term.name in GEOMETRY:
+            return dict(values)
         if "mass_com_x" in values or self.tool is None:
             return super().moments(term, values)
         return {

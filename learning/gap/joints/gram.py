@@ -74,10 +74,18 @@ def fold_edges(logs: list[JointLog], folds: int, mixed: bool = False) -> list[li
 SHORT = 3  # stretches of one fold in one log, where logs are mixed
 
 
-def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6) -> Gram:
-    """Build every column once and sum products per fold and channel."""
+def assemble(blocks: list[Block], logs: list[JointLog], folds: int = 6, *, mixed: bool = False) -> Gram:
+    """Build every column once and sum products per fold and channel.
+
+    Args:
+        blocks: whose columns.
+        logs: in which.
+        folds: how many.
+        mixed: whether every log is in every fold, as it is where something does not act all the time.
+    """
     spans, k = column_spans(blocks)
-    edges = fold_edges(logs, folds, mixed=any(b.term is not None and b.term.during is not None for b in blocks))
+    mixed = mixed or any(b.term is not None and b.term.during is not None for b in blocks)
+    edges = fold_edges(logs, folds, mixed=mixed)
     count = 1 + max(f for episode in edges for f, _, _ in episode)
     channels = logs[0].residual.shape[1]
     G, b = np.zeros((count, channels, k, k)), np.zeros((count, channels, k))

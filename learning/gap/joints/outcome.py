@@ -56,6 +56,7 @@ def judge(
     worse: str = "",
     model_error: np.ndarray | None = None,
     doubts: str = "",
+    unsteady: str = "",
 ) -> Outcome:
     """Look at what the named effects leave and decide.
 
@@ -68,6 +69,7 @@ def judge(
         worse: what had been named before the held-out logs were seen to be worse with it, or "".
         model_error: (C,) what the model leaves although nothing is missing, root mean square, or None.
         doubts: why the loads cannot be those of the model, or "".
+        unsteady: which effect is not the same all the time, or "".
     """
     error2 = np.zeros(logs[0].residual.shape[1]) if model_error is None else model_error**2
     left = unexplained(named, logs)
@@ -84,13 +86,15 @@ def judge(
     strange = bool(named.blocks) and _strange(named, heldout, left, error2) > REMAINDER
     unknown = (bool(missing.energy.any()) and missing.much) or strange
     text = ""
-    unknown = unknown or bool(worse) or bool(doubts)
+    unknown = unknown or bool(worse) or bool(doubts) or bool(unsteady)
     if doubts:
         text = doubts
     elif worse:
         text = f"{worse} would explain the fitted recordings and make the held-out ones worse"
     elif strange:
         text = "the effects that explain the fitted recordings do not hold on the held-out ones"
+    elif unsteady:
+        text = unsteady
     elif unknown:
         text = guess(logs, calm, missing.worst)
     return Outcome(

@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize
 
+from ....sim.effects.joint.arm_geometry import GEOMETRY
 from ....sim.effects.joint.joint_registry import JOINT_EFFECTS
 from .block import Block, body_block, joint_block
 from .lag import at_lag
 from .log import JointLog
 from .rigid import RigidModel
+
+NEAR = 2e-3  # [rad] within which an angle's columns are as good as at the angle itself
 
 
 def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: list[JointLog]) -> list[Block]:
@@ -25,11 +28,21 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
             com = np.clip(values[1:] / values[0], -1.0, 1.0)
             shape = {f"com_{a}": float(x) for a, x in zip("xyz", com, strict=True)}
             out[i] = body_block(replace(block.term, shape=shape), model)
+        elif block.term is not None and block.name in GEOMETRY:
+            out[i] = exact_at(block, values, model)
         elif block.name == "delay":
             out[i] = at_lag(block, float(values[0]))
         elif block.shape and block.name in JOINT_EFFECTS:
             out[i] = fit_shape(block, [b for k, b in enumerate(out) if k != i], model, logs)
     return out
+
+
+def exact_at(block: Block, values: np.ndarray, model: RigidModel) -> Block:
+    """A tilt's or a zero's block with columns that are exact at some angles (p,), not at none; itself near there."""
+    angles = {p.name: float(x) for p, x in zip(block.parameters, values, strict=True)}
+    if block.term is None or all(abs(x - block.shape.get(name, 0.0)) < NEAR for name, x in angles.items()):
+        return block
+    return body_block(replace(block.term, shape=angles), model)
 
 
 def fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:

@@ -85,6 +85,10 @@ class RigidModel(abc.ABC):
     def body_terms(self) -> list[BodyTerm]:
         """Changes to the bodies that the search may propose."""
 
+    def geometry_terms(self) -> list[BodyTerm]:
+        """How else the whole may stand, and where else the zeros of its readings may be."""
+        return []
+
     @property
     @abc.abstractmethod
     def payload(self) -> BodyTerm:

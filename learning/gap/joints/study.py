@@ -28,6 +28,7 @@ from .outcome import MET_ONCE, Outcome, farther, inadequacy, judge, louder, make
 from .payloads.carried import Fit, carried_at_first, changes_of, told_in
 from .payloads.solid import with_solid_body
 from .placebo import placebos
+from .remains.steadiness import unsteady
 from .rests import has_dry_friction, left_out, moving
 from .rigid import RigidModel
 from .rivals import Unsearched, beside, determined, parting, rivals
@@ -147,6 +148,7 @@ class JointStudy(Study):
             self.unit,
             self._searched[1],
             doubts=doubts(self.model, self.fitted, self.channels),
+            unsteady=unsteady(self.named, self.fitted),
         )
 
     @cached_property

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..effect import EffectError, JointMotion
+from ..joint.arm_geometry import GEOMETRY
 from ..joint.joint_registry import JOINT_EFFECTS
 from ..joint.link_inertia import BODY_TERMS
 from ..model_file import EffectModel
@@ -45,6 +46,8 @@ class EffectBody:
         by_name = {i[1].decode(): i for i in info}
         movable = [i for i in info if i[2] in (client.JOINT_REVOLUTE, client.JOINT_PRISMATIC)]
         for e in (*effects.effects, *effects.recalibration):
+            if e.name in GEOMETRY:
+                raise EffectError(f"a PyBullet body cannot have {e.name}: load it turned so, or read its joints so")
             found = movable[0] if e.target == "axis" and movable else by_name.get(e.target)
             if found is None:
                 raise EffectError(f"the body has no joint '{e.target}', it has {', '.join(by_name)}")

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..effect import EffectError, JointMotion
 from ..model_file import EffectModel
+from .arm_geometry import with_tilted_base
 from .joint_registry import JOINT_EFFECTS
 from .link_inertia import BODY_TERMS, with_point_mass, with_scaled_mass
 
@@ -19,7 +20,7 @@ class EffectArm:
     """An arm whose bodies and joints carry the effects of a model file.
 
     Attributes:
-        model: the pinocchio model with masses, payload, tool and armature changed.
+        model: the pinocchio model with masses, payload, tool, armature and the way the base stands changed.
     """
 
     def __init__(self, model: pin.Model, effects: EffectModel, slow: float = 1e-3) -> None:
@@ -34,15 +35,21 @@ class EffectArm:
             model = with_scaled_mass(model, e.target, e.parameters["mass"])
         self._on_joint: list[tuple[str, int, dict[str, float]]] = []
         armature = np.array(model.armature)
+        self._zeros = np.zeros(model.nv)  # what the readings of the joints lack [rad]
         for e in effects.effects:
             if e.name in BODY_TERMS:
                 model = with_point_mass(model, e.target, e.parameters)
+                continue
+            if e.name == "base_tilt":
+                model = with_tilted_base(model, e.parameters)
                 continue
             if not model.existJointName(e.target):
                 raise EffectError(f"the model has no joint '{e.target}', it has {', '.join(list(model.names)[1:])}")
             joint = model.joints[model.getJointId(e.target)].idx_v
             if e.name == "armature":
                 armature[joint] += e.parameters["inertia"]
+            elif e.name == "encoder_offset":
+                self._zeros[joint] += e.parameters["angle"]
             else:
                 self._on_joint.append((e.name, joint, e.parameters))
         self.model = model.copy()
@@ -53,7 +60,9 @@ class EffectArm:
         """Loads a sensor would read along a motion, (T, n) [N m]; history-dependent effects included."""
         import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
-        rigid = np.array([pin.rnea(self.model, self.data, a, b, c) for a, b, c in zip(q, dq, ddq, strict=True)])
+        rigid = np.array(
+            [pin.rnea(self.model, self.data, self._true(a), b, c) for a, b, c in zip(q, dq, ddq, strict=True)]
+        )
         out = rigid.copy()
         for name, j, values in self._on_joint:
             motion = JointMotion(
@@ -66,12 +75,19 @@ class EffectArm:
         """Acceleration under a load (n,) [rad/s^2]; effects that need history are left out."""
         import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
 
-        rigid = pin.rnea(self.model, self.data, q, dq, np.zeros(self.model.nv))
+        at = self._true(q)
+        rigid = pin.rnea(self.model, self.data, at, dq, np.zeros(self.model.nv))
         left = np.array(load, dtype=float)
         for name, j, values in self._on_joint:
             if JOINT_EFFECTS[name].memoryless:
                 left[j] -= _instant(name, values, q[j], dq[j], rigid[j], load[j], self.slow)
-        return pin.aba(self.model, self.data, q, dq, left)
+        return pin.aba(self.model, self.data, at, dq, left)
+
+    def _true(self, q: np.ndarray) -> np.ndarray:
+        """Where the joints are that are read at `q`."""
+        import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
+
+        return pin.integrate(self.model, q, self._zeros) if self._zeros.any() else q
 
 
 def _instant(name: str, values: dict[str, float], q: float, dq: float, rigid: float, load: float, slow: float) -> float:

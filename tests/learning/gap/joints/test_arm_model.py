@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.learning.gap.errors import GapError
@@ -26,6 +28,23 @@ def test_a_changed_body_loads_the_joints_as_its_columns_say(arm, name, values):
     change = arm.patched(term, values).load(Q, DQ, DDQ) - arm.load(Q, DQ, DDQ)
     assert np.allclose(change, wanted, atol=0.02 * np.abs(wanted).max())  # a payload's own inertia is left out
     assert np.abs(wanted).max() > 0.1
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_a_tilt_and_a_zero_load_the_joints_as_their_columns_say(arm, exact):
+    for term in arm.geometry_terms():
+        values = {p.name: 0.2 * (-1.0) ** k for k, p in enumerate(term.parameters)}
+        at = replace(term, shape=values) if exact else term
+        wanted = arm.body_columns(at, Q, DQ, DDQ) @ np.array(list(values.values()))
+        change = arm.patched(term, values).load(Q, DQ, DDQ) - arm.load(Q, DQ, DDQ)
+        assert np.allclose(change, wanted, atol=(1e-6 if exact else 0.3) * max(np.abs(change).max(), 1e-6))
+        # a turn about an upright axis changes nothing
+        assert (np.abs(change).max() < 1e-9) == (term.target == "shoulder_pan_joint")
+
+
+def test_without_gravity_nobody_knows_how_an_arm_stands(tmp_path_factory):
+    urdf = find_urdf("ur10", tmp_path_factory.mktemp("set"))
+    assert ArmModel.from_urdf(urdf, 6, gravity=(0.0, 0.0, 0.0)).geometry_terms() == []
 
 
 def test_acceleration_undoes_load(arm):

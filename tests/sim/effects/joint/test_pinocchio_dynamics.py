@@ -26,6 +26,8 @@ def state(seed=0):
         ("offset", JOINT, {"value": 2.0}),
         ("armature", JOINT, {"inertia": 0.5}),
         ("payload", LAST, {"mass": 1.5, "mass_com_x": 0.0, "mass_com_y": 0.1, "mass_com_z": 0.2}),
+        ("base_tilt", "base", {"about_x": 0.2, "about_y": -0.1}),
+        ("encoder_offset", JOINT, {"angle": 0.3}),
     ],
 )
 def test_forward_undoes_inverse(effect):
@@ -44,6 +46,14 @@ def test_an_effect_changes_its_own_joint():
     )[0]
     assert change[1] == pytest.approx(3.0 * dq[1])
     assert np.allclose(np.delete(change, 1), 0.0)
+
+
+def test_an_encoder_that_reads_too_little_is_a_joint_farther_on():
+    q, dq, ddq = state(2)
+    read, there = arm(("encoder_offset", JOINT, {"angle": 0.3})), q + 0.3 * (np.arange(MODEL.nv) == 1)
+    wanted = arm().inverse(np.zeros(1), there[None], dq[None], ddq[None])
+    assert np.allclose(read.inverse(np.zeros(1), q[None], dq[None], ddq[None]), wanted)
+    assert not np.allclose(wanted, arm().inverse(np.zeros(1), q[None], dq[None], ddq[None]))
 
 
 def test_a_joint_that_does_not_exist_is_refused():
