@@ -35,14 +35,14 @@ class _Near:
     Attributes:
         given: (T, C) channels of the model as given.
         there: the same at the values.
-        slopes: of each parameter: the same for each of its unit.
+        slopes: of each parameter: the same for each of its unit, below its value and above.
         drags: (k,) of the fingers, that were simulated [m].
         dragged: (k, T, C) what they add there.
     """
 
     given: np.ndarray
     there: np.ndarray
-    slopes: dict[str, np.ndarray]
+    slopes: dict[str, tuple[np.ndarray, np.ndarray]]
     drags: np.ndarray
     dragged: np.ndarray
 
@@ -116,13 +116,25 @@ class DressingSystem(System):
     def _around(self, stretch: Stretch, drag: float) -> _Near:
         there, slopes = self._load(stretch, self.centre), {}
         for name, p in self._parameters.items():
-            step = STEP * p.typical if self.centre[name] + STEP * p.typical <= p.upper else -STEP * p.typical
-            beside = self._load(stretch, {**self.centre, name: self.centre[name] + step})
-            slopes[name] = (beside - there) / step
+            slopes[name] = self._slopes(stretch, there, name, p)
         given = self._load(stretch, dict.fromkeys(self.centre, 0.0))
         drags = sorted({*DRAGS, drag}) if stretch.held_arm >= 0 else [DRAG.lower, DRAG.upper]
         added = [self._load(stretch, self.centre, x) - there if stretch.held_arm >= 0 else 0.0 * there for x in drags]
         return _Near(given=given, there=there, slopes=slopes, drags=np.array(drags), dragged=np.stack(added))
+
+    def _slopes(
+        self, stretch: Stretch, there: np.ndarray, name: str, parameter: Parameter
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Slopes below and above a value; the same where one side has to do.
+
+        What is absent may have either sign, and cloth that is softer than it should be hangs otherwise than one that is
+        stiffer: by the slope of the latter, the former was not found, and a delay named for it.
+        """
+        value, step = self.centre[name], STEP * parameter.typical
+        sides = [s for s in (step, -step) if parameter.lower <= value + s <= parameter.upper]
+        sides = sides if value == 0.0 else sides[:1]
+        found = [(self._load(stretch, {**self.centre, name: value + s}) - there) / s for s in sides]
+        return found[-1], found[0]
 
     def _load(self, stretch: Stretch, values: Mapping[str, float], drag: float = 0.0) -> np.ndarray:
         found = self._predictions.of(stretch, entries(self._simulated, values), drag)
@@ -133,7 +145,8 @@ class DressingSystem(System):
         near = self._near[int(log["window"][0])]
 
         def straight(at: Mapping[str, float]) -> np.ndarray:
-            moved = (slope * (at[name] - self.centre[name]) for name, slope in near.slopes.items())
+            away = {name: at[name] - x for name, x in self.centre.items()}
+            moved = (sides[int(away[name] > 0.0)] * away[name] for name, sides in near.slopes.items())
             return near.there + sum(moved, np.zeros((1, len(self.channels))))
 
         unit = {name: p.typical for name, p in self._parameters.items()}
