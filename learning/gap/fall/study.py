@@ -25,6 +25,7 @@ from .recording import drop_of
 from .search import EFFECT, LARGEST, DropSearch, air_lift, beside, equals, rivals, search
 
 REMAINDER = 0.003  # a few parameters follow any smooth fall closely, so little has to be left
+MOST = 0.5  # or of all that is left, this part, which repeats from drop to drop as no noise does
 VISIBLE = 0.1  # of the floor, with ballast: then the same numbers have to hold for every mass, and less has to be left
 SIGNIFICANT = 2e-3  # `unknown` below this p-value of what repeats
 CLEAN = 0.05  # a set leaves nothing that repeats at or above it
@@ -193,6 +194,7 @@ class FallStudy(Study):
         much = energy / (energy + explained + 1e-30) > REMAINDER
         if any(d.factor != 1.0 for d in self.fitted):
             much = energy > (VISIBLE * self.found.floor) ** 2
+        much = much or energy > MOST * _squares(self.chosen) / self.found.rows
         if self.leftover.p_value < SIGNIFICANT and much:
             return "unknown"
         if self._strange > TRANSFERRED or self._many or self._rejected:

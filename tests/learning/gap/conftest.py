@@ -45,10 +45,11 @@ def drop_set(tmp_path):
     """Write a set of drops from 20 m with quadratic drag `coefficient` [1/m] and 1 cm of noise.
 
     `ballast` is the mass in each episode over the 0.2 kg of the body; `steep` adds a drag with the cube [s/m^2]; `held`
-    is for how long the body is held in each episode before it is let go of [s].
+    is for how long the body is held in each episode before it is let go of [s]; faster than `crisis` [m/s] it has 0.4
+    of its drag.
     """
 
-    def make(coefficient=0.0, episodes=4, ballast=(), steep=0.0, held=()) -> Path:
+    def make(coefficient=0.0, episodes=4, ballast=(), steep=0.0, held=(), crisis=float("inf")) -> Path:
         folder = tmp_path / "drops"
         folder.mkdir()
         listed = []
@@ -57,7 +58,8 @@ def drop_set(tmp_path):
             for step in range(1700):
                 if step % 33 == 0:
                     heights.append(h)
-                a = -9.81 - (coefficient * abs(v) * v + steep * v**3) / (ballast[k] if ballast else 1.0)
+                drag = coefficient * (0.4 if abs(v) > crisis else 1.0)
+                a = -9.81 - (drag * abs(v) * v + steep * v**3) / (ballast[k] if ballast else 1.0)
                 h += 1e-3 * (v + 0.5e-3 * a)
                 v += 1e-3 * a
             heights = [20.0] * (round(held[k] / 0.033) if held else 0) + heights

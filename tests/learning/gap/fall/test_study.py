@@ -55,6 +55,15 @@ def test_a_drag_outside_the_registry_shows_with_ballast(drop_set):
     assert "speed" in guess
 
 
+def test_most_of_what_is_left_repeats_where_a_drag_drops_at_some_speed(drop_set):
+    study = open_study(load_set(drop_set(0.05, episodes=5, crisis=9.0)))
+    verdict, effects, _, guess = study.name()
+    assert verdict == "unknown"
+    assert effects  # which follow it to some centimetres
+    assert study.show()[0].closed > 0.9
+    assert "the same in all drops" in guess or "from drop to drop" in guess
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
