@@ -188,7 +188,18 @@ def _effects(rng, system, kind, truth, t, motions, loads, noise, names, arm):
     return added
 
 
-def hidden_effect(rng, system, kind, used, t, motions, loads, noise, names, arm):
+def hidden_effect(
+    rng: np.random.Generator,
+    system: str,
+    kind: str,
+    used: set[str],
+    t: np.ndarray,
+    motions: Sequence[Sequence[np.ndarray]],
+    loads: Sequence[np.ndarray],
+    noise: np.ndarray,
+    names: Sequence[str],
+    arm: Any,
+) -> tuple[str, str, int, list[np.ndarray], float, dict[str, float]]:
     """Draw one effect: name, target, the joint it loads most, loads (T, n) per episode, size there, and parameters."""
     size = draw_size(rng) if kind != "outside" else float(np.exp(rng.uniform(np.log(1.5), np.log(8.0))))
     pool = OUTSIDE if kind == "outside" else (AXIS_EFFECTS if system == "axis" else (*INSIDE, "payload", "wrong_tool"))
