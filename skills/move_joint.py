@@ -46,7 +46,7 @@ class MoveJoint(Skill):
         """Refuse a joint that the robot does not have, and degrees, before anything moves.
 
         Raises:
-            PortError: it does not have it, or `angle` is more than a whole turn.
+            PortError: it does not have it, `angle` is more than a whole turn, or `speed` not above 0.
         """
         super().__init__(name, context, **ports)
         if isinstance(joint := ports.get("joint"), str):
@@ -55,6 +55,9 @@ class MoveJoint(Skill):
             raise PortError(
                 f"MoveJoint.angle is {angle:g} rad, but no joint turns farther than 2 pi: is it in degrees?"
             )
+
+        if isinstance(speed := self.bindings["speed"], int | float) and not speed > 0.0:
+            raise PortError(f"MoveJoint.speed is {speed:g} rad/s, but must be above 0: `angle` says which way")
 
     def steps(self) -> Iterator[None]:
         """Send one trajectory and see it through."""

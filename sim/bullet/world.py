@@ -167,10 +167,12 @@ class BulletWorld(CoupledRoom, World):
         """Begin the run where another one was, at rest: the robot at the waypoint next to where it stood, arms ready.
 
         Raises:
-            WorldError: the run has begun, or the state is of another gown.
+            WorldError: the run has begun, the state is of another gown, or there is no gown.
         """
         if self._steps:
             raise WorldError("a recorded state can only be set before the run begins")
+        if not len(self.scene.mesh.faces):
+            raise WorldError("a run without a gown cannot begin where another one was: its objects are not put there")
         asked, given = len(self._cloth.vertices()), len(state.vertices)
         if asked != given:
             raise WorldError(f"the recorded gown has {given} vertices, but this one has {asked}")

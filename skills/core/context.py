@@ -163,7 +163,7 @@ class Context:
             CaretreeError: this run has none.
         """
         if self._senses is None:
-            raise CaretreeError("this run has no senses: the task's build() offers none with context.offer_senses(...)")
+            raise CaretreeError("this run has no senses: the task has no senses(context) that returns some")
         return self._senses
 
     @property

@@ -33,7 +33,7 @@ class Key:
     """Name of a value on the board, given to a skill in place of a constant."""
 
     def __init__(self, name: str) -> None:
-        if not name.isidentifier():
+        if not isinstance(name, str) or not name.isidentifier():
             raise PortError(f"key {name!r} is not an identifier such as 'collar' or 'arm_left'")
         self.name = name
 

@@ -83,6 +83,8 @@ class SkillFailure(Exception):  # noqa: N818 it is the outcome of a skill, not a
     """
 
     def __init__(self, reason: Reason, detail: str = "") -> None:
+        if not isinstance(reason, Reason):
+            raise TypeError(f"SkillFailure takes a Reason such as Reason.GRASP_MISSED, not {reason!r}")
         super().__init__(f"{reason.value} {detail}".strip())
         self.reason = reason
         self.detail = detail

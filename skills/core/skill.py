@@ -35,11 +35,16 @@ from ...sim.blame import told
 from ...sim.world import EmergencyStop, SensorLost
 from ..motion.errors import MotionError, PathBlocked, Unreachable
 from .context import Context
-from .ports import Input, Output, bind_ports, ports_of
+from .ports import Input, Output, PortError, bind_ports, ports_of
 from .reasons import Failure, Reason, SkillFailure, reason_of
 from .scope import Scope
 from .world_handle import WorldHandle
 
+# what py_trees and `Skill` set on every leaf, beside what their classes have
+OF_EVERY_SKILL = frozenset(
+    {"name", "context", "world", "bindings", "failure", "status", "parent", "children", "id", "logger", "iterator"}
+    | {"feedback_message", "blackboards", "qualified_name", "blackbox_level"}
+)
 MOTION_REASONS = {Unreachable: Reason.UNREACHABLE, PathBlocked: Reason.PATH_BLOCKED}
 
 
@@ -64,10 +69,22 @@ class Skill(py_trees.behaviour.Behaviour):
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
+        if not (isinstance(cls.reasons, tuple) and all(isinstance(r, Reason) for r in cls.reasons)):
+            raise TypeError(
+                f"{cls.__name__}.reasons is a tuple of Reason, as (Reason.GRASP_MISSED,), not {cls.reasons!r}"
+            )
+        for name, port in vars(cls).items():
+            taken = name in OF_EVERY_SKILL or not isinstance(getattr(cls.__mro__[1], name, port), Input | Output)
+            if isinstance(port, Input | Output) and taken:
+                raise PortError(
+                    f"{cls.__name__}.{name}: every skill has a {name!r} of its own, call the port otherwise"
+                )
         Skill.registry.append(cls)
 
     def __init__(self, name: str, context: Context | Scope, **ports: Any) -> None:
         scope = Scope.of(context)
+        if not isinstance(name, str):
+            raise TypeError(f"{type(self).__name__} takes its name, a text, and then the context, not {name!r}")
         super().__init__(scope.prefix + name)
         self.context = scope.context
         self.world = WorldHandle(self.context, self)

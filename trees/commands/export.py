@@ -36,10 +36,12 @@ def main(options: argparse.Namespace) -> int:
     """Print the tree's file, or write it.
 
     Raises:
-        CaretreeError: the task is unknown or broken, or holds what XML cannot.
+        CaretreeError: the task is unknown or broken, or holds what XML cannot, or the file is no tree in XML.
     """
     task = load_task(options.task)
     out = Path(options.out) if options.out else None
+    if out is not None and out.exists() and out.suffix != ".xml":
+        raise CaretreeError(f"{out} is there already, and is no .xml: give another file with --out")
     text = exported(task, folder=out.parent if out else Path(), stage=options.stage)
     if out is None:
         print(text, end="")

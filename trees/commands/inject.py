@@ -24,6 +24,7 @@ from ..campaign.heat_map import write_heat_map
 from ..campaign.inject import Campaign
 from ..campaign.key import campaign_key
 from ..campaign.run_maker import RunRecipe
+from ..proof.check import refuse_faulty
 from ..run.stop_signals import StopSignals
 from ..run.task import Task, load_task
 from ..run.worlds import read_world_arguments
@@ -32,7 +33,7 @@ ROWS = "inject.jsonl"
 
 
 def main(options: argparse.Namespace) -> int:
-    """Run the campaign; 0 when the task succeeds without a fault and every fault that was reached was survived, else 1.
+    """Run the campaign; 0 when the task succeeds without a fault and survives all that were reached, at least one.
 
     Raises:
         CaretreeError: bad input, or the rows cannot be kept.
@@ -41,6 +42,7 @@ def main(options: argparse.Namespace) -> int:
     for fault in options.fault:
         if fault not in FAULTS:
             raise CaretreeError(f"unknown fault {fault!r}; there are {', '.join(FAULTS)}")
+    refuse_faulty(task, options.stage)
     kind = WorldKind.named(options.world_kind)
     read_world_arguments(options.world, options.world_arg)
     parts = [re.sub(r"[^\w.-]+", "_", part) for part in (options.world, options.robot) if part]
@@ -117,6 +119,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
             f"{len(wanted) - len(rows)} were lost with the process that tried them: the same command tries them again"
         )
         return 1
+    if not tried:
+        print("none was reached: give more rows with --sample, or another --seed")
     return 0 if campaign.nominal.outcome == "success" and tried and all(row.survived for row in tried) else 1
 
 

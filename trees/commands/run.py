@@ -27,7 +27,7 @@ from ...sim.world import Observation, World
 from ...sim.world_kind import WorldKind
 from ..campaign.recorded_task import noted
 from ..cli import IN_THE_RECORD
-from ..proof.check import check_quickly
+from ..proof.check import refuse_faulty
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
 from ..run.judging import judge_and_keep
@@ -80,7 +80,7 @@ def main(options: argparse.Namespace) -> int:
     if start is not None:
         take_room(options, start.directory)
     if not options.unchecked:
-        _refuse_faulty(task, options.stage)
+        refuse_faulty(task, options.stage, "`run --unchecked` runs it nevertheless")
     faults = [parse_fault(text) for text in options.inject]
     given = read_given(options.set, options.tuning)
     given = replace(given, parameters=task.values(given.parameters))
@@ -144,20 +144,6 @@ def main(options: argparse.Namespace) -> int:
                         )
         finally:
             claim.release()
-
-
-def _refuse_faulty(task: Task, stage: str | None) -> None:
-    """Refuse a task with faults that show without running it.
-
-    Raises:
-        CaretreeError: it has some.
-    """
-    findings = check_quickly(task, stage).findings
-    if findings:
-        more = f", and {len(findings) - 1} more" if len(findings) > 1 else ""
-        raise CaretreeError(
-            f"{findings[0]}{more}; `caretree check {task.file}` tells all, `run --unchecked` runs it nevertheless"
-        )
 
 
 def _run(

@@ -42,17 +42,22 @@ class Condition(Behaviour):
         bindings: what is given, by name.
 
     Raises:
-        TreeError: the test does not take what is given, or asks for more.
+        TreeError: the test does not take what is given, or asks for more; name, test or reason are none.
     """
 
     def __init__(
         self, name: str, test: Callable[..., object], reason: Reason = Reason.PRECONDITION, **given: Any
     ) -> None:
+        if not isinstance(name, str) or not callable(test):
+            raise TreeError(f"a Condition takes its name, a text, and then its test, not {name!r} and {test!r}")
+        if not isinstance(reason, Reason):
+            raise TreeError(f"the reason of {name!r} is a Reason such as Reason.PRECONDITION, not {reason!r}")
         super().__init__(name)
         try:
             inspect.signature(test).bind(None, **given)
         except TypeError as error:
-            raise TreeError(f"the test of {name!r} is called with the context and {sorted(given)}: {error}") from None
+            with_what = ", ".join(("the context", *sorted(given)))
+            raise TreeError(f"the test of {name!r} is called with {with_what}: {error}") from None
         self.test = test
         self.reason = reason
         self.bindings = given

@@ -205,8 +205,8 @@ class Timeout(Wrapper):
 
     def __init__(self, name: str, body: Behaviour, *, seconds: float) -> None:
         super().__init__(name, body)
-        if not seconds > 0:
-            raise TreeError(f"seconds of {name!r} is {seconds}, but must be above 0")
+        if not isinstance(seconds, int | float) or not seconds > 0:
+            raise TreeError(f"seconds of {name!r} is {seconds!r}, but must be a number above 0")
         self.seconds = seconds
         self.ends = 0.0  # [s] world clock at which time is up
 

@@ -10,6 +10,7 @@ import py_trees
 from py_trees.behaviour import Behaviour
 from py_trees.common import ParallelPolicy
 
+from ...sim.errors import CaretreeError
 from ...skills.core.context import Context
 from ...skills.core.reasons import Reason
 from ...skills.core.skill import Skill
@@ -99,6 +100,24 @@ def check_quickly(task: Task, stage: str | None = None) -> CheckReport:
     return report
 
 
+def refuse_faulty(task: Task, stage: str | None, otherwise: str = "") -> None:
+    """Refuse a task with faults that show without running it.
+
+    Args:
+        task: to check.
+        stage: that is run alone, or a span of them; None for the whole task.
+        otherwise: what else can be done, for the reader.
+
+    Raises:
+        CaretreeError: it has some.
+    """
+    findings = check_quickly(task, stage).findings
+    if findings:
+        more = f", and {len(findings) - 1} more" if len(findings) > 1 else ""
+        told = ", ".join([f"`caretree check {task.file}` tells all", *([otherwise] if otherwise else [])])
+        raise CaretreeError(f"{findings[0]}{more}; {told}")
+
+
 def rehearse(task: Task) -> CheckReport:
     """Run the task once on its scripted world: errors of its own code are findings, another bad end is a note.
 
@@ -119,11 +138,29 @@ def rehearse(task: Task) -> CheckReport:
         if event.get("reason") == Reason.INTERNAL_ERROR.name and event.get("detail"):
             errors.setdefault(event["detail"], event["node"])
     report.findings += [f"{node}: on the scripted world, it makes an error: {error}" for error, node in errors.items()]
+    report.findings += _undeclared(run)
     if run.context.errors and not errors:  # a node of py_trees' own, or the runner
-        report.findings.append(f"on its scripted world: {result.reason}")
+        error = run.context.errors[0].strip().splitlines()[-1]
+        cause = "" if error in result.reason else f"; before that, {error}"
+        report.findings.append(f"on its scripted world: {result.reason}{cause}")
     elif result.outcome != "success" and not errors:
         report.notes.append(f"on its scripted world it ends as {result.outcome.replace('_', ' ')}: {result.reason}")
     return report
+
+
+ANY_SKILL = (*FROM_OUTSIDE, Reason.TIMEOUT, Reason.WORLD_LOST, Reason.INTERRUPTED, Reason.INTERNAL_ERROR)
+
+
+def _undeclared(run: Run) -> list[str]:
+    """Skills that failed with a reason that they do not name, so that no recovery from it was explored."""
+    skills = {path: node for node, path in paths_of(run.root).items() if isinstance(node, Skill)}
+    told: dict[str, None] = {}
+    for event in run.trace.events:
+        skill, reason = skills.get(event.get("node", "")), event.get("reason")
+        if skill is not None and reason and reason not in {r.name for r in (*skill.reasons, *ANY_SKILL)}:
+            kind = type(skill).__name__
+            told[f"{event['node']}: failed with {reason}, which the reasons of {kind} do not name"] = None
+    return list(told)
 
 
 def fresh_tree(task: Task) -> Behaviour:

@@ -45,6 +45,8 @@ def _asked(condition: Condition, context: Context) -> str:
         return ""
     except TookTooLongError as error:
         return f"asked on the scripted world, {error}"
+    except SystemExit as error:
+        return f"asked on the scripted world, it calls sys.exit({error.code!r})"
     except Exception as error:
         return f"asked on the scripted world, it makes an error: {type(error).__name__}: {error}"
     return ""

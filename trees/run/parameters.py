@@ -86,7 +86,8 @@ class BuildParameter:
             return " or ".join(map(str, self.kind))
         low, high, unit = self.declared.low, self.declared.high, self.declared.unit
         bounds = "".join(f" {word} {value:g}" for word, value in (("from", low), ("to", high)) if value is not None)
-        return f"{PLAIN[self.kind]}{bounds}{f' {unit}' if unit else ''}"
+        in_unit = (f" {unit}" if bounds else f" in {unit}") if unit else ""
+        return f"{PLAIN[self.kind]}{bounds}{in_unit}"
 
     def line(self) -> str:
         """For a list: name, default, what it takes, what it is."""
@@ -112,9 +113,13 @@ def parameters_of(build: Callable[..., Any]) -> dict[str, BuildParameter]:
         kind = get_args(hint)[0]
         kind = get_args(kind) if get_origin(kind) is Literal else kind
         if not isinstance(kind, tuple) and kind not in PLAIN:
-            raise ParameterError(f"parameter {name} is a {kind}, but float, int, bool, str or a Literal is asked for")
+            said = kind.__name__ if isinstance(kind, type) else kind
+            raise ParameterError(f"parameter {name} is a {said}, but float, int, bool, str or a Literal is asked for")
         if argument.default is inspect.Parameter.empty:
             raise ParameterError(f"parameter {name} has no default")
+        low, high = declared[0].low, declared[0].high
+        if low is not None and high is not None and low > high:
+            raise ParameterError(f"parameter {name} goes from {low:g} to {high:g}, where nothing lies between")
         parameter = BuildParameter(name, kind, argument.default, declared[0])
         parameter.value(argument.default)
         found[name] = parameter

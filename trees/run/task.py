@@ -177,9 +177,12 @@ class Task:
                 raise TaskError(f"task {self.name!r} has its own robot: its scripted(seed) takes none")
             try:
                 with TimeLimit(LOADING):
-                    world, senses = self.script(seed, **chosen)
+                    made: Any = self.script(seed, **chosen)
             except FROM_ITS_CODE as error:
                 raise TaskError(_located(self.file, error)) from error
+            if not (isinstance(made, tuple) and len(made) == 2):
+                raise TaskError(f"{self.file}:1: scripted() gave {type(made).__name__}, not (world, senses or None)")
+            world, senses = made
         self.furnish(world, seed)
         if senses is not None and not isinstance(senses, Senses):
             raise TaskError(f"{self.file}:1: scripted() gave {type(senses).__name__} as senses, which is no Senses")
