@@ -209,7 +209,8 @@ class ArmModel(RigidModel):
         """Torque of gravity per turn of the base about each axis, exact at the term's own turn, (T, n, p)."""
         pin, out = self._pin, []
         names = [p.name for p in term.parameters]
-        for change in tilt_changes(np.asarray(self.model.gravity.linear), names, term.shape):
+        at = {name: term.shape.get(name, 0.0) for name in names}
+        for change in tilt_changes(np.asarray(self.model.gravity.linear), names, at):
             turned = self.model.copy()
             turned.gravity.linear = change
             data = turned.createData()

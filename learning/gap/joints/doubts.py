@@ -38,6 +38,8 @@ def doubts(model: RigidModel, logs: Sequence[JointLog], columns: Sequence[str]) 
             return f"column '{name}' is never below 0 and goes with the size of the model's load: its sign is lost"
         if _alike(x, y) < 0 and np.mean((x + y) ** 2) < BETTER * np.mean((x - y) ** 2):
             return f"column '{name}' is nearly minus the model's load: its sign, or that of the joint, is the other one"
+    if elsewhere := _elsewhere(model, logs):  # asked first: with other zeros, gravity is not where the model has it
+        return elsewhere
     weight = np.concatenate([_held(model, log) for log in logs])
     c = int(np.argmax(weight.std(axis=0)))
     parts = np.column_stack([rigid[:, c] - weight[:, c], weight[:, c]])  # in currents both are small, not one alone
@@ -45,7 +47,7 @@ def doubts(model: RigidModel, logs: Sequence[JointLog], columns: Sequence[str]) 
     lighter = np.mean((measured - rigid + weight) ** 2) < BETTER * np.mean((measured - rigid) ** 2)
     if lighter and abs(held) < WEIGHTLESS * moving:
         return f"columns {columns[0]} to {columns[-1]} hardly have gravity in them, which the model has"
-    return _elsewhere(model, logs)
+    return ""
 
 
 def _elsewhere(model: RigidModel, logs: Sequence[JointLog]) -> str:

@@ -91,10 +91,10 @@ def judge(
         text = doubts
     elif worse:
         text = f"{worse} would explain the fitted recordings and make the held-out ones worse"
-    elif strange:
-        text = "the effects that explain the fitted recordings do not hold on the held-out ones"
     elif unsteady:
         text = unsteady
+    elif strange:
+        text = "the effects that explain the fitted recordings do not hold on the held-out ones"
     elif unknown:
         text = guess(logs, calm, missing.worst)
     return Outcome(

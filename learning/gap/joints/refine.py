@@ -14,12 +14,13 @@ from .lag import at_lag
 from .log import JointLog
 from .rigid import RigidModel
 
-NEAR = 2e-3  # [rad] within which an angle's columns are as good as at the angle itself
+NEAR = 2e-3  # [rad, kg, kg m] within which an angle's columns are as good as at the angle itself
 
 
 def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: list[JointLog]) -> list[Block]:
     """The same blocks with their shapes fitted, one after the other, linear parameters projected out."""
     out = list(chosen)
+    bodies = [(b, x) for b, x in zip(chosen, _parts(chosen, theta), strict=True) if b.term and not b.term.during]
     at = 0
     for i, block in enumerate(chosen):
         values = theta[at : at + len(block.parameters)]
@@ -29,7 +30,8 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
             shape = {f"com_{a}": float(x) for a, x in zip("xyz", com, strict=True)}
             out[i] = body_block(replace(block.term, shape=shape), model)
         elif block.term is not None and block.name in GEOMETRY:
-            out[i] = exact_at(block, values, model)
+            beside = [(b, x) for b, x in bodies if b.name not in GEOMETRY or chosen.index(b) < i]
+            out[i] = exact_at(block, values, model, beside)
         elif block.name == "delay":
             out[i] = at_lag(block, float(values[0]))
         elif block.shape and block.name in JOINT_EFFECTS:
@@ -37,12 +39,37 @@ def refined(chosen: list[Block], theta: np.ndarray, model: RigidModel, logs: lis
     return out
 
 
-def exact_at(block: Block, values: np.ndarray, model: RigidModel) -> Block:
-    """A tilt's or a zero's block with columns that are exact at some angles (p,), not at none; itself near there."""
-    angles = {p.name: float(x) for p, x in zip(block.parameters, values, strict=True)}
-    if block.term is None or all(abs(x - block.shape.get(name, 0.0)) < NEAR for name, x in angles.items()):
+def exact_at(
+    block: Block, values: np.ndarray, model: RigidModel, beside: list[tuple[Block, np.ndarray]] | None = None
+) -> Block:
+    """A tilt's or a zero's block with columns that are exact at some angles, not at none; itself near there.
+
+    Args:
+        block: of the tilt, or of the zero.
+        values: (p,) the angles [rad].
+        model: as the user gave it.
+        beside: what else is found of the bodies, and its numbers: a payload hangs from a tilted base, too.
+    """
+    if block.term is None:
         return block
-    return body_block(replace(block.term, shape=angles), model)
+    shape = _named(block, values)
+    for other, numbers in beside or []:
+        if other.term is not None:
+            model = model.patched(other.term, _named(other, numbers))
+            shape |= {f"{other.name} of {other.target}: {name}": x for name, x in _named(other, numbers).items()}
+    known = {name: block.shape.get(name, 0.0) for name in {*shape, *block.shape}}
+    if all(abs(shape.get(name, 0.0) - x) < NEAR for name, x in known.items()):
+        return block
+    return body_block(replace(block.term, shape=shape), model)
+
+
+def _named(block: Block, values: np.ndarray) -> dict[str, float]:
+    return {p.name: float(x) for p, x in zip(block.parameters, values, strict=True)}
+
+
+def _parts(blocks: list[Block], theta: np.ndarray) -> list[np.ndarray]:
+    """The numbers of each block."""
+    return np.split(theta, np.cumsum([len(b.parameters) for b in blocks])[:-1]) if blocks else []
 
 
 def fit_shape(block: Block, others: list[Block], model: RigidModel, logs: list[JointLog]) -> Block:

@@ -13,6 +13,7 @@ from ..log import JointLog
 from ..search import Search
 from ..workflow import Named
 
+CHANGE = "change of "  # and then the effect that may change
 CHANGED = 0.25  # of its mean, by which an effect's size has to change before it is said to
 
 
@@ -27,27 +28,29 @@ def unsteady(named: Named, logs: list[JointLog]) -> str:
         logs: what it was fitted to.
     """
     blocks, at = list(named.blocks), 0
-    changing: list[tuple[Block, Block]] = []
+    changing: list[tuple[slice, Block]] = []
     for block in blocks:
-        theta = named.theta[at : at + len(block.parameters)]
-        at += len(block.parameters)
-        if block.term is None and theta.any():
-            changing.append((block, _changing(block, theta, logs)))
+        span = slice(at, at + len(block.parameters))
+        at = span.stop
+        if block.term is None and named.theta[span].any():
+            changing.append((span, _changing(block, named.theta[span], logs)))
     if not changing:
         return ""
     search = Search(gram=assemble([*blocks, *(c for _, c in changing)], logs, mixed=True), noise=named.noise)
     whole, found = tuple(range(len(blocks))), []
-    for k, (block, change) in enumerate(changing, len(blocks)):
+    for k, (span, change) in enumerate(changing, len(blocks)):
         richer = (*whole, k)
-        gain = float(search.rows @ (np.log(search.rss(whole)) - np.log(search.rss(richer))))
-        if gain > search.price[k] and search.crossed(richer, k, whole) and search.weighty(richer, k, whole):
-            found.append((gain, block, search.fit(richer)[-len(change.parameters) :]))
-    for _, block, theta in sorted(found, key=lambda f: -f[0]):
-        sizes = _sizes(theta, len(logs))
+        gain = float(search.rows @ (np.log(search.rss(whole)) - np.log(search.rss(richer)))) - search.price[k]
+        if gain > 0.0 and search.crossed(richer, k, whole) and search.weighty(richer, k, whole):
+            theta, old = search.fit(richer), named.theta[span]
+            mean = float(theta[span] @ old / (old @ old))  # what is the same all the time gives way as well
+            found.append((gain, change, _sizes(mean, theta[len(named.theta) :], len(logs))))
+    for _, change, sizes in sorted(found, key=lambda f: -f[0]):
         low, high = int(np.argmin(sizes)), int(np.argmax(sizes))
         if sizes[high] - sizes[low] > CHANGED:
-            ends = [f"{sizes[k]:.2f} {_end(logs, k)}" for k in (low, high)]
-            return f"{block.name} on {block.target} is not the same all the time: of its size {' and '.join(ends)}"
+            ends = " and ".join(f"{sizes[k]:.2f} {_end(logs, k)}" for k in (low, high))
+            what = f"{change.name.removeprefix(CHANGE)} on {change.target}"
+            return f"{what} is not the same all the time: of its size {ends}"
     return ""
 
 
@@ -66,12 +69,12 @@ def _changing(block: Block, theta: np.ndarray, logs: list[JointLog]) -> Block:
         return out
 
     parameters = tuple(Parameter(name=f"change_{k}", unit="1") for k in range(2 * len(names) - 1))
-    return replace(block, name=f"change of {block.name}", build=build, parameters=parameters, contains=frozenset())
+    return replace(block, name=f"{CHANGE}{block.name}", build=build, parameters=parameters, contains=frozenset())
 
 
-def _sizes(theta: np.ndarray, logs: int) -> np.ndarray:
-    """(2 K,) of an effect over its mean one, at the beginning and at the end of each log."""
-    level = 1.0 + np.concatenate([[0.0], theta[logs:]])
+def _sizes(mean: float, theta: np.ndarray, logs: int) -> np.ndarray:
+    """(2 K,) of an effect over its named one, at the beginning and at the end of each log."""
+    level = mean + np.concatenate([[0.0], theta[logs:]])
     return np.stack([level - theta[:logs], level + theta[:logs]], axis=1).ravel()
 
 
