@@ -23,6 +23,11 @@ from ...sim.errors import CaretreeError
 
 T = TypeVar("T")
 _REQUIRED: Any = object()
+# what py_trees and `Skill` set on every leaf, beside what their classes have
+OF_EVERY_SKILL = frozenset(
+    {"name", "context", "world", "bindings", "failure", "status", "parent", "children", "id", "logger", "iterator"}
+    | {"feedback_message", "blackboards", "qualified_name", "blackbox_level"}
+)
 
 
 class PortError(CaretreeError):
@@ -242,8 +247,24 @@ class Output(_Port[T]):
 @cache
 def ports_of(kind: type) -> tuple[tuple[str, Input[Any] | Output[Any]], ...]:
     """Ports declared by a class and its bases, sorted by name; kept, as every leaf of a tree is asked for its own."""
-    found = {name: port for base in reversed(kind.__mro__) for name, port in vars(base).items()}
+    found = _attributes_of(kind)
     return tuple((name, found[name]) for name in sorted(found) if isinstance(found[name], (Input, Output)))
+
+
+def _attributes_of(kind: type) -> dict[str, Any]:
+    return {name: each for base in reversed(kind.__mro__) for name, each in vars(base).items()}
+
+
+def refuse_taken_names(kind: type) -> None:
+    """Refuse ports that are called as what every skill has.
+
+    Raises:
+        PortError: one is.
+    """
+    before = _attributes_of(kind.__mro__[1])
+    for name, port in ports_of(kind):
+        if name in OF_EVERY_SKILL or not isinstance(before.get(name, port), (Input, Output)):
+            raise PortError(f"{kind.__name__}.{name}: every skill has {name!r} of its own, call the port otherwise")
 
 
 def bind_ports(owner: Any, given: dict[str, Any]) -> dict[str, Any]:

@@ -35,16 +35,11 @@ from ...sim.blame import told
 from ...sim.world import EmergencyStop, SensorLost
 from ..motion.errors import MotionError, PathBlocked, Unreachable
 from .context import Context
-from .ports import Input, Output, PortError, bind_ports, ports_of
+from .ports import Input, Output, bind_ports, ports_of, refuse_taken_names
 from .reasons import Failure, Reason, SkillFailure, reason_of
 from .scope import Scope
 from .world_handle import WorldHandle
 
-# what py_trees and `Skill` set on every leaf, beside what their classes have
-OF_EVERY_SKILL = frozenset(
-    {"name", "context", "world", "bindings", "failure", "status", "parent", "children", "id", "logger", "iterator"}
-    | {"feedback_message", "blackboards", "qualified_name", "blackbox_level"}
-)
 MOTION_REASONS = {Unreachable: Reason.UNREACHABLE, PathBlocked: Reason.PATH_BLOCKED}
 
 
@@ -73,12 +68,7 @@ class Skill(py_trees.behaviour.Behaviour):
             raise TypeError(
                 f"{cls.__name__}.reasons is a tuple of Reason, as (Reason.GRASP_MISSED,), not {cls.reasons!r}"
             )
-        for name, port in vars(cls).items():
-            taken = name in OF_EVERY_SKILL or not isinstance(getattr(cls.__mro__[1], name, port), Input | Output)
-            if isinstance(port, Input | Output) and taken:
-                raise PortError(
-                    f"{cls.__name__}.{name}: every skill has a {name!r} of its own, call the port otherwise"
-                )
+        refuse_taken_names(cls)
         Skill.registry.append(cls)
 
     def __init__(self, name: str, context: Context | Scope, **ports: Any) -> None:
