@@ -243,6 +243,10 @@ def test_a_run_can_begin_where_another_one_was():
     world.close()
     with pytest.raises(WorldError, match="the recorded gown has 3 vertices"):
         BulletWorld(seed=1).set_recorded_state(replace(state, vertices=np.zeros((3, 3))))
+    bare = BulletWorld(seed=1)
+    bare.remove_gown()
+    with pytest.raises(WorldError, match="without a gown"):
+        bare.set_recorded_state(replace(state, vertices=np.zeros((0, 3))))
 
 
 def test_a_gown_that_was_recorded_on_its_hook_still_hangs():
