@@ -8,7 +8,7 @@ from torch.nn import functional  # pyright: ignore[reportMissingImports] - in th
 
 from ..physics.networks.training import Objective
 from .dataset import CELL, NO_PLACE, SHEET_UNIT, SIZE, image_of
-from .labels import HIDDEN, JOINTS, KEY_POINTS, SHOWN
+from .labels import ABSENT, HIDDEN, JOINTS, KEY_POINTS, SHOWN
 from .network import SeeingNetwork
 from .sheet_nodes import SHEET_NODES, node_weights
 
@@ -16,6 +16,8 @@ BATCH = 8
 SPREAD = 0.8  # of a key point's peak [cells]
 UNDER = 0.25  # the most that covers an arm which is wanted behind cloth; what is farther behind asks nothing [m]
 NO_BED = 0.15  # of the pictures, which are shown as if no bed were known
+CUT_OUT = 0.5  # of the pictures, of which a part is shown in their place, as a longer lens would show it
+LEAST_PART = 0.6  # of their width and height
 _RARE = torch.tensor([1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 1.0])  # weight of each surface: bindings are narrow
 _MIRRORED = [KEY_POINTS.index(_other) for _other in (
     name.replace("left", "?").replace("right", "left").replace("?", "right") for name in KEY_POINTS
@@ -38,7 +40,7 @@ class Seeing(Objective):
         self._data = data
 
     def batch(self, rng: np.random.Generator) -> dict[str, torch.Tensor]:
-        """Draw pictures, some of them mirrored or in other light."""
+        """Draw pictures, some of them mirrored, cut out or in other light."""
         rows = [self._one(int(i), rng) for i in rng.integers(len(self._data["surface"]), size=BATCH)]
         return {key: torch.from_numpy(np.stack([row[key] for row in rows])) for key in rows[0]}
 
@@ -50,6 +52,8 @@ class Seeing(Objective):
             image[5:] = 0.0
         sheet = np.where(row["sheet"] == NO_PLACE, np.nan, row["sheet"] * np.float32(SHEET_UNIT)).astype(np.float32)
         surface, points, seen = row["surface"].astype(np.int64), row["points"].copy(), row["seen"]
+        if rng.random() < CUT_OUT:
+            image, surface, sheet, points, seen = _cut_out(image, surface, sheet, points, seen, rng)
         if rng.random() < 0.5:  # the gown and the body are their own mirror images, left for right
             image, surface, sheet = image[:, :, ::-1].copy(), surface[:, ::-1].copy(), sheet[:, :, ::-1].copy()
             sheet[0] *= -1
@@ -79,6 +83,41 @@ class Seeing(Objective):
         short = batch["deep"][:, :, None, None] - depth
         deep = functional.smooth_l1_loss(offset[near], torch.clamp(short.expand_as(offset)[near], -0.3, 0.3), beta=0.03)
         return of_surface + 0.3 * place + 0.3 * peak + 2.0 * torch.nan_to_num(deep)
+
+
+def _cut_out(
+    image: np.ndarray,
+    surface: np.ndarray,
+    sheet: np.ndarray,
+    points: np.ndarray,
+    seen: np.ndarray,
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A part of a picture, as large as the whole one was, and its labels; key points beside it are absent.
+
+    What distance, height and bed say of a pixel stays true, so that the network learns to go by these.
+
+    Args:
+        image: (8, 192, 256) of `dataset.image_of`.
+        surface: (192, 256).
+        sheet: (2, 48, 64) of its cells' middles [m].
+        points: (K, 3) u, v [px] and depth [m].
+        seen: (K,) `ABSENT`, `HIDDEN` or `SHOWN`.
+        rng: draws the part.
+    """
+    part = rng.uniform(LEAST_PART, 1.0)
+    size = np.array(SIZE)
+    low = rng.uniform(0.0, 1.0 - part, 2) * size
+    columns, rows = ((low[k] + (np.arange(size[k]) + 0.5) * part).astype(int) for k in range(2))
+    cells = [each[CELL // 2 :: CELL] // CELL for each in (rows, columns)]
+    there = points.copy()
+    there[:, :2] = (points[:, :2] + 0.5 - low) / part - 0.5
+    inside = ((there[:, :2] > -0.5) & (there[:, :2] < size - 0.5)).all(axis=1)
+    pixels = np.ix_(rows, columns)
+    return (
+        np.ascontiguousarray(image[:, pixels[0], pixels[1]]), surface[pixels],
+        sheet[:, cells[0][:, None], cells[1]], there, np.where(inside, seen, ABSENT),
+    )  # fmt: skip
 
 
 def _sheet_loss(scores: torch.Tensor, weights: torch.Tensor) -> torch.Tensor:

@@ -12,11 +12,11 @@ pytestmark = pytest.mark.filterwarnings("ignore")  # torch says that its exporte
 
 from caretree.learning.vision.calibration import logistic, peak_score
 from caretree.learning.vision.cli import main
-from caretree.learning.vision.dataset import DatasetSpec, load_dataset, make_dataset
+from caretree.learning.vision.dataset import CELL, SIZE, DatasetSpec, load_dataset, make_dataset
 from caretree.learning.vision.export import export
-from caretree.learning.vision.labels import HIDDEN, KEY_POINTS, SHOWN
+from caretree.learning.vision.labels import ABSENT, HIDDEN, KEY_POINTS, SHOWN
 from caretree.learning.vision.network import OUTPUTS, SeeingNetwork
-from caretree.learning.vision.objective import _MIRRORED, Seeing, _heat, _peak_loss, _sheet_loss
+from caretree.learning.vision.objective import _MIRRORED, Seeing, _cut_out, _heat, _peak_loss, _sheet_loss
 from caretree.learning.vision.sheet_nodes import node_weights
 from caretree.learning.vision.train import _begin_with, train
 from caretree.sim.errors import CaretreeError
@@ -212,3 +212,29 @@ def test_logistic_finds_scale_and_shift():
     scale, shift = logistic(score, right.astype(float))
     assert abs(scale - 0.7) < 0.08
     assert abs(shift + 0.4) < 0.1
+
+
+def test_what_is_cut_out_keeps_pixels_places_and_key_points_together() -> None:
+    """A picture in which every pixel and cell says where it was: key points inside are where they were."""
+    rng = np.random.default_rng(0)
+    across = np.tile(np.arange(SIZE[0], dtype=np.float32), (SIZE[1], 1))
+    image = np.repeat(across[None], 8, 0)
+    middles = np.tile(np.arange(SIZE[0] // CELL, dtype=np.float32) * CELL + CELL // 2, (SIZE[1] // CELL, 1))
+    points = np.column_stack([rng.uniform(0, SIZE[0] - 1, 40), rng.uniform(0, SIZE[1] - 1, 40), np.ones(40)])
+    seen = np.full(40, SHOWN, np.uint8)
+    lost = 0
+    for _ in range(20):
+        cut, surface, sheet, there, still = _cut_out(
+            image, across.astype(np.int64), np.stack([middles] * 2), points, seen, rng
+        )
+        assert cut.shape == image.shape
+        assert surface.shape == across.shape
+        assert sheet.shape == (2, *middles.shape)
+        lost += int((still == ABSENT).sum())
+        for before, (u, v, deep) in zip(points[still == SHOWN], there[still == SHOWN], strict=True):
+            column, row = min(round(u), SIZE[0] - 1), min(round(v), SIZE[1] - 1)
+            assert abs(cut[3, row, column] - before[0]) <= 1.5
+            assert surface[row, column] == cut[3, row, column]
+            assert abs(sheet[0, row // CELL, column // CELL] - before[0]) <= 1.5 * CELL
+            assert deep == 1.0
+    assert 0 < lost < 20 * 40
