@@ -233,5 +233,6 @@ def load_dataset(folder: str | Path) -> tuple[dict[str, np.ndarray], str]:
             raise CaretreeError(f"{folder}/{shard['file']}: the shard is not the one that {INDEX} names")
         with np.load(io.BytesIO(data)) as file:
             parts.append({key: file[key] for key in file.files})
-    arrays = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    # Taken out of the parts one by one: ten thousand pictures are 6 GB, and twice that is more than most have.
+    arrays = {key: np.concatenate([part.pop(key) for part in parts]) for key in list(parts[0])}
     return arrays, hashlib.sha256("".join(s["sha256"] for s in index["shards"]).encode()).hexdigest()[:16]

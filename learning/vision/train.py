@@ -58,7 +58,7 @@ def train(
         CaretreeError: a dataset cannot be used, or `out` holds a training of something else.
     """
     loaded = [load_dataset(folder) for folder in folders]
-    data = {key: np.concatenate([arrays[key] for arrays, _ in loaded]) for key in loaded[0][0]}
+    data = {key: np.concatenate([arrays.pop(key) for arrays, _ in loaded]) for key in list(loaded[0][0])}
     digest = " ".join(digest for _, digest in loaded)
     count = len(data["surface"])
     if count < 2 * KEPT:
