@@ -185,7 +185,9 @@ def _built(task: Task, **params: Any) -> tuple[Behaviour, Context]:
 
 def _names(root: Behaviour) -> list[str]:
     counts = collections.Counter(node.name for node in root.iterate() if isinstance(node, Skill))
-    return [
+    # A terminal would obey a control character in a name that it shows.
+    unshown = [node.name for node in root.iterate() if not node.name.isprintable()]
+    return [f"a node is called {name!r}; names are of characters that can be shown" for name in unshown] + [
         f"{count} skills are called {name!r}, but faults and records find a skill by its name"
         for name, count in counts.items()
         if count > 1
