@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
+from ..blame import OF_FOREIGN_CODE
 from ..compiled import load
 from ..scripted.clock import SteppedClock
 from ..world import World, WorldError
@@ -17,6 +19,7 @@ from .values import packed, unpacked
 SILENCE = 0.3  # [s] without a message after which a robot whose time passes by itself is stopped
 LOOK = 0.05  # [s] between two looks whether a message has come
 AGAIN = 0.1  # [s] between two stops: one may be lost
+PATIENCE = 5.0  # [s] with a driver that raises when it is stopped
 CALLS = ("observe", "look", "send")
 
 
@@ -41,6 +44,7 @@ class WorldServer:
     ) -> None:
         self._world = world
         self._now = now
+        self._asked: float | None = None  # when the call began that the world has not answered yet
         self._stepped = isinstance(world.clock, SteppedClock)
         load()  # else within the first motion, which would leave the tree without an answer
         self._listener = socket.create_server((host, port))
@@ -56,6 +60,10 @@ class WorldServer:
         """
         line, (host, *_) = self._listener.accept()
         connection = Connection(line)
+        over = threading.Event()
+        watch = threading.Thread(target=self._watch, args=(over,), name="watchdog", daemon=True)
+        if not self._stepped:
+            watch.start()
         try:
             self._greet(connection)
             while True:
@@ -63,8 +71,9 @@ class WorldServer:
         except (EOFError, OSError, WorldError, TypeError, ValueError) as error:
             return f"{host}: {error}"
         finally:
+            self._stop_for_sure()
+            over.set()
             connection.close()
-            self._stop()
 
     def close(self) -> None:
         """Serve nobody any more; twice is once."""
@@ -100,12 +109,34 @@ class WorldServer:
         if what == "stop":
             self._stop()
             return
+        self._asked = self._now()
         try:
             answer = "", packed(self._answers[what](*map(unpacked, values)))
         except Exception as error:
             answer = type(error).__name__, str(error)
+        finally:
+            self._asked = None
         connection.send((*answer, float(self._world.clock.now())))
 
-    def _stop(self) -> None:
-        with contextlib.suppress(Exception):  # it is asked again and again
+    def _watch(self, over: threading.Event) -> None:
+        """Stop the robot while a call of the world hangs: nobody hears meanwhile what the tree says, or if it lives."""
+        while not over.wait(AGAIN):
+            asked = self._asked
+            if asked is not None and self._now() - asked > SILENCE:
+                with contextlib.suppress(BaseException):  # whatever it raises, the next look stops again
+                    self._stop()
+
+    def _stop_for_sure(self) -> None:
+        """Stop until the world takes it, as long as a driver may be busy: nobody asks again once the tree has gone."""
+        for _ in range(round(PATIENCE / AGAIN)):
+            if self._stop():
+                return
+            time.sleep(AGAIN)
+
+    def _stop(self) -> bool:
+        """Stop once; whether the world took it."""
+        try:
             self._world.stop()
+        except OF_FOREIGN_CODE:
+            return False
+        return True

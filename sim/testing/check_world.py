@@ -9,6 +9,7 @@ from ..world import World
 from . import broken_laws, motion_laws, senses_laws, time_laws
 from .world_trial import Breaks, WorldLawBroken, WorldTrial
 
+STOPS, AGAIN = 20, 0.1  # at most, and between two of them [s]
 Law = Callable[[WorldTrial], None]
 LAWS: tuple[Law, ...] = (
     senses_laws.it_says_what_its_robot_is_made_of,
@@ -63,7 +64,7 @@ def check_world(
         for law in LAWS:
             _try(law, trial)
     finally:
-        trial.world.close()
+        _leave(trial.world)
     left_out = []
     for name, law in BROKEN_LAWS.items():
         break_it = getattr(breaks, name, None)
@@ -76,8 +77,20 @@ def check_world(
             break_it(trial.world)
             _try(law, trial)
         finally:
-            trial.world.close()
+            _leave(trial.world)
     return left_out
+
+
+def _leave(world: World) -> None:
+    """Leave no robot moving, whatever ended the trial: a broken law, Ctrl-C, a driver that raises when stopped."""
+    for _ in range(STOPS):
+        try:
+            world.stop()
+        except Exception:
+            time.sleep(AGAIN)
+        else:
+            break
+    world.close()
 
 
 def _try(law: Law, trial: WorldTrial) -> None:

@@ -236,6 +236,9 @@ class Skill(py_trees.behaviour.Behaviour):
             return self.context.guard.still()
         except SensorLost:
             return False  # cannot know; the lease's patience runs out and the runner stops the world
+        except Exception as error:  # a driver's, perhaps for once: asked again on the next tick
+            self.context.report(error)
+            return False
 
     def _cancelled(self) -> bool:
         try:

@@ -55,9 +55,10 @@ def unsafe_after(run: Run, outcome: str) -> str:
         return "an arm still moves"
     if np.abs(after.pose_base_in_map - before.pose_base_in_map).max() > MOVED:
         return "the base still moves"
+    released = OPEN * world.robot.gripper.stroke
     for n, side in enumerate(SIDES):
-        if run.guard.grip(side) == "arm" and after.gripper_opening[n] < OPEN:
+        if run.guard.grip(side) == "arm" and after.gripper_opening[n] < released:
             return f"the {side} hand still holds the person's arm"
-        if outcome != "success" and after.gripper_opening[n] < OPEN:
+        if outcome != "success" and after.gripper_opening[n] < released:
             return f"the {side} hand is still closed"
     return ""

@@ -9,7 +9,8 @@ from ...sim.errors import CaretreeError
 from ...sim.extras import need
 from ...sim.remote.server import WorldServer
 from ...sim.remote.world import PORT
-from ..run.task import load_task
+from ..run.stop_signals import StopSignals
+from ..run.task import Task, load_task
 from ..run.worlds import make_world, prepare_stage, read_world_arguments
 
 HERE = f"127.0.0.1:{PORT}"
@@ -46,11 +47,16 @@ def main(options: argparse.Namespace) -> int:
     need("msgpack", "a world in another process")
     task = load_task(options.task)
     arguments = read_world_arguments(options.world, options.world_arg)
+    with StopSignals():  # none of them may end this process with the robot moving
+        return _serve(options, host, int(port), task, arguments)
+
+
+def _serve(options: argparse.Namespace, host: str, port: int, task: Task, arguments: dict[str, object]) -> int:
     world, _ = make_world(options.world, task, seed=options.seed, arguments=arguments)
     try:
         prepare_stage(world, task, options.stage)
         try:
-            server = WorldServer(world, host, int(port))
+            server = WorldServer(world, host, port)
         except OSError as error:
             raise CaretreeError(f"{options.bind} cannot be served: {error.strerror or error}") from error
         try:

@@ -2,6 +2,7 @@
 
 The runner wraps every world in it, so that a task author cannot leave it out.  It
 
+- takes no trajectory that begins where the arm is not, and no velocity for long: what it judges is what happens;
 - keeps every link slow near the person, and a hand that holds an arm slow and soft (`command_scaling.py`), and fails
   the skill where a link moves fast nevertheless (`overspeed.py`);
 - keeps every link off the person and off the robot's other links (`keep_clear.py`);
@@ -14,11 +15,13 @@ The runner wraps every world in it, so that a task author cannot leave it out.  
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from ...sim.abilities import HasKinematics
 from ...sim.freshness import AHEAD, fresh_frame, fresh_observation
+from ...sim.mechanics.kinematics import kinematics_of
 from ...sim.observation_form import ObservationForm
 from ...sim.world import (
     SIDES,
@@ -36,7 +39,7 @@ from ...sim.world import (
     World,
 )
 from ...skills.core.context import Grip
-from ...skills.core.reasons import Failure, Reason, reason_of
+from ...skills.core.reasons import Failure, Reason, SkillFailure, reason_of
 from ...skills.geometry.person_zone import PersonZone
 from .command_scaling import CommandScaling
 from .declared_grips import DeclaredGrips
@@ -85,7 +88,7 @@ class GuardedWorld:
         self.zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
         kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
-        links = None if kinematics is None else LinkMotion(inner.robot, kinematics)
+        links = LinkMotion(inner.robot, kinematics or kinematics_of(inner.robot))
         self._grips = DeclaredGrips(self.zone)
         self._load = LoadLimit(limits)
         self._overspeed = Overspeed(limits, self.zone, links)
@@ -219,14 +222,18 @@ class GuardedWorld:
         Raises:
             SensorLost: nobody knows where the robot is.
             EmergencyStop: it is pressed.
-            SkillFailure: the load is at its limit and the motion does not relieve it.
+            SkillFailure: the load is at its limit and the motion does not relieve it; a trajectory begins where the
+                arm is not.
         """
         seen = self.observe()
         if seen.emergency_stop:
             raise EmergencyStop("nothing moves before a person has released it")
+        if isinstance(command, (HandTwist, BaseVelocity)) and command.duration > self.limits.velocity_for:
+            command = replace(command, duration=self.limits.velocity_for)
         if isinstance(command, HandTwist):
             command = self._scaling.twist(command, seen, retreat)
         elif isinstance(command, JointTrajectory):
+            self._begins_here(command, seen)
             command = self._scaling.trajectory(command, seen, retreat)
         elif isinstance(command, BaseVelocity):
             command = self._scaling.base(command, seen, retreat)
@@ -238,6 +245,18 @@ class GuardedWorld:
         if self._on_command is not None:
             self._on_command(sent)
         return sent
+
+    def _begins_here(self, command: JointTrajectory, seen: Observation) -> None:
+        """Refuse a trajectory whose first point is elsewhere: how an arm would get there nobody has judged."""
+        for joint, first in zip(command.joints, command.positions[0], strict=True):
+            if (place := self.robot.place_of(joint)) is None:
+                continue
+            away = abs(float(first) - float(seen.arm_positions[place]))
+            if away > self.limits.plan_start:
+                allowed = f"{self.limits.plan_start:g} rad are allowed"
+                raise SkillFailure(
+                    Reason.MOTION_BLOCKED, f"the trajectory begins {away:.2f} rad from where {joint} is; {allowed}"
+                )
 
     def stop(self) -> None:
         """End every motion now."""

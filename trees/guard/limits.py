@@ -23,6 +23,8 @@ class Limits:
         arm_load_peak: load on such a hand that stops it at once [N].
         arm_load_for: how long a held arm may pull harder than `arm_load_stop` [s].
         grip_force_arm: squeezing force on the person's arm [N].
+        velocity_for: a velocity of a hand or the base is held no longer than this; its end alone is judged [s].
+        plan_start: a trajectory begins no farther than this from where the arm is, each joint [rad].
         lift_duration: an arm lift lasts at least this long [s].
         lift_height: the lift that `lift_duration` is meant for; their ratio caps the hand's speed [m].
         stale_after: proprioception older than this stops the run [s].
@@ -52,6 +54,8 @@ class Limits:
     arm_load_peak: float = 45.0
     arm_load_for: float = 0.4
     grip_force_arm: float = 30.0
+    velocity_for: float = 1.0
+    plan_start: float = 0.05
     lift_duration: float = 5.0
     lift_height: float = 0.25
     stale_after: float = 0.5
@@ -107,6 +111,8 @@ SOURCES: dict[str, str] = {
     "arm_load_peak": "choice: the friction of the grip on the arm gives way soon after",
     "arm_load_for": "choice: with dry friction in its joints a held arm shifts 10 N from one tick to the next",
     "grip_force_arm": "design requirement: at most 30 N of grip on an arm",
+    "velocity_for": "choice: skills send again on every tick; in 1 s nothing passes through an arm unseen",
+    "plan_start": "choice: five times what MoveIt allows at the start; plans of the dressing begin within 0.0001",
     "lift_duration": "design requirement: an arm is lifted for at least 5 s",
     "lift_height": "choice: wrist of a resting arm to the height at which a sleeve passes under it",
     "stale_after": "choice: seven ticks at 15 Hz",

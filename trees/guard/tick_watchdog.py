@@ -18,7 +18,6 @@ import time
 from collections.abc import Callable
 from types import TracebackType
 
-from ...sim.blame import OF_FOREIGN_CODE
 from ...skills.core.reasons import Failure, Reason
 from .limits import DEFAULT, Limits
 
@@ -92,7 +91,7 @@ class TickWatchdog:
             self._failure = Failure(Reason.MOTION_BLOCKED, f"no {what} for {max(tick, sample):.1f} s", "watchdog")
         try:
             self._stop()
-        except OF_FOREIGN_CODE as error:  # whatever a driver raises, the next look stops again
+        except BaseException as error:  # whatever a driver raises, the next look stops again
             self.error = error
         return True
 

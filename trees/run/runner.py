@@ -188,6 +188,11 @@ class Run:
         """Somebody pressed Ctrl-C; the run then ended in the safe stop, and who started it may want to end too."""
         return self._safe_stop.interrupted
 
+    @property
+    def time_waits(self) -> bool:
+        """Whether no time passes but by this run: a robot that is simulated stands still with it."""
+        return self._watchdog is None
+
     def hangs(self) -> bool:
         """Whether the last tick began so long ago that it will hardly end by itself."""
         return self._ticker.hangs()

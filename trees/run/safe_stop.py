@@ -19,7 +19,7 @@ import numpy as np
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from ...sim.blame import OF_FOREIGN_CODE, told
+from ...sim.blame import told
 from ...sim.world import SIDES, GripperOpening, World
 from ...skills.core.context import Context
 from ...skills.core.skill import Skill
@@ -27,10 +27,8 @@ from ..guard.guard import GuardedWorld
 from ..guard.limits import Limits
 from ..nodes.decorators import FailSafe
 from .ticker import Ticker
-from .time_limit import TookTooLongError
 
-RELEASED_OPENING = 0.085  # [m] lets go of anything the fingers can hold
-OPEN = 0.07  # [m] fingers seen further apart than this hold nothing
+OPEN = 0.82  # of the stroke: fingers seen further apart than this hold nothing
 OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
 CALM_TICKS = 5
 
@@ -78,7 +76,9 @@ class SafeStop:
                     each.status = Status.INVALID
                 elif each.status != Status.INVALID:
                     each.stop(Status.INVALID)
-            except (*OF_FOREIGN_CODE, TookTooLongError) as error:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # drivers raise even what is no Exception
                 self._context.report(error)
                 each.status = Status.INVALID
                 self._context.lease.release(each)
@@ -129,14 +129,16 @@ class SafeStop:
         """Send both, whatever comes of it; the fingers after the stop, which leaves them where they are."""
         stopped = self._try(lambda: self._guard.stop() or True, default=False)
         self.refused = "" if stopped else f"stop() failed: {self._last_error}"
+        widest = self._world.robot.gripper.stroke
         for side in SIDES if release else ():
-            self._try(lambda side=side: self._world.send(GripperOpening(side=side, opening=RELEASED_OPENING)))
+            self._try(lambda side=side: self._world.send(GripperOpening(side=side, opening=widest)))
 
     def _fingers(self, before: np.ndarray) -> tuple[bool, np.ndarray]:
         """Whether they are seen open and not closing, or cannot move; and how far apart they stand (2,) [m]."""
         seen = self._guard.observe()
         opening = seen.gripper_opening
-        opened = (opening >= OPEN).all() and (opening >= before - OPENING_NOISE).all()
+        released = OPEN * self._world.robot.gripper.stroke
+        opened = (opening >= released).all() and (opening >= before - OPENING_NOISE).all()
         return bool(opened or seen.emergency_stop), opening
 
     def _tick_safe(self, safe: Behaviour) -> bool:
@@ -158,7 +160,7 @@ class SafeStop:
         self._ticker.limit.start()
         try:
             return action()
-        except (*OF_FOREIGN_CODE, KeyboardInterrupt, TookTooLongError) as error:
+        except BaseException as error:
             self.interrupted |= isinstance(error, KeyboardInterrupt)
             self._context.report(error)
             self._last_error = told(error)

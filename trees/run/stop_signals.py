@@ -5,6 +5,8 @@
 | SIGINT | Ctrl-C | asks for the safe stop | the operator insists: `KeyboardInterrupt` |
 | SIGTERM | somebody ends the program | asks for the safe stop | nothing, or `KeyboardInterrupt` if the run hangs |
 | SIGHUP | the terminal was closed | asks for the safe stop | nothing, or `KeyboardInterrupt` if the run hangs |
+| SIGQUIT | Ctrl-backslash | as SIGTERM | as SIGTERM |
+| SIGTSTP | Ctrl-Z | as SIGTERM where time passes by itself: who stands still cannot stop a robot | as SIGTERM |
 
 Where there is no run to make safe, each of them raises `KeyboardInterrupt`.  During a run that has the runner make
 safe, during the safe branch it has the runner open the fingers.  One that is ignored from the start, as
@@ -13,6 +15,7 @@ safe, during the safe branch it has the runner open the fingers.  One that is ig
 
 from __future__ import annotations
 
+import os
 import signal
 from types import FrameType, TracebackType
 from typing import Any
@@ -24,6 +27,8 @@ from .runner import Run
 CAUSES: dict[str, tuple[Reason, str, str]] = {
     "SIGINT": (Reason.INTERRUPTED, "", "operator"),
     "SIGTERM": (Reason.INTERRUPTED, "the program was told to end (SIGTERM)", "operator"),
+    "SIGQUIT": (Reason.INTERRUPTED, "the program was told to quit (SIGQUIT)", "operator"),
+    "SIGTSTP": (Reason.INTERRUPTED, "the program was told to stand still (SIGTSTP)", "operator"),
     "SIGHUP": (Reason.DISPLAY_LOST, "the terminal was closed (SIGHUP)", "display"),
 }
 
@@ -58,6 +63,9 @@ class StopSignals:
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         name = signal.Signals(number).name
+        if name == "SIGTSTP" and (self.run is None or self.run.time_waits):
+            os.kill(os.getpid(), signal.SIGSTOP)  # a simulated robot stands still with its tree
+            return
         insists = name == "SIGINT" and name in self._seen
         if self.run is None or insists or (self._seen and self.run.hangs()):
             raise KeyboardInterrupt

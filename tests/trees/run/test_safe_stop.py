@@ -191,9 +191,12 @@ def test_a_motion_that_will_not_stop_is_told():
         def stop(self):
             pass
 
+        def send(self, command):
+            return super().send(replace(command, duration=1e3) if isinstance(command, HandTwist) else command)
+
     class Endless(Plan):
         def steps(self):
-            self.world.send(HandTwist(side="left", twist_in_map=np.array((0.05, 0, 0, 0, 0, 0)), duration=1e3))
+            self.world.send(HandTwist(side="left", twist_in_map=np.array((0.05, 0, 0, 0, 0, 0))))
             yield
 
     run = run_of(lambda context: fallback("f", Endless("runs on", context, outcomes=[True])), Runaway())
