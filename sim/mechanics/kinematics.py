@@ -15,7 +15,7 @@ import numpy as np
 from ..extras import later
 from ..world import SIDES, Side
 from .planar import planar_pose
-from .robot_model import RobotModel
+from .robot_model import RobotError, RobotModel
 
 if TYPE_CHECKING:
     import pinocchio as pin  # pyright: ignore[reportMissingImports] - lives in a cmeel prefix
@@ -55,11 +55,15 @@ class Kinematics:
         robot: the same.
         limits: `ArmLimits` by side.
         head_range: lowest and highest head pan [rad].
+
+    Raises:
+        RobotError: the robot names joints or links that its description does not have, or that it cannot move.
     """
 
     def __init__(self, robot: RobotModel) -> None:
         self.robot = robot
         self.model = pin.buildModelFromXML(robot.urdf())
+        _check_names(robot, self.model)
         self.data = self.model.createData()
         full = self.model
         neutral = pin.neutral(full)
@@ -233,3 +237,38 @@ def _place(index: np.ndarray) -> Any:
 def kinematics_of(robot: RobotModel) -> Kinematics:
     """The one model of a robot in this process (building it takes a few milliseconds)."""
     return Kinematics(robot)
+
+
+def _check_names(robot: RobotModel, model: pin.Model) -> None:
+    """Refuse a robot whose description lacks what it names: pinocchio would take the number behind the last one.
+
+    Raises:
+        RobotError: it does, or a joint turns without an end.
+    """
+    bodies = {frame.name for frame in model.frames if frame.type == pin.FrameType.BODY}
+    links = {
+        "hands": robot.hands.values(),
+        "capsules": (capsule.link for capsule in robot.capsules),
+        "own_pairs": (link for pair in robot.own_pairs for link in pair),
+        "cameras": robot.cameras.values(),
+    }
+    for what, names in links.items():
+        for name in names:
+            if name not in bodies:
+                raise RobotError(f"the description of {robot.name} has no link {name!r}, which its {what} name")
+    joints = {
+        "arm_joints": (joint for side in SIDES for joint in robot.joints_of(side)),
+        "fingers": (joint for side in SIDES for joint in robot.fingers[side]),
+        "base_joints": robot.base_joints,
+        "head_joint": (robot.head_joint,),
+    }
+    for what, names in joints.items():
+        for name in names:
+            if not model.existJointName(name):
+                raise RobotError(
+                    f"the description of {robot.name} has no joint {name!r} that moves, which its {what} name"
+                )
+            if what == "arm_joints" and model.joints[model.getJointId(name)].nq != 1:
+                raise RobotError(
+                    f"the joint {name!r} of {robot.name} is continuous, but an end to each side is asked for"
+                )

@@ -18,6 +18,7 @@ from .gripper import GripperFacts
 from .shape import LinkCapsule, Shape
 
 ARMS = ("left", "right")
+RADIUS_MAX = 0.5  # [m] of a capsule; millimetres would be a thousand times that
 
 
 class RobotError(CaretreeError):
@@ -84,7 +85,8 @@ class RobotModel:
         shapes: of every link that can touch something, by link.
         limbs: links of an arm, without the side, that keep off the room's boxes.
         own_pairs: links that could touch each other.
-        capsules: of every link above the base.
+        capsules: of every link above the base.  An arm's begin with its side, and by "finger" and "palm" in their
+            names, and "wrist_2" for the last of the wrist, it is told how near to the person they may come.
 
     Raises:
         RobotError: what is described is no such robot.
@@ -125,9 +127,29 @@ class RobotModel:
             if np.shape(getattr(self, what)) != (2, count):
                 shape = np.shape(getattr(self, what))
                 raise RobotError(f"the posture {what} of {self.name} has shape {shape}, but {(2, count)} is asked for")
+            if not np.isfinite(getattr(self, what)).all():
+                raise RobotError(f"the posture {what} of {self.name} holds a number that is not finite")
+        self._check_capsules()
         for what in ("arm_acceleration", "motion_torque"):
             if (shape := np.shape(getattr(self.limits, what))) != (count,):
                 raise RobotError(f"{what} of {self.name} has shape {shape}, but {(count,)} is asked for")
+
+    def _check_capsules(self) -> None:
+        """Refuse capsules by which nothing would be kept off the person."""
+        for capsule in self.capsules:
+            if not (0.0 < capsule.radius < RADIUS_MAX and np.isfinite(capsule.ends).all()):
+                raise RobotError(
+                    f"the capsule {capsule.name} of {self.name} has a radius of {capsule.radius:g} m and its ends at "
+                    f"{np.asarray(capsule.ends).tolist()} m, but finite ends and 0 to {RADIUS_MAX:g} m are asked for"
+                )
+        names = [capsule.name for capsule in self.capsules]
+        for side in ARMS:
+            for what in ("finger", "palm"):
+                if not any(name.startswith(f"{side}_") and what in name for name in names):
+                    raise RobotError(
+                        f"no capsule of {self.name} has a name that begins with {side}_ and holds {what!r}: by these "
+                        "names hands are kept off the person"
+                    )
 
     @property
     def dof(self) -> int:

@@ -177,7 +177,7 @@ def _distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     return float(np.linalg.norm(start + share * along - point))
 
 
-def rehearsal(seed: int) -> tuple[RehearsalWorld, ScriptedSenses]:
-    """A world to rehearse a task on, and what is seen there."""
-    world = RehearsalWorld(seed)
+def rehearsal(seed: int, robot: RobotModel | None = None) -> tuple[RehearsalWorld, ScriptedSenses]:
+    """A world to rehearse a task on, with the usual robot or another, and what is seen there."""
+    world = RehearsalWorld(seed, robot=robot)
     return world, ScriptedSenses(world)

@@ -43,6 +43,7 @@ from ...skills.core.reasons import Failure, Reason, SkillFailure, reason_of
 from ...skills.geometry.person_zone import PersonZone
 from .command_scaling import CommandScaling
 from .declared_grips import DeclaredGrips
+from .joint_consistency import JointConsistency
 from .limits import DEFAULT, Limits
 from .link_motion import LinkMotion
 from .load_limit import LoadLimit
@@ -89,6 +90,7 @@ class GuardedWorld:
         self._watchdog = Watchdog(limits)
         kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
         links = LinkMotion(inner.robot, kinematics or kinematics_of(inner.robot))
+        self._consistency = JointConsistency(inner.robot, kinematics)
         self._grips = DeclaredGrips(self.zone)
         self._load = LoadLimit(limits)
         self._overspeed = Overspeed(limits, self.zone, links)
@@ -187,6 +189,8 @@ class GuardedWorld:
         seen = fresh_observation(seen, now, self.limits.stale_after, self._form)
         if self._last is not None and (back := self._last.time - seen.time) > AHEAD:
             raise SensorLost(f"the time of the joint state went back by {back:.1f} s")
+        if fault := self._consistency.fault(seen):
+            raise SensorLost(fault)
         self._watchdog.sample(seen, now)
         for fault in self._load.judge(seen):
             self._hold_against(fault)

@@ -61,15 +61,17 @@ class LoadLimit:
             side: which hand.
             motion: (3,) direction in the map, of any length.
             seen: the present loads.
-            retreat: the motion takes load off the person, whatever its direction.
+            retreat: the motion takes load off the person, whatever its direction; believed up to `arm_load_peak`.
 
         Raises:
             SkillFailure: the load is at its limit.
         """
         force = seen.wrench_hand_in_map[SIDES.index(side), :3]
         load, stop = length(force), self.stop_load(side)
-        if retreat or not motion.any() or float(motion @ force) > 0.0:
-            return 1.0  # the hand moves the way it is pulled, or away
+        if not motion.any() or float(motion @ force) > 0.0:
+            return 1.0  # the hand moves the way it is pulled
+        if retreat and load < self._limits.arm_load_peak:
+            return 1.0  # away: the load it leaves may still grow a little
         if load >= stop and self._wide(side) and not self._over[side]:
             return 0.0  # it waits for the load to fall, or to have lasted too long
         if load >= stop:

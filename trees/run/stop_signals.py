@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -34,7 +35,7 @@ CAUSES: dict[str, tuple[Reason, str, str]] = {
 
 
 class StopSignals:
-    """Takes the signals over while it is entered, in the main thread.
+    """Takes the signals over while it is entered.
 
     Attributes:
         run: to be made safe; None before there is one.
@@ -46,8 +47,8 @@ class StopSignals:
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> StopSignals:
-        """Take them over."""
-        for name in CAUSES:
+        """Take them over; in another thread than the main one there are none to take."""
+        for name in CAUSES if threading.current_thread() is threading.main_thread() else ():
             number = getattr(signal, name, None)
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._receive)
@@ -63,7 +64,7 @@ class StopSignals:
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         name = signal.Signals(number).name
-        if name == "SIGTSTP" and (self.run is None or self.run.time_waits):
+        if name == "SIGTSTP" and self.run is not None and self.run.time_waits:
             os.kill(os.getpid(), signal.SIGSTOP)  # a simulated robot stands still with its tree
             return
         insists = name == "SIGINT" and name in self._seen

@@ -218,6 +218,42 @@ def test_another_version_is_refused_in_one_sentence(monkeypatch):
     server.close()
 
 
+def test_a_robot_that_is_busy_when_its_tree_goes_is_stopped_again(serve, monkeypatch):
+    class Busy(OnItsOwn):
+        asked = 0
+
+        def stop(self):
+            self.asked += 1
+            if self.asked < 4:
+                raise RuntimeError("busy")
+            super().stop()
+
+    monkeypatch.setattr("caretree.sim.remote.server.AGAIN", 0.001)
+    world = Busy()
+    remote, _ = serve(world)
+    remote.close()
+    assert world.stopped.wait(10.0)
+
+
+def test_a_robot_is_stopped_while_a_call_hangs(serve):
+    class Hangs(OnItsOwn):
+        def observe(self):
+            begun.set()
+            assert go_on.wait(10.0)
+            return super().observe()
+
+    begun, go_on = threading.Event(), threading.Event()
+    world = Hangs()
+    remote, _ = serve(world)
+    asking = threading.Thread(target=remote.observe)
+    asking.start()
+    assert begun.wait(10.0)
+    world.stopped.clear()
+    assert world.stopped.wait(10.0), "nobody stopped it while observe() did not come back"
+    go_on.set()
+    asking.join(10.0)
+
+
 @pytest.mark.parametrize(
     ("address", "said"), [("nowhere", "no world is served at nowhere"), ("127.0.0.1:x", "host:port is asked for")]
 )

@@ -356,3 +356,28 @@ def test_a_defect_that_shows_in_a_broken_world_is_found_and_named(kind, said):
 def test_every_law_says_what_it_asks_for():
     assert all(law.__doc__ for law in LAWS)
     assert len({law.__name__ for law in LAWS}) == len(LAWS)
+
+
+def test_a_broken_law_leaves_no_robot_moving(monkeypatch):
+    monkeypatch.setattr("caretree.sim.testing.check_world.AGAIN", 0.0)
+
+    class Busy(ScriptedWorld):
+        stops, ended = 0, False
+
+        def observe(self):
+            if self.clock.now() > 3.0:
+                raise SensorLost("no joint states arrive")
+            return super().observe()
+
+        def stop(self):
+            self.stops += 1
+            if self.clock.now() > 3.0 and self.stops % 2:
+                raise RuntimeError("busy")
+            super().stop()
+            self.ended = self.clock.now() > 3.0
+
+        def close(self):
+            assert self.ended, "it was closed while it may still move"
+
+    with pytest.raises(WorldLawBroken):
+        check_world(Busy, wall=no_wall)

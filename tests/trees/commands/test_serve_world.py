@@ -1,6 +1,7 @@
 """`caretree serve-world` offers a world, and `--world remote` runs a task on it."""
 
 import json
+import signal
 import threading
 
 import pytest
@@ -60,3 +61,21 @@ def test_what_cannot_be_served_is_one_sentence(served, capsys):
 
 def test_the_usual_port_is_that_of_both_ends():
     assert f":{remote.PORT}" in remote.RemoteWorld.__init__.__defaults__[0]
+
+
+def test_a_server_that_is_told_to_end_stops_its_robot(served, monkeypatch, tmp_path):
+    """SIGTERM and SIGHUP used to end the process with the robot moving."""
+    stopped = []
+    monkeypatch.setattr(ScriptedWorld, "stop", lambda self: stopped.append(1))
+    before = signal.getsignal(signal.SIGTERM)
+
+    def told(self):
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            self._stop_for_sure()
+
+    monkeypatch.setattr(WorldServer, "serve_one", told)
+    assert main(["serve-world", "scripted", "--bind", "127.0.0.1:0"]) == 130
+    assert stopped
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from caretree.sim.world import EmergencyStop, Frame, SensorLost
-from caretree.skills.core.reasons import Reason
+from caretree.sim.known_robots import robot_named
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.scripted.world import ScriptedWorld
+from caretree.sim.world import BaseVelocity, EmergencyStop, Frame, JointTrajectory, SensorLost
+from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.trees.guard.guard import GuardedWorld
 from caretree.trees.guard.limits import DEFAULT
 
-from .guarded import World, make, twist
+from .guarded import World, make, speed, twist
 
 
 def test_dead_senses_stop_the_run():
@@ -175,3 +178,87 @@ def test_a_robot_that_answers_nothing_else_while_the_emergency_stop_is_pressed()
             raise EmergencyStop("pressed")
 
     assert GuardedWorld(Refuses()).check().reason == Reason.EMERGENCY_STOP
+
+
+def test_a_trajectory_that_begins_elsewhere_is_refused():
+    """A posture that was taught, sent as one whose first point is the goal: nobody has judged the way there."""
+    world, guard = make(near=False)
+    joint, here = guard.robot.joints_of("left")[0], world.observe().arm_positions[0, 0]
+
+    def beginning(away):
+        positions = np.array(((here + away,), (here + 0.2,)))
+        return JointTrajectory(joints=(joint,), times=np.array((0.0, 4.0)), positions=positions)
+
+    guard.send(beginning(0.9 * DEFAULT.plan_start))
+    guard.stop()
+    with pytest.raises(SkillFailure, match=f"begins 0.20 rad from where {joint} is") as refused:
+        guard.send(beginning(0.2))
+    assert refused.value.reason == Reason.MOTION_BLOCKED
+
+
+def test_velocities_are_not_held_for_long():
+    _, guard = make(near=False)
+    for command in (twist(x=0.01, duration=25.0), BaseVelocity(velocity=np.array((0.01, 0, 0)), duration=25.0)):
+        assert guard.send(command).duration == DEFAULT.velocity_for
+    assert guard.send(twist(x=0.01, duration=0.3)).duration == 0.3
+
+
+def test_joints_and_hands_that_contradict_each_other_are_lost_senses():
+    class Elsewhere(World):
+        aside = np.zeros(3)
+
+        def observe(self):
+            seen = super().observe()
+            poses = seen.pose_hand_in_map.copy()
+            poses[1, :3, 3] += self.aside
+            return replace(seen, pose_hand_in_map=poses)
+
+    world, guard = make(near=False, world=Elsewhere())
+    guard.observe()
+    world.aside = np.array((0.0, 0.3, 0.0))
+    world.clock.wait_until(1.0)
+    with pytest.raises(SensorLost, match="right hand is said to be 0\\.30 m from where its joints put it"):
+        guard.observe()
+
+
+def test_a_joint_beyond_its_limits_is_lost_senses():
+    robot = robot_named()
+
+    class Turned(ScriptedWorld):
+        turn = 0.0
+
+        def observe(self):
+            seen = super().observe()
+            return replace(seen, arm_positions=seen.arm_positions + self.turn)
+
+    world = Turned(robot=robot, kinematics=kinematics_of(robot), arm_positions=robot.ready)
+    guard = GuardedWorld(world)
+    guard.observe()
+    world.turn = 40.0
+    world.clock.wait_until(1.0)
+    with pytest.raises(SensorLost, match="rad, but it turns from"):
+        guard.observe()
+
+
+def test_a_world_without_kinematics_gets_those_of_its_robot():
+    robot = robot_named()
+
+    class Bare(ScriptedWorld):
+        kinematics = None
+
+        def __init__(self):
+            super().__init__(robot=robot, kinematics=kinematics_of(robot), arm_positions=robot.ready)
+            self._own, self.kinematics = self.kinematics, None
+
+        def observe(self):
+            self.kinematics = self._own
+            try:
+                return super().observe()
+            finally:
+                self.kinematics = None
+
+    guard = GuardedWorld(Bare())
+    palm = guard.observe().pose_hand_in_map[0, :3, 3]
+    guard.update_person(palm + np.array((0.0, 0.0, -0.12)), radius=0.05)
+    down = guard.send(twist(z=-0.1, duration=0.5))
+    assert speed(down) < 0.1, "no link was kept off the person"

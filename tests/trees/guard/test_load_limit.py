@@ -90,3 +90,11 @@ def test_a_held_arm_that_pulls_very_hard_stops_everything_at_once():
     world.load["left"] = np.array((0, 0, -46.0, 0, 0, 0))
     guard.check()
     assert guard.take_fault().reason == Reason.FORCE_LIMIT
+
+
+def test_a_retreat_is_not_believed_against_a_load_far_above_the_limit():
+    world, guard = make(near=False)
+    pull(world, 60.0)
+    with pytest.raises(SkillFailure, match="60\\.0 N on the left hand"):
+        guard.send(twist(x=0.05), retreat=True)
+    assert speed(guard.send(twist(x=-0.05), retreat=True)) == pytest.approx(0.05)

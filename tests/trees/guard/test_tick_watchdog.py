@@ -166,3 +166,18 @@ def test_what_a_first_tick_would_load_is_loaded_before_time_counts(monkeypatch, 
     monkeypatch.setattr(runner, "load", lambda: loaded.append(True))
     run_of(lambda context: Plan("p", context, outcomes=[True]), world())
     assert len(loaded) == times
+
+
+def test_what_a_driver_raises_that_is_no_exception_does_not_end_the_watch():
+    class Panic(BaseException):
+        pass
+
+    def stop():
+        stops.append(bench.time)
+        raise Panic
+
+    stops = []
+    bench = Bench(stop)
+    bench.look_until(1.0)
+    assert len(stops) > 3
+    assert isinstance(bench.dog.error, Panic)

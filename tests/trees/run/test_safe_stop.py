@@ -6,8 +6,10 @@ import numpy as np
 import py_trees
 import pytest
 from caretree.sim.errors import CaretreeError, RecordError
+from caretree.sim.known_robots import robot_named
+from caretree.sim.mechanics.gripper import GripperFacts
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.sim.world import EmergencyStop, GripperOpening, HandTwist, SensorLost
+from caretree.sim.world import EmergencyStop, GripperOpening, HandTwist, SensorLost, WorldError
 from caretree.skills.core.reasons import Reason
 from caretree.trees.nodes.composers import fallback, sequence
 from caretree.trees.nodes.decorators import FailSafe, Timeout
@@ -286,3 +288,71 @@ def test_no_error_of_a_tick_skips_the_safe_branch(error):
     assert "planted" in result.reason
     assert not result.stopped_from_outside
     assert run.root.made_safe is True
+
+
+@pytest.mark.parametrize("stroke", [0.05, 0.14])
+def test_fingers_of_any_stroke_are_opened_as_far_as_they_go_and_no_farther(stroke):
+    """A gripper of 0.14 m used to be closed to 0.085 m onto what stood between its fingers."""
+    robot = replace(robot_named(), gripper=GripperFacts(stroke=stroke))
+
+    class Strict(ScriptedWorld):
+        def send(self, command):
+            if isinstance(command, GripperOpening) and command.opening > stroke:
+                raise WorldError(f"this gripper opens to {stroke} m")
+            return super().send(command)
+
+    world = Strict(robot=robot)
+    run = run_of(lambda context: Plan("p", context, outcomes=[True], ticks=100), world)
+    world._opening[:] = world._opening_goal[:] = 0.01
+    run.request_stop()
+    result = run.run()
+    assert "did not come to rest" not in result.reason, result
+    assert run.guard.observe().gripper_opening == pytest.approx((stroke, stroke), abs=1e-3)
+    assert result.sim_time_s < 3.0
+
+
+def test_a_stop_that_fails_once_as_a_skill_settles_does_not_cost_the_safe_branch():
+    class Busy(ScriptedWorld):
+        failures = 3
+
+        def stop(self):
+            if self.failures and self.clock.now() > 0.2:
+                self.failures -= 1
+                raise RuntimeError("busy")
+            super().stop()
+
+    class Moves(Plan):
+        def steps(self):
+            self.world.send(HandTwist(side="left", twist_in_map=np.array((0.01, 0, 0, 0, 0, 0)), duration=1.0))
+            yield from self.wait(0.3)
+
+    world = Busy()
+
+    def build(context):
+        body = sequence("s", Moves("moves", context, outcomes=[True]), Plan("fails", context, outcomes=[False]))
+        return FailSafe("safely", body, Release("release", context))
+
+    run = run_of(build, world)
+    result = run.run()
+    assert world.failures < 3
+    assert result.sim_time_s < 10.0, "the safe branch waited for a motion that had been forgotten"
+
+
+def test_what_is_no_exception_does_not_cut_the_safe_stop_short():
+    class Panic(BaseException):
+        pass
+
+    class Panics(ScriptedWorld):
+        left = 3
+
+        def stop(self):
+            if self.left:
+                self.left -= 1
+                raise Panic("in the driver")
+            super().stop()
+
+    world = Panics()
+    world._opening[:] = world._opening_goal[:] = 0.01
+    run = run_of(lambda context: Plan("p", context, outcomes=[False]), world)
+    assert run.run().outcome == "safe_stop"
+    assert (run.guard.observe().gripper_opening > 0.07).all()

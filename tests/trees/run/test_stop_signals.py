@@ -82,3 +82,16 @@ def test_the_first_reason_is_the_one_told(run):
         signal.raise_signal(signal.SIGHUP)
         signal.raise_signal(signal.SIGTERM)
     assert run.run().reason.startswith(Reason.DISPLAY_LOST.value)
+
+
+def test_a_robot_that_moves_on_is_not_left_by_suspending_its_tree(run, monkeypatch):
+    paused = []
+    monkeypatch.setattr("os.kill", lambda process, number: paused.append(number))
+    with StopSignals() as signals:
+        signals.run = run
+        signal.raise_signal(signal.SIGTSTP)
+        assert paused == [signal.SIGSTOP], "a simulated robot stands still with its tree"
+        monkeypatch.setattr(type(run), "time_waits", False)
+        signal.raise_signal(signal.SIGTSTP)
+    assert paused == [signal.SIGSTOP]
+    assert run.run().outcome == "safe_stop"
