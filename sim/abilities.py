@@ -30,7 +30,7 @@ class HandKinematics(Protocol):
 
 @runtime_checkable
 class HasKinematics(Protocol):
-    """A world that knows the robot's own model; without it the guard bounds the hands by the arms' reach."""
+    """A world that knows the robot's own model; for one without it the guard makes that of `World.robot`."""
 
     @property
     def kinematics(self) -> HandKinematics | None:

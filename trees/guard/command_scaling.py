@@ -19,7 +19,7 @@ from ...sim.vector import length
 from ...sim.world import SIDES, BaseVelocity, GripperOpening, HandTwist, JointTrajectory, Observation, Side
 from ...skills.geometry.person_zone import PersonZone
 from .declared_grips import DeclaredGrips
-from .hand_speed import near_speed, near_speed_bound, stretched
+from .hand_speed import near_speed, stretched
 from .keep_clear import KeepClear
 from .limits import Limits
 from .link_motion import LinkMotion
@@ -35,8 +35,7 @@ class CommandScaling:
     """What of each command may be sent.
 
     Args:
-        links: where commands bring the robot's links; where it has no kinematics, there are none, and trajectories near
-            the person are bounded by the arm's reach.
+        links: where commands bring the robot's links.
         limits: what to enforce.
         zone: where the person is.
         load: on the hands.
@@ -46,7 +45,7 @@ class CommandScaling:
 
     def __init__(
         self,
-        links: LinkMotion | None,
+        links: LinkMotion,
         *,
         limits: Limits,
         zone: PersonZone,
@@ -57,7 +56,7 @@ class CommandScaling:
         self._limits, self._zone = limits, zone
         self._load, self._grips, self._under_way = load, grips, under_way
         self._links = links
-        self._clear = None if links is None else KeepClear(links, zone)
+        self._clear = KeepClear(links, zone)
 
     def twist(self, command: HandTwist, seen: Observation, retreat: bool) -> HandTwist:
         """A hand's twist: slower under load and near the person, and off the person and the robot itself."""
@@ -72,10 +71,9 @@ class CommandScaling:
             limit = max(self._speed_limit(side) - carried, 0.0)
             if speed > limit:
                 twist *= limit / speed
-        if self._links is not None and self._clear is not None:
-            twist = self._clear.twist(command, twist, seen, self._grips.arms)
-            after = self._links.after_twist(seen, side, twist, command.duration)
-            twist *= self._slow_links(self._links, seen, after, command.duration, carried)
+        twist = self._clear.twist(command, twist, seen, self._grips.arms)
+        after = self._links.after_twist(seen, side, twist, command.duration)
+        twist *= self._slow_links(seen, after, command.duration, carried)
         self._under_way.arm_moves(side, length(twist[:3]), command.duration)
         return replace(command, twist_in_map=twist)
 
@@ -87,14 +85,9 @@ class CommandScaling:
         """
         factor, fastest = 1.0, {}
         for side in SIDES:
-            if self._links is None:
-                bound = self._bounded(command, side, seen, retreat)
-            else:
-                bound = self._along(command, side, seen, retreat, self._links)
-            if bound is not None:
+            if (bound := self._along(command, side, seen, retreat)) is not None:
                 factor, fastest[side] = max(factor, bound[0]), bound[1]
-        if self._clear is not None:
-            self._clear.trajectory(command, seen, self._grips.arms)
+        self._clear.trajectory(command, seen, self._grips.arms)
         for side, speed in fastest.items():
             self._under_way.arm_moves(side, speed / factor, float(command.times[-1]) * factor)
         return stretched(command, factor) if factor > 1.0 else command
@@ -119,11 +112,10 @@ class CommandScaling:
             near = bool((self._zone.distance(ahead) < reach).any())
             if speed > 0 and (near or self._grips.holds_arm(side)):
                 factor = min(factor, max(self._speed_limit(side) - own, 0.0) / speed)
-        if self._links is not None and self._clear is not None:
-            command = replace(command, velocity=factor * velocity)
-            factor *= self._clear.base(command, seen, self._grips.arms)
-            after = self._links.after_base(seen, factor * velocity, command.duration)
-            factor *= self._slow_links(self._links, seen, after, command.duration)
+        command = replace(command, velocity=factor * velocity)
+        factor *= self._clear.base(command, seen, self._grips.arms)
+        after = self._links.after_base(seen, factor * velocity, command.duration)
+        factor *= self._slow_links(seen, after, command.duration)
         velocity *= factor
         self._under_way.base_moves(velocity, command.duration)
         return replace(command, velocity=velocity)
@@ -136,22 +128,14 @@ class CommandScaling:
             return replace(command, force_limit=min(command.force_limit, self._limits.grip_force_arm))
         return command
 
-    def _bounded(
+    def _along(
         self, command: JointTrajectory, side: Side, seen: Observation, retreat: bool
     ) -> tuple[float, float] | None:
-        """How much a trajectory is stretched for a hand, and the hand's speed [m/s], by the arm's reach alone."""
-        if not any(joint.startswith(f"{side}_") for joint in command.joints):
-            return None
-        pull = seen.wrench_hand_in_map[SIDES.index(side), :3]
-        if np.linalg.norm(pull) >= self._load.stop_load(side) and not retreat:
-            self._load.ease(side, -pull, seen, retreat)
-        speed = near_speed_bound(command, side, seen, self._zone, self._limits.near_person)
-        return speed / self._speed_limit(side), self._speed_limit(side)
+        """How much a trajectory is stretched by the way that an arm's links go, and its hand's speed [m/s].
 
-    def _along(
-        self, command: JointTrajectory, side: Side, seen: Observation, retreat: bool, links: LinkMotion
-    ) -> tuple[float, float] | None:
-        """The same, by the way that the arm's links go; None where it does not move that arm."""
+        None where it does not move that arm.
+        """
+        links = self._links
         walked = links.hand_path(command, side, seen)
         if walked is None:
             return None
@@ -171,13 +155,11 @@ class CommandScaling:
         limit = max(self._speed_limit(side) - carried, 1e-3)
         return max(factor, speed / limit, 1.0 / max(ease, 0.05)), fastest
 
-    def _slow_links(
-        self, links: LinkMotion, seen: Observation, after: np.ndarray, duration: float, already: float = 0.0
-    ) -> float:
+    def _slow_links(self, seen: Observation, after: np.ndarray, duration: float, already: float = 0.0) -> float:
         """Share of a motion, after which the links are at `after` (r, 2, 3), that keeps those near the person slow."""
         if duration <= 0.0:
             return 1.0
-        here, radii = links.ends(seen), links.radii
+        here, radii = self._links.ends(seen), self._links.radii
         speed = furthest_moved(here, after) / duration
         limit = max(self._near_limit() - already, 0.0)
         fast = speed > limit

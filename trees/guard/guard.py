@@ -57,8 +57,7 @@ class GuardedWorld:
     """A world behind the limits.  It passes on the contract and nothing else, so truth stays out of reach.
 
     Args:
-        inner: the world.  Where it has no kinematics, trajectories near the person are bounded by the arm's reach,
-            which is safe and slow, and no link is kept off the person.
+        inner: the world.  Where it has no kinematics, those of its robot's model say where the links are.
         limits: what to enforce.
         on_command: told of every command really sent.
         before_command: called before each command is sent.

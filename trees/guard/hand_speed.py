@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...sim.world import SIDES, JointTrajectory, Observation, Side
+from ...sim.world import JointTrajectory
 from ...skills.geometry.person_zone import PersonZone
 
 SAMPLE = 0.05  # [s] between the places where a trajectory is checked
 SAMPLES_MAX = 2000
-REACH = 1.4  # [m] shoulder to fingertips: bounds a hand's speed when no kinematics are known
 
 
 def sampled(trajectory: JointTrajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -38,21 +37,6 @@ def near_speed(times: np.ndarray, ends: np.ndarray, radii: np.ndarray, zone: Per
     gap = zone.link_distance(ends.reshape(-1, 2, 3), np.tile(radii, count)).reshape(count, links)
     close = gap < near
     return float(speed[close[:-1] | close[1:]].max(initial=0.0))
-
-
-def near_speed_bound(
-    trajectory: JointTrajectory, side: Side, observation: Observation, zone: PersonZone, near: float
-) -> float:
-    """Upper bound of `near_speed` without kinematics: joint speeds times the arm's reach [m/s]."""
-    columns = [n for n, joint in enumerate(trajectory.joints) if joint.startswith(f"{side}_")]
-    if not columns or len(trajectory.times) < 2:
-        return 0.0
-    positions = np.asarray(trajectory.positions, float)[:, columns]
-    hand = observation.pose_hand_in_map[SIDES.index(side), :3, 3]
-    travel = REACH * np.abs(np.diff(positions, axis=0)).sum(axis=1)
-    if zone.distance(hand)[0] - travel.sum() >= near:
-        return 0.0
-    return float((travel / np.maximum(np.diff(np.asarray(trajectory.times, float)), 1e-9)).max())
 
 
 def stretched(trajectory: JointTrajectory, factor: float) -> JointTrajectory:

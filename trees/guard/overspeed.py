@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...sim.segments import furthest_moved
-from ...sim.world import SIDES, Observation
+from ...sim.world import Observation
 from ...skills.core.reasons import Failure, Reason
 from ...skills.geometry.person_zone import PersonZone
 from .limits import Limits
@@ -18,10 +18,10 @@ class Overspeed:
     Args:
         limits: `hand_speed` and `overspeed_...` count.
         zone: where the person is.
-        links: of the robot; None where they are not known, and only the hands are watched.
+        links: of the robot.
     """
 
-    def __init__(self, limits: Limits, zone: PersonZone, links: LinkMotion | None) -> None:
+    def __init__(self, limits: Limits, zone: PersonZone, links: LinkMotion) -> None:
         self._limits, self._zone, self._links = limits, zone, links
         self._ends: np.ndarray | None = None  # (r, 2, 3) at the observation before
         self._fast_since: float | None = None
@@ -33,11 +33,7 @@ class Overspeed:
             seen: of a new time.
             last: the one before.
         """
-        if self._links is None:
-            ends = np.repeat(seen.pose_hand_in_map[:, None, :3, 3], 2, axis=1)
-            names, radii = tuple(f"{side}_hand" for side in SIDES), np.zeros(len(SIDES))
-        else:
-            ends, radii, names = self._links.ends(seen), self._links.radii, self._links.names
+        ends, radii, names = self._links.ends(seen), self._links.radii, self._links.names
         before, self._ends = self._ends, ends
         if last is None or before is None:
             return None

@@ -1,5 +1,6 @@
 """The worlds of the package keep the contract, and every planted defect is found and named."""
 
+import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -359,7 +360,7 @@ def test_every_law_says_what_it_asks_for():
 
 
 def test_a_broken_law_leaves_no_robot_moving(monkeypatch):
-    monkeypatch.setattr("caretree.sim.testing.check_world.AGAIN", 0.0)
+    monkeypatch.setattr(sys.modules[check_world.__module__], "AGAIN", 0.0)
 
     class Busy(ScriptedWorld):
         stops, ended = 0, False

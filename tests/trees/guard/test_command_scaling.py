@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from caretree.sim.faults import FaultyWorld
 from caretree.sim.scripted.linear_arm import HOME_IN_BASE
 from caretree.sim.scripted.world import scripted_room
 from caretree.sim.world import BaseVelocity, GripperOpening, HandTwist, JointTrajectory
@@ -72,20 +71,6 @@ def test_a_trajectory_that_passes_the_person_between_its_ends_is_seen():
     past = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 4.0)), positions=np.array(((0.0,), (4.0,))))
     sent = guard.send(past)
     assert sent.times[-1] == pytest.approx(2.0 / NEAR, rel=1e-6)
-
-
-def test_without_kinematics_the_arms_reach_bounds_the_hand():
-    world = World()
-    bare = FaultyWorld(world, [])
-    bare.kinematics = None
-    guard = GuardedWorld(bare)
-    hand = world.observe().pose_hand_in_map[0, :3, 3]
-    move = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 1.0)), positions=np.array(((0.0,), (0.1,))))
-    guard.update_person(hand + np.array((0.2, 0, 0)))
-    sent = guard.send(move)
-    assert sent.times[-1] > 0.5 * 0.1 / NEAR, "never faster than the true hand may be"
-    guard.update_person(hand + np.array((3.0, 0, 0)))
-    assert guard.send(move).times[-1] == 1.0
 
 
 def test_the_base_carries_the_hands():

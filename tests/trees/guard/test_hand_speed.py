@@ -7,7 +7,7 @@ from caretree.sim.scripted.linear_arm import LinearArms
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.sim.world import JointTrajectory
 from caretree.skills.geometry.person_zone import PersonZone
-from caretree.trees.guard.hand_speed import near_speed, near_speed_bound, sampled, stretched
+from caretree.trees.guard.hand_speed import near_speed, sampled, stretched
 from caretree.trees.guard.link_motion import LinkMotion
 
 AHEAD = JointTrajectory(joints=("left_s0",), times=np.array((0.0, 2.0)), positions=np.array(((0.0,), (0.8,))))
@@ -51,15 +51,6 @@ def test_only_steps_near_the_person_count():
     )  # leaves at 3 m/s
     assert near_speed(TIMES, ends_of(PATH), THIN, zone_at((0.0, 0.1, 0.0)), near=0.15) == pytest.approx(1.0)
     assert near_speed(TIMES, ends_of(PATH), THIN, zone_at((0.0, 9.0, 0.0)), near=0.15) == 0.0
-
-
-def test_without_kinematics_the_speed_is_never_underestimated():
-    seen = ScriptedWorld().observe()
-    there = zone_at(seen.pose_hand_in_map[0, :3, 3])
-    times, path = LinkMotion(BAXTER, LinearArms()).hand_path(AHEAD, "left", seen)
-    assert near_speed_bound(AHEAD, "left", seen, there, 0.3) >= near_speed(times, ends_of(path), THIN, there, 0.3) > 0.0
-    assert near_speed_bound(AHEAD, "right", seen, there, 0.3) == 0.0
-    assert near_speed_bound(AHEAD, "left", seen, zone_at((9.0, 9.0, 9.0)), 0.3) == 0.0
 
 
 def test_stretched_is_the_same_path_slower():
