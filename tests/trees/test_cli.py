@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from importlib import metadata
@@ -120,6 +121,12 @@ def test_a_finished_record_is_not_overwritten(capsys):
     assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 0
     assert main(["run", "wave", "--world", "scripted", "--out", "r"]) == 2
     assert "already holds a finished run" in capsys.readouterr().err
+
+
+def test_a_file_in_the_place_of_a_campaigns_folder_is_told(tmp_path, capsys):
+    (tmp_path / "f").write_text("")
+    assert main(["trials", "wave", "-n", "1", "--out", "f"]) == 2
+    assert "f is a file, but a folder is asked for" in capsys.readouterr().err
 
 
 def test_two_campaigns_do_not_write_one_folder(capsys):
@@ -337,3 +344,10 @@ def build(context):
 """)
     assert main(["run", "odd.py", "--world", "scripted", "--out", "r"]) == 0
     assert "success: The task is done." in capsys.readouterr().out
+
+
+def test_a_run_without_anything_to_print_to_is_a_run(tmp_path):
+    """Services start programs with their output closed: Python has no stream there then."""
+    program = f"{shlex.quote(sys.executable)} -m caretree run wave --world scripted --out r >&- 2>&-"
+    assert subprocess.run(["sh", "-c", program], check=False).returncode == 0
+    assert (tmp_path / "r/run.json").is_file()

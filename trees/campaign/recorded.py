@@ -34,6 +34,7 @@ class Recorded:
         start: what `--from` named; None where the run began at its beginning.
         build: parameter of the task -> value.
         versions: of packages, by name.
+        trace_hash: of the run's events.
     """
 
     task: str
@@ -60,6 +61,7 @@ class Recorded:
     build: Mapping[str, Any]
     world_args: Mapping[str, Any]
     versions: Mapping[str, str]
+    trace_hash: str | None = None
 
 
 def recorded(directory: Path) -> Recorded:
@@ -99,6 +101,7 @@ def recorded(directory: Path) -> Recorded:
         world_args=_value(file, given, "world_args", dict, _is_mapping, {}),
         versions=_value(file, run, "versions", dict, _is_mapping, {}),
         start=_value(file, given, "from", str, _is_text, None),
+        trace_hash=_value(file, run, "trace_hash", str, _is_text, None),
         **optional,
     )
 

@@ -84,6 +84,8 @@ def replay(directory: Path) -> Replay:
         if run.interrupted:
             raise KeyboardInterrupt
     difference = first_difference(before, run.trace.events)
+    if not difference and given.trace_hash not in (None, run.trace.digest()):
+        difference = f"every event is the same, but run.json says {given.trace_hash} of a trace of {run.trace.digest()}"
     now, then = versions(), given.versions
     others = [
         f"{name}: {then[name]}, now {now[name]}" for name in sorted(now) if name in then and then[name] != now[name]

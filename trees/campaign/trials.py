@@ -213,6 +213,8 @@ def _claim(plan: Plan) -> bool:
         if other := others(plan.directory, plan.key):
             raise CaretreeError(f"another campaign works in {plan.directory}: {other}; wait for it or give --out")
         return False
+    if plan.directory.is_file():
+        raise CaretreeError(f"{plan.directory} is a file, but a folder is asked for")
     try:
         plan.directory.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(mine | {"trials": {}}) + "\n", encoding="utf-8")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import errno
+import sys
 from collections.abc import Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -66,7 +67,11 @@ def show(progress: Progress) -> None:
         print(f"{progress.time:8.2f} s {indent}{SIGNS[progress.status]} {progress.name}{message}", flush=True)
     except OSError as error:
         drop_output()
-        raise DisplayError(GONE.get(error.errno or 0, f"printing failed: {said(error)}")) from error
+        why = GONE.get(error.errno or 0, f"printing failed: {said(error)}")
+        if error.errno not in GONE:
+            with suppress(OSError):
+                print(f"caretree: {why}; the run ends in the safe stop", file=sys.stderr, flush=True)
+        raise DisplayError(why) from error
 
 
 def main(options: argparse.Namespace) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import collections
+import unicodedata
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -186,8 +187,8 @@ def _built(task: Task, **params: Any) -> tuple[Behaviour, Context]:
 def _names(root: Behaviour) -> list[str]:
     counts = collections.Counter(node.name for node in root.iterate() if isinstance(node, Skill))
     # A terminal would obey a control character in a name that it shows.
-    unshown = [node.name for node in root.iterate() if not node.name.isprintable()]
-    return [f"a node is called {name!r}; names are of characters that can be shown" for name in unshown] + [
+    unshown = [node.name for node in root.iterate() if any(unicodedata.category(c) == "Cc" for c in node.name)]
+    return [f"a node is called {name!r}; a name holds no control characters" for name in unshown] + [
         f"{count} skills are called {name!r}, but faults and records find a skill by its name"
         for name, count in counts.items()
         if count > 1

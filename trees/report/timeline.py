@@ -43,10 +43,11 @@ def read_trace(path: Path) -> list[dict[str, Any]]:
     """Events of a trace file in order; a last line cut short by a kill is left out.
 
     Raises:
-        CaretreeError: the file is missing or a line before the last is damaged.
+        CaretreeError: the file is missing, or a line is damaged that was written whole.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        text = path.read_text(encoding="utf-8")
+        lines, cut_short = text.splitlines(), not text.endswith("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise CaretreeError(f"{path} cannot be read: {error}") from error
     events = []
@@ -54,7 +55,7 @@ def read_trace(path: Path) -> list[dict[str, Any]]:
         try:
             event = json.loads(line)
         except (ValueError, RecursionError) as error:
-            if number == len(lines):
+            if number == len(lines) and cut_short:
                 break
             raise CaretreeError(f"{path}:{number} is damaged: {error}") from error
         if not isinstance(event, dict):

@@ -65,6 +65,7 @@ def read_start(text: str) -> RecordedStart:
         time = float("nan")
     if not at or not folder or not 0 <= time < float("inf"):
         raise CaretreeError(f"{HOW}, not {text!r}")
+    read_run(Path(folder))  # else the lack of a file in it is told of a folder that there is not
     return RecordedStart(directory=Path(folder), state=recorded_state(Path(folder), time))
 
 

@@ -116,6 +116,14 @@ def test_a_changed_trace_is_told_with_its_first_difference(record, capsys):
     assert capsys.readouterr().out.startswith("event 4 differs: it was ")
 
 
+def test_a_hash_that_is_not_that_of_the_trace_is_told(record, capsys):
+    run = json.loads((record / "run.json").read_text())
+    (record / "run.json").write_text(json.dumps(run | {"trace_hash": "0" * 64}))
+    assert main(["replay", str(record)]) == 1
+    said = f"every event is the same, but run.json says {'0' * 64} of a trace of {run['trace_hash']}\n"
+    assert capsys.readouterr().out == said
+
+
 def test_a_shorter_trace_is_told():
     events = [{"t": 0.0, "kind": "node", "node": "a", "status": "RUNNING"}, {"t": 1.0, "kind": "end"}]
     assert first_difference(events, events) == ""

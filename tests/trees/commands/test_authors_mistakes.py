@@ -19,7 +19,7 @@ BAD = [
     ('Condition("c", lambda c: False, "GRASP_MISSED")', "", "is a Reason such as Reason.PRECONDITION"),
     ('Condition(lambda c: False, "c")', "", "takes its name, a text, and then its test"),
     ('Condition("c", lambda: False)', "", "is called with the context: too many positional arguments"),
-    (r'HoldStill("red \x1b[31m", context)', "", r"'red \x1b[31m'; names are of characters that can be shown"),
+    (r'HoldStill("red \x1b[31m", context)', "", r"'red \x1b[31m'; a name holds no control characters"),
     ("HoldStill(5, context)", "", "takes its name, a text, and then the context, not 5"),
     ('Timeout("t", HoldStill("h", context), seconds="x")', "", "must be a number above 0"),
     ('MoveJoint("m", context, side="left", joint="w1", angle=0.2, speed=-1.0)', "", "must be above 0"),

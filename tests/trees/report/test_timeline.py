@@ -56,6 +56,9 @@ def test_trace_cut_short_is_read_up_to_the_cut(tmp_path):
     path = tmp_path / "trace.jsonl"
     path.write_text(json.dumps(event(0.0, "a", "RUNNING")) + "\n" + '{"t": 1.0, "ki')
     assert len(read_trace(path)) == 1
+    path.write_text(path.read_text() + "\n")  # no kill writes the end of a line that it cut short
+    with pytest.raises(CaretreeError, match=r"trace\.jsonl:2 is damaged"):
+        read_trace(path)
 
 
 @pytest.mark.parametrize("text", ['{"t": \n{"t": 1}\n', "[]\n"])

@@ -25,6 +25,11 @@ def test_what_is_no_record_and_time_gets_the_form(text):
         read_start(text)
 
 
+def test_a_folder_that_is_not_there_is_no_record(tmp_path):
+    with pytest.raises(CaretreeError, match="is not a folder with a run record"):
+        read_start(f"{tmp_path / 'nowhere'}@3")
+
+
 def test_the_room_is_the_one_of_the_record(tmp_path):
     given = options()
     take_room(given, record(tmp_path, gown="standard"))
