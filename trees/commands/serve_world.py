@@ -47,7 +47,7 @@ def main(options: argparse.Namespace) -> int:
     need("msgpack", "a world in another process")
     task = load_task(options.task)
     arguments = read_world_arguments(options.world, options.world_arg)
-    with StopSignals():  # none of them may end this process with the robot moving
+    with StopSignals(suspends=False):  # none of them may end this process with the robot moving
         return _serve(options, host, int(port), task, arguments)
 
 

@@ -8,8 +8,8 @@
 | SIGQUIT | Ctrl-backslash | as SIGTERM | as SIGTERM |
 | SIGTSTP | Ctrl-Z | as SIGTERM where time passes by itself: who stands still cannot stop a robot | as SIGTERM |
 
-Where there is no run to make safe, each of them raises `KeyboardInterrupt`.  During a run that has the runner make
-safe, during the safe branch it has the runner open the fingers.  One that is ignored from the start, as
+Where there is no run to make safe, each of them but SIGTSTP raises `KeyboardInterrupt`.  During a run that has the
+runner make safe, during the safe branch it has the runner open the fingers.  One that is ignored from the start, as
 `nohup` has it, stays ignored.  The loss of a reader (SIGPIPE) shows as an error of printing, since Python ignores it.
 """
 
@@ -37,12 +37,16 @@ CAUSES: dict[str, tuple[Reason, str, str]] = {
 class StopSignals:
     """Takes the signals over while it is entered.
 
+    Args:
+        suspends: whether Ctrl-Z suspends the program where there is no run.
+
     Attributes:
         run: to be made safe; None before there is one.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, suspends: bool = True) -> None:
         self.run: Run | None = None
+        self._suspends = suspends
         self._seen: set[str] = set()
         self._before: dict[int, Any] = {}
 
@@ -64,7 +68,7 @@ class StopSignals:
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         name = signal.Signals(number).name
-        if name == "SIGTSTP" and self.run is not None and self.run.time_waits:
+        if name == "SIGTSTP" and (self._suspends if self.run is None else self.run.time_waits):
             os.kill(os.getpid(), signal.SIGSTOP)  # a simulated robot stands still with its tree
             return
         insists = name == "SIGINT" and name in self._seen
