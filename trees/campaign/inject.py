@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator, Mapping
 
-from ...sim.abilities import SupportsRestart
+from ...sim.abilities import SupportsFaults, SupportsRestart
 from ...sim.errors import CaretreeError
-from ...sim.faults import FAULTS, PHASES, FaultyWorld
+from ...sim.faults import FAULTS, IN_PHYSICS, PHASES, FaultyWorld
 from ...skills.core.skill import Skill
 from ..nodes.decorators import FailSafe
 from ..run.task import Task
@@ -28,7 +28,7 @@ class Campaign:
         task: to try.
         make_world: a fresh world, and senses if they are scripted, for every run.
         seed: of every run.
-        faults: which ones.
+        faults: which ones; of all those that happen in physics are left out where the world does not play them.
         stage: run this stage alone, or a span of them; None for the whole task.
         jobs: runs at the same time; None for one here, and as many as it has cores on a cluster.
         address: of a Ray cluster to run on; None for this machine.
@@ -38,6 +38,7 @@ class Campaign:
     Attributes:
         nominal: outcome without any fault.
         nodes: skills in the order of the tree.
+        left_out: faults that this world does not play.
         forks: whether rows share what they have in common, as branches of one run.
 
     Raises:
@@ -59,13 +60,16 @@ class Campaign:
         if jobs is not None and jobs < 1:
             raise CaretreeError(f"jobs is {jobs}, but at least 1 is asked for")
         self._maker = RunMaker(task, make_world, seed=seed, stage=stage)
-        self._faults, self._jobs, self._address, self._recipe = faults, jobs, address, recipe
+        self._jobs, self._address, self._recipe = jobs, address, recipe
         self._reached: set[Place] = set()
         run = self._maker.run()
         assert isinstance(run.world, FaultyWorld)
         if isinstance(run.world.inner, SupportsRestart) and (jobs or 1 if address is None else 2) > 1:
             run.world.close()
             raise CaretreeError(f"{type(run.world.inner).__name__} has one robot for all runs: no --jobs, no --address")
+        unplayed = () if isinstance(run.world.inner, SupportsFaults) else tuple(f for f in faults if f in IN_PHYSICS)
+        self.left_out = unplayed if faults == FAULTS else ()  # one that was asked for by name is refused
+        self._faults = tuple(fault for fault in faults if fault not in self.left_out)
         self.nodes = [node.name for node in run.root.iterate() if isinstance(node, Skill)]
         movers = {node.name for node in run.root.iterate() if isinstance(node, Skill) and node.commands}
         self._safe = {

@@ -23,8 +23,8 @@ class Recorded:
         seed: of the run.
         world: name.
         world_args: what a world that the package does not bring was given, name -> value.
-        robot, gown, person, model, stage, look, engine, perception, pregrasp: as on the command line; None where
-            nothing was given.
+        robot, gown, person, model, stage, look, engine, perception, pregrasp, senses: as on the command line; None
+            where nothing was given.
         world_kind: name.
         rate_hz: ticks a second.
         settled_rate_hz: the same once all faults lie behind; None where it stays as it was.
@@ -51,6 +51,7 @@ class Recorded:
     engine: str | None = None
     perception: str | None = None
     pregrasp: str | None = None
+    senses: str | None = None
     start: str | None = None
     world_kind: str = EASY  # records from before there were kinds
     rate_hz: float = 15.0
@@ -85,6 +86,7 @@ def recorded(directory: Path) -> Recorded:
         "engine",
         "perception",
         "pregrasp",
+        "senses",
     )
     optional = {name: _value(file, given, name, str, _is_text, None) for name in names}
     return Recorded(

@@ -16,7 +16,7 @@ from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
 from ..run.trace import canonical
-from ..run.worlds import closed_after, make_world, prepare_stage
+from ..run.worlds import closed_after, make_world, prepare_stage, senses_for
 from .recorded import recorded
 from .recorded_task import FILE, HASH, recorded_task
 
@@ -62,6 +62,7 @@ def replay(directory: Path) -> Replay:
         arguments=given.world_args,
     )
     with closed_after(inner):
+        senses = senses or senses_for(given.senses or "own", loaded, inner, given.seed)
         measured = inner if given.log_rate is None else logged(inner, None, given.log_rate)
         world = FaultyWorld(measured, faults) if faults else measured
         run = Run(

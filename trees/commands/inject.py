@@ -87,6 +87,8 @@ def _campaign(options: argparse.Namespace, task: Task, path: Path) -> int:
     )
     if campaign.nominal.outcome != "success":
         print(f"without any fault the task already ends in {campaign.nominal.outcome}: {campaign.nominal.reason}")
+    if campaign.left_out:
+        print(f"left out, as they happen in physics and this world does not play them: {', '.join(campaign.left_out)}")
     wanted = drawn_rows(campaign.plan(), options.sample, options.seed)
     given = (options.world, options.world_kind, str(options.seed), str(options.stage), *options.world_arg)
     given += () if options.robot is None else (options.robot,)

@@ -6,7 +6,7 @@ import pytest
 from caretree.sim.errors import CaretreeError
 from caretree.sim.faults import FAULTS, FaultyWorld, parse_fault
 from caretree.sim.scripted.world import ScriptedWorld
-from caretree.sim.world import GripperOpening, SensorLost
+from caretree.sim.world import GripperOpening, SensorLost, World
 from caretree.skills.core.reasons import Reason
 from caretree.skills.core.skill import Skill
 from caretree.trees.campaign.fault_row import Row, table
@@ -55,6 +55,25 @@ def test_every_fault_at_every_node_and_phase_that_a_bare_world_reaches_ends_safe
     assert [row for row in rows if not row.survived] == []
     reached = {(row.node, row.phase) for row in rows if row.outcome != "not_reached"}
     assert len(reached) >= 5
+
+
+def test_faults_that_a_world_does_not_play_are_left_out_before_the_first_row():
+    class NoPhysics(World):
+        """A robot's adapter: nothing of it makes a person stir."""
+
+        def __init__(self):
+            inner = ScriptedWorld()
+            self.clock, self.room, self.robot = inner.clock, inner.room, inner.robot
+            self.kinematics = inner.kinematics
+            self.observe, self.look, self.send, self.stop = inner.observe, inner.look, inner.send, inner.stop
+
+    NoPhysics.__abstractmethods__ = frozenset()
+    task = replace(load_task("wave"), script=None)
+    tried = Campaign(task, lambda: (NoPhysics(), None))
+    assert tried.left_out == ("grip_slip", "person_moves")
+    assert not {fault for _, _, fault in tried.plan()} & set(tried.left_out)
+    with pytest.raises(CaretreeError, match="cannot play grip_slip"):
+        list(Campaign(task, lambda: (NoPhysics(), None), faults=("grip_slip",)).rows())
 
 
 def test_the_dressing_is_rehearsed_from_the_rail_to_the_bed():
