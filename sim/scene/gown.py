@@ -20,6 +20,7 @@ import numpy as np
 from ..errors import CaretreeError
 
 FABRIC, COLLAR, CUFF, ARMHOLE = range(4)  # face labels: plain fabric and the three contrasting bindings
+MASS_MAX = 5.0  # [kg] more than any garment that a person is dressed in; grams are told by it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,13 +63,15 @@ class GownSpec:
         """Reject cuts that cannot be sewn.
 
         Raises:
-            CaretreeError: a size is not positive or the armhole does not fit the length.
+            CaretreeError: a size is not positive, it weighs what no gown does, or the armhole does not fit the length.
         """
         if (
             min(self.spacing, self.mass, self.elastic) <= 0
             or min(self.front, self.back, self.strap, self.sleeve, *self.hole) < 1
         ):
             raise CaretreeError(f"gown '{self.name}': sizes, mass and stiffness must be positive")
+        if self.mass > MASS_MAX:
+            raise CaretreeError(f"gown '{self.name}' weighs {self.mass:g} kg, but at most {MASS_MAX:g} kg is asked for")
         if self.strap + self.hole[1] >= self.length:
             raise CaretreeError(
                 f"gown '{self.name}': an armhole of {self.hole[1]} cells does not fit a length of {self.length} cells"

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.errors import CaretreeError
-from caretree.sim.scene.gown import GOWNS, build_gown, edge_counts
+from caretree.sim.scene.gown import GOWNS, GownSpec, build_gown, edge_counts
 
 MESH = build_gown(GOWNS["medium"])
 
@@ -33,3 +33,8 @@ def test_stays_add_springs_at_the_sleeves_only_and_no_borders():
 def test_what_cannot_be_sewn_is_refused(wrong):
     with pytest.raises(CaretreeError, match="gown 'medium'"):
         dataclasses.replace(GOWNS["medium"], **wrong)
+
+
+def test_a_gown_in_grams_is_told():
+    with pytest.raises(CaretreeError, match="weighs 430 kg, but at most 5 kg"):
+        GownSpec(name="mine", mass=430.0)
