@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ... import skills
-from ..cli import DELEGATED, FAULTS, GOWNS, LOOKS, PERSONS, SELF_PARSED, WORLD_KINDS, WORLDS, build_parser
+from ...sim.known_robots import ROBOTS
+from ..cli import DELEGATED, ENGINES, FAULTS, GOWNS, LOOKS, PERSONS, SELF_PARSED, WORLD_KINDS, WORLDS, build_parser
 from ..tasks import task_names
 
 Paths = Literal["", "tasks", "files", "folders"]
@@ -24,6 +25,8 @@ NAMED = {
     "--world": ", ".join(WORLDS),
     "--world-kind": WORLD_KINDS,
     "--fault": FAULTS,
+    "--engine": ENGINES,
+    "--robot": ", ".join(ROBOTS),
 }
 BASH_PATHS: dict[Paths, tuple[str, ...]] = {
     "": (),

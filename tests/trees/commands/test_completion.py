@@ -75,3 +75,9 @@ def test_what_the_forms_of_a_command_take_is_offered_too():
     export = words()["export"]
     assert {"xml", "lerobot", "wave"} <= set(export.places.words)
     assert {"--out", "--stage", "--camera"} <= set(export.options)
+
+
+def test_engines_and_robots_are_offered_by_name():
+    options = words()["run"].options
+    assert options["--engine"].words == ("bullet", "spring", "spring-layers")
+    assert options["--robot"].words == ("baxter", "ur5-pair")
