@@ -28,7 +28,7 @@ from ..guard.limits import Limits
 from ..nodes.decorators import FailSafe
 from .ticker import Ticker
 
-OPEN = 0.82  # of the stroke: fingers seen further apart than this hold nothing
+OPEN = 0.83  # of the stroke: fingers seen further apart than this hold nothing
 OPENING_NOISE = 0.001  # [m] fingers that come closer by more than this are closing
 CALM_TICKS = 5
 
