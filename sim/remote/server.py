@@ -12,6 +12,7 @@ from typing import Any
 from ..blame import OF_FOREIGN_CODE
 from ..compiled import load
 from ..scripted.clock import SteppedClock
+from ..scripted.linear_arm import LinearArms
 from ..world import World, WorldError
 from .messages import VERSION, Connection
 from .values import packed, unpacked
@@ -90,6 +91,7 @@ class WorldServer:
         world = self._world
         told = {"name": type(world).__name__, "stepped": self._stepped, "robot": world.robot.name}
         told["room"] = packed(world.room)
+        told["made_up_arms"] = isinstance(getattr(world, "kinematics", None), LinearArms)
         connection.send(("", told, float(self._world.clock.now())))
 
     def _next(self, connection: Connection) -> tuple[str, tuple[Any, ...]]:

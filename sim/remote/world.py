@@ -13,6 +13,7 @@ from ..abilities import HandKinematics
 from ..errors import CaretreeError
 from ..known_robots import robot_named
 from ..scripted.clock import SteppedClock
+from ..scripted.linear_arm import LinearArms
 from ..world import Command, Frame, Observation, SensorLost, World, WorldError
 from .messages import VERSION, Connection
 from .values import ERRORS, packed, unpacked
@@ -29,7 +30,8 @@ class RemoteWorld(World):
         address: `host:port`, or the host alone.
         patience: how long a robot may take to answer [s]; a simulation may take `SLOW`.
         robot: name of its model, as `--robot` has it; the one that the other side names by default.
-        kinematics: what the guard shall know of where the hands are; nothing by default.
+        kinematics: what the guard shall know of where the hands are; by default its robot's model, or the scripted
+            world's made up arms where these are behind the socket.
         now: the wall clock [s].
 
     Raises:
@@ -68,7 +70,7 @@ class RemoteWorld(World):
         self._patience = SLOW if told["stepped"] else patience
         self.served: str = told["name"]
         self.room = unpacked(told["room"])
-        self.kinematics = kinematics
+        self.kinematics = kinematics or (LinearArms() if told.get("made_up_arms") else None)
         self.clock = _SteppedRemoteClock(self) if told["stepped"] else _RemoteClock(self)
 
     def observe(self) -> Observation:

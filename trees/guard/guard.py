@@ -87,8 +87,9 @@ class GuardedWorld:
         self._form = ObservationForm(inner.robot)
         self.zone = PersonZone(inner.room.bed, limits.person_above_bed)
         self._watchdog = Watchdog(limits)
-        kinematics = inner.kinematics if isinstance(inner, HasKinematics) else None
-        links = LinkMotion(inner.robot, kinematics or kinematics_of(inner.robot))
+        own = inner.kinematics if isinstance(inner, HasKinematics) else None
+        kinematics = own or kinematics_of(inner.robot)
+        links = LinkMotion(inner.robot, kinematics)
         self._consistency = JointConsistency(inner.robot, kinematics)
         self._grips = DeclaredGrips(self.zone)
         self._load = LoadLimit(limits)

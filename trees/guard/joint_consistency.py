@@ -22,10 +22,10 @@ class JointConsistency:
 
     Args:
         robot: what it is made of.
-        kinematics: of the world; None where it has none, and nothing can be compared.
+        kinematics: of the world, or of its robot's model.
     """
 
-    def __init__(self, robot: RobotModel, kinematics: HandKinematics | None) -> None:
+    def __init__(self, robot: RobotModel, kinematics: HandKinematics) -> None:
         self._robot, self._kinematics = robot, kinematics
         self._lower = self._upper = None
         if isinstance(kinematics, Kinematics):
@@ -36,7 +36,7 @@ class JointConsistency:
 
     def fault(self, seen: Observation) -> str:
         """What cannot be, one clause; empty where all can."""
-        if self._kinematics is None or seen.time == self._judged:
+        if seen.time == self._judged:
             return ""
         if self._lower is not None and self._upper is not None:
             beyond = (seen.arm_positions < self._lower) | (seen.arm_positions > self._upper)

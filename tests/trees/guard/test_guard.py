@@ -262,3 +262,22 @@ def test_a_world_without_kinematics_gets_those_of_its_robot():
     guard.update_person(palm + np.array((0.0, 0.0, -0.12)), radius=0.05)
     down = guard.send(twist(z=-0.1, duration=0.5))
     assert speed(down) < 0.1, "no link was kept off the person"
+
+
+def test_hands_that_are_not_where_the_robots_model_has_them_are_lost_senses():
+    """By its robot's model the guard of an adapter without kinematics keeps links off the person."""
+
+    class Other(World):
+        def __init__(self):
+            super().__init__()
+            self.made_up, self.kinematics = self.kinematics, None
+
+        def observe(self):
+            self.kinematics = self.made_up
+            try:
+                return super().observe()
+            finally:
+                self.kinematics = None
+
+    with pytest.raises(SensorLost, match="from where its joints put it"):
+        GuardedWorld(Other()).observe()
