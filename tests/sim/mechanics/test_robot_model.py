@@ -61,6 +61,7 @@ def test_joints_are_told_by_side_and_place():
     assert BAXTER.place_of(BAXTER.head_joint) is None
 
 
+@pytest.mark.extra
 @pytest.mark.parametrize(
     ("values", "said"),
     [

@@ -221,6 +221,7 @@ def test_joints_and_hands_that_contradict_each_other_are_lost_senses():
         guard.observe()
 
 
+@pytest.mark.extra
 def test_a_joint_beyond_its_limits_is_lost_senses():
     robot = robot_named()
 
@@ -240,6 +241,7 @@ def test_a_joint_beyond_its_limits_is_lost_senses():
         guard.observe()
 
 
+@pytest.mark.extra
 def test_a_world_without_kinematics_gets_those_of_its_robot():
     robot = robot_named()
 
@@ -264,6 +266,7 @@ def test_a_world_without_kinematics_gets_those_of_its_robot():
     assert speed(down) < 0.1, "no link was kept off the person"
 
 
+@pytest.mark.extra
 def test_hands_that_are_not_where_the_robots_model_has_them_are_lost_senses():
     """By its robot's model the guard of an adapter without kinematics keeps links off the person."""
 
