@@ -1,12 +1,15 @@
 """How far a sleeve comes up an arm that falls: a task of its own for trials, and what its records say.
 
     caretree run benchmarks/limp_arm.py --stage limp --seed 101 --world-kind easy+falling_arms --out DIR
-    python benchmarks/limp_arm.py DIR...
+    caretree run benchmarks/limp_arm.py --stage wide --from DIR@122 --world-kind easy+falling_arms --out WIDE
+    python benchmarks/limp_arm.py DIR WIDE ...
 
 Nobody lifts such an arm by its elbow within 30 N.  It is slid out straight until its hand lies beyond the edge of the
 bed, where nothing pins what is drawn over it; the hand of the robot that is nearer to the head draws the sleeve up to
 the elbow, the other one then raises the wrist, which is bare beyond the cuff, and the sleeve is drawn on past the
-elbow.  Nothing swaps hands, and the strap is never let go of.  What it came to: docs/dressing-findings.md.
+elbow.  Nothing swaps hands, and the strap is never let go of.  The stage `wide` goes on from there: facing the head of
+the bed, the robot swings the arm out by its wrist until it lies across the edge, and holds it so while the other hand
+draws the sleeve on.  What it came to: docs/dressing-findings.md.
 """
 
 from __future__ import annotations
@@ -18,12 +21,13 @@ from pathlib import Path
 import numpy as np
 from caretree.perception.estimates import ArmPosture
 from caretree.perception.person.skin import skin_on_bed
-from caretree.sim.world import SIDES, HandTwist, Side
-from caretree.skills.belief.person_tracking import swung_to, watch_arm
-from caretree.skills.control.arm_grip import lost_arm
-from caretree.skills.control.hands import hand_now
+from caretree.sim.world import SIDES, BaseVelocity, HandTwist, Side
+from caretree.skills.belief.person_tracking import careful, swung_to, watch_arm
+from caretree.skills.control.arm_grip import lost_arm, over_arm, top_down_reachable
+from caretree.skills.control.fingers import open_gripper
+from caretree.skills.control.hands import hand_now, move_hands
 from caretree.skills.control.lowering import LoweringTuning
-from caretree.skills.control.take_arm import TakeArmTuning
+from caretree.skills.control.take_arm import TakeArmTuning, close_around
 from caretree.skills.core.context import Context
 from caretree.skills.core.ports import Input
 from caretree.skills.core.reasons import Reason, SkillFailure
@@ -31,11 +35,12 @@ from caretree.skills.core.scope import Scope
 from caretree.skills.core.skill import Skill
 from caretree.skills.geometry.arm_path import UP, ArmPath
 from caretree.skills.geometry.hold import Hold
-from caretree.skills.geometry.stances import LIFTING, PULLING, outwards
+from caretree.skills.geometry.stances import LIFTING, PULLING, STANCES, outwards
 from caretree.skills.grasp_sleeve import GraspSleeve
 from caretree.skills.lift_arm import LiftArm, LiftArmTuning, LiftGoal
 from caretree.skills.look_at_person import LookAtPerson
 from caretree.skills.look_for_sleeve import LookForSleeve
+from caretree.skills.motion.drive import PathFollower
 from caretree.skills.navigate import Navigate
 from caretree.skills.present_sleeve import PresentSleeve
 from caretree.skills.pull_along_arm import PullAlongArm
@@ -53,7 +58,11 @@ SIDE: Side = "right"
 GENTLE = TakeArmTuning(closing_speed=0.03)
 SLIDE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=1.8, pitch=np.deg2rad(5.0), spread=0.6))
 RAISE = LiftArmTuning(take=GENTLE, goal=LiftGoal(grip_coordinate=2.4, pitch=np.deg2rad(8.0), spread=0.3))
+SWING = LiftArmTuning(take=GENTLE, duration=9.0, goal=LiftGoal(grip_coordinate=2.3, pitch=np.deg2rad(4.0), spread=1.4))
 OVER_THE_EDGE = ReleaseArmTuning(lowering=LoweringTuning(edge=-0.4))
+LIES_WIDE = ReleaseArmTuning(lowering=LoweringTuning(edge=-0.6))
+BELOW = ((0.77, 0.47), (0.84, 0.08))  # x and y of the base that swings a right arm out, at first and in the end [m]
+ALONGSIDE = 0.04  # of the base that comes along meanwhile [m/s]
 ARM_STAND = (1.05, -0.30)
 STRAP_STANDS = ((1.1, 0.6), (1.1, 0.45), (1.2, 0.5))  # x and y of the base for a right arm, tried in turn [m]
 WRIST_STAND = (1.15, -0.15)
@@ -102,6 +111,39 @@ class RaiseWrist(Skill):
         self.note(f"{load:.0f} N at the top")
 
 
+class SwingOut(LiftWrist):
+    """Swings an arm out by its wrist, a little above the mattress; the base comes along to `stand`."""
+
+    stand = Input(np.ndarray, unit="m, m, rad, map", doc="base pose (3,) in the end")
+
+    def _lift(self) -> Iterator[None]:
+        """As an arm is lifted, but for the end of the swing, which need not be in reach from where the base is now."""
+        goal, take = self.tuning.goal, self.tuning.take
+        yield from open_gripper(self, self.hand)
+        above = over_arm(watch_arm(self, self.side, period=0.0), goal.grip_coordinate, lift=goal.approach_height)
+        above = top_down_reachable(self, self.hand, above)
+        yield from move_hands(self, {self.hand: above}, way="any", speed=careful(self, take.approach_speed))
+        posture, around = self.look_again(), above.copy()
+        around[:3, 3] = ArmPath.of(posture).point(goal.grip_coordinate) + take.grip_depth * above[:3, 2]
+        yield from close_around(self, self.hand, above, around, tuning=take)
+        self.hold = Hold(self.hand, goal.grip_coordinate)
+        seen, limits = self.world.observe(), self.world.robot.limits
+        way = np.stack((seen.pose_base_in_map[:2], self.stand[:2]))
+        follower, n, most = (
+            PathFollower(way, float(self.stand[2]), limits, speed=ALONGSIDE),
+            SIDES.index(self.hand),
+            0.0,
+        )
+        for _ in self._swing(posture, goal):
+            seen = self.world.observe()
+            most = max(most, float(np.linalg.norm(seen.wrench_hand_in_map[n, :3])))
+            if not follower.done(seen.pose_base_in_map):
+                command = follower.command(seen.pose_base_in_map)
+                self.world.send(BaseVelocity(velocity=command.velocity * (1.0, 1.0, 0.3), duration=command.duration))
+            yield
+        self.note(f"{most:.0f} N at most")
+
+
 def limp(context: Context) -> Stage:
     """One arm into its sleeve as far as it goes, begun with the gown on the legs."""
     head, foot = LIFTING[SIDE], PULLING[SIDE]
@@ -144,15 +186,35 @@ def limp(context: Context) -> Stage:
     )
 
 
-def at(x: float, y: float) -> np.ndarray:
-    """Base pose (3,) at `x` and `y` of a right arm's side, mirrored for a left one, facing the bed [m, m, rad]."""
-    return np.array((x * outwards(SIDE)[0], y, np.pi if SIDE == "right" else 0.0))
+def wide(context: Context) -> Stage:
+    """Begun with the sleeve past the elbow: the arm across the edge of the bed, and the sleeve drawn on."""
+    arm = Scope(context, f"{SIDE} arm", keys=("grip",), side=SIDE)
+    held = Scope(arm, "wide", keys=("hold",))
+    return timed_stage(
+        "wide",
+        Retreat("bring the arms back", arm, hand_distance=0.05),
+        Navigate("go to its side", arm, goal=f"bed_{SIDE}"),
+        arm_in_view(arm),
+        Navigate("go below it", arm, goal=at(*BELOW[0], STANCES.heading)),
+        SwingOut("swing it out", held, hand=LIFTING[SIDE], tuning=SWING, stand=at(*BELOW[1], STANCES.heading)),
+        GraspSleeve("take the strap", held, hand=PULLING[SIDE], worn=True),
+        PullAlongArm("to the shoulder", held, grip_goal=-0.45, armhole_goal=-0.25, max_load=5.0),
+        ReleaseArm("lay it down", held, hand=LIFTING[SIDE], lower=True, ready="if possible", tuning=LIES_WIDE),
+        back_off("back off", arm, 0.25),
+        seconds=400.0,
+    )
 
 
-STAGES = {"limp": TaskStage(limp, begins="gown_on_person")}
+def at(x: float, y: float, heading: float | None = None) -> np.ndarray:
+    """Base pose (3,) at `x` and `y` of a right arm's side, mirrored for a left one; it faces the bed [m, m, rad]."""
+    facing = np.pi if SIDE == "right" else 0.0
+    return np.array((x * outwards(SIDE)[0], y, facing if heading is None else heading))
 
 
-def build(context: Context, stages: tuple[str, ...] = tuple(STAGES)) -> Behaviour:
+STAGES = {"limp": TaskStage(limp, begins="gown_on_person"), "wide": TaskStage(wide, begins="gown_on_person")}
+
+
+def build(context: Context, stages: tuple[str, ...] = ("limp",)) -> Behaviour:
     """The stage, and what is owed to the person where it fails."""
     body = sequence("limp arm", *(STAGES[stage].build(context) for stage in stages))
     return FailSafe("safely", body, make_safe(context))
