@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from ...sim.errors import CaretreeError
+from .catalogue import all_skills
 
 PLAIN = {float: "a number", int: "a whole number", bool: "true or false", str: "a text"}
 
@@ -137,5 +138,7 @@ def all_values(parameters: Mapping[str, BuildParameter], given: Mapping[str, Any
             there = ", ".join(parameters) or "none"
             alike = difflib.get_close_matches(name, list(parameters), n=1)
             meant = f"; {alike[0]} is meant?" if alike else ""
+            if name in all_skills():
+                meant = f"; it is a skill, whose numbers are set as {name}.NUMBER=VALUE, or {name}: {{NUMBER: VALUE}}"
             raise ParameterError(f"task {task!r} has no parameter {name!r}; it has {there}{meant}")
     return {name: each.value(given.get(name, each.default)) for name, each in parameters.items()}

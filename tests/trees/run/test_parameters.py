@@ -38,6 +38,7 @@ def test_what_is_declared_has_defaults_and_takes_values():
         ({"arm": "up"}, "arm is 'up', but left or right is asked for"),
         ({"times": 1.5}, "times is 1.5, but a whole number from 1 is asked for"),
         ({"gently": 1}, "gently is 1, but true or false is asked for"),
+        ({"lift_arm": 3}, "it is a skill, whose numbers are set as lift_arm.NUMBER=VALUE"),
     ],
 )
 def test_a_wrong_value_is_refused_in_one_sentence(given, words):
