@@ -18,8 +18,8 @@ from ...sim.render.solids import capsule_mesh
 from ...sim.robot.baxter import BAXTER
 from ...sim.scene.person_spec import Capsule, trunk_capsules
 from ...sim.scene.scene import BED_TOP, RAIL_HEIGHT, room_map
-from ...sim.world import Frame
-from .labels import Labels, label
+from ...sim.world import SIDES, Frame
+from .labels import Labels, label, strap_weights
 from .states import RoomState
 
 PARTS = ("train", "test", "heldout")
@@ -35,6 +35,8 @@ _OWN_ARMS = 0.6  # of the head's pictures for training, which show the robot's o
 _ARM_SPREAD = (0.05, 0.6)  # of the joints from the ready posture, in half of these and in the others [rad]
 _MOST_ROBOT = 0.35  # of a picture, beyond which the robot is left out
 _HAND_DISTANCE = (0.28, 0.85)  # of a hand's camera from what it looks at [m]
+_AT_STRAP = 0.5  # of the hands' pictures for training of gowns that lie, which look for a strap to take it, ...
+_STRAP_DISTANCE = (0.24, 0.45)  # ... from so far off [m]; `SleeveSearchTuning` looks from 0.29 and 0.42 m
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +123,12 @@ def draw_picture(
     appearance = draw_look(look, rng, held_out=part == "heldout", skin=skin, light=light)
     camera = camera or ("head" if rng.random() < 0.5 else "left_hand")
     size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
-    pose, base = _head_pose(state, rng) if camera == "head" else (_hand_pose(state, rng), None)
+    if camera == "head":
+        pose, base = _head_pose(state, rng)
+    elif part == "train" and state.kind in ("laid", "worn") and rng.random() < _AT_STRAP:
+        pose, base = _strap_pose(state, rng), None
+    else:
+        pose, base = _hand_pose(state, rng), None
     robot = rng.random() < 0.8
     own = _own_arms(base, rng) if part == "train" and base is not None and rng.random() < _OWN_ARMS else None
     room = _room(state, appearance, robot=robot and own is None, gown=gown, own=own)
@@ -194,10 +201,22 @@ def _hand_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:
     if state.kind in ("hung", "held"):
         aside = rng.choice((-np.pi / 2, np.pi / 2)) + rng.uniform(-1.0, 1.0)
         up = rng.uniform(-0.35, 0.45)
+        offset = np.array((np.cos(up) * np.cos(aside), np.cos(up) * np.sin(aside), np.sin(up)))
     else:
-        aside, up = rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 1.5)
-    offset = np.array((np.cos(up) * np.cos(aside), np.cos(up) * np.sin(aside), np.sin(up)))
+        offset = _above(rng)
     return looking_at(target + distance * offset, target) @ _rolled(rng.normal(0.0, 0.35))
+
+
+def _strap_pose(state: RoomState, rng: np.random.Generator) -> np.ndarray:
+    """A hand's camera above one of the straps, as far beside it as where it was told to be may be off."""
+    target = strap_weights(state.scene.mesh, str(rng.choice(SIDES))) @ state.vertices + rng.normal(0, 0.05, 3)
+    return looking_at(target + rng.uniform(*_STRAP_DISTANCE) * _above(rng), target) @ _rolled(rng.normal(0.0, 0.35))
+
+
+def _above(rng: np.random.Generator) -> np.ndarray:
+    """Unit vector (3,) from what lies on the bed to a hand's camera."""
+    aside, up = rng.uniform(-np.pi, np.pi), rng.uniform(0.5, 1.5)
+    return np.array((np.cos(up) * np.cos(aside), np.cos(up) * np.sin(aside), np.sin(up)))
 
 
 def _rolled(angle: float) -> np.ndarray:

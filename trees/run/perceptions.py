@@ -1,7 +1,7 @@
 """Which eyes a run has: rules on colours, or the same rules on what the network sees; and who chooses pre-grasps.
 
 Of a gown on its hook that shows no tapes, the network answers itself which side shows and where the corners are
-(`HungGown`); the rules that ask more of it are shown its surfaces in the colours of the tapes.
+(`HungGown`); the rules that ask more of a gown without tapes are shown its surfaces in their colours.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ from ...skills.core.context import Context
 CLASSICAL, LEARNED = "classical", "learned"
 PERCEPTIONS = (CLASSICAL, LEARNED)
 KEPT = 4  # repainted pictures: as many cameras may be asked of in one tick, several times each
-# Asked of a gown alone.  `hang_point` is asked of towels too, which the network takes for gowns, or for none.
-OF_THE_GOWN = ("hook", "layers", "pre_grasp")
+# Asked of a person, with or without a gown; and `hang_point` of towels too, which the network takes for gowns, or for
+# none.  All other senses are asked of a gown alone.
+NOT_OF_A_GOWN = ("head", "arm", "relocalised_arm", "arm_shift", "chest_front", "hang_point")
 
 
 def see_with(context: Context, perception: str, *, scripted: bool = False) -> None:
@@ -105,14 +106,14 @@ def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
         sight: what the network sees.
     """
     skin = _kept(lambda frame: repainted(frame, sight.sight(frame).surfaces))
-    gown = _kept(lambda frame: gown_repainted(frame, sight.sight(frame).surfaces))
+    all_of_it = _kept(lambda frame: gown_repainted(skin(frame), sight.sight(frame).surfaces))
 
     def in_colour(frame: Frame) -> Frame:
         """Tapes tell more than what the network takes for them."""
-        return skin(frame) if tapes_show(frame) else gown(frame)
+        return skin(frame) if tapes_show(frame) else all_of_it(frame)
 
     asked: dict[str, Any] = {
-        name: _passed_on(senses, name, in_colour if name in OF_THE_GOWN else skin)
+        name: _passed_on(senses, name, skin if name in NOT_OF_A_GOWN else in_colour)
         for name in Senses.__abstractmethods__
     }
     hung = HungGown(sight)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from caretree.perception.classical import ClassicalSenses
 from caretree.perception.errors import PerceptionFailure
-from caretree.perception.image.surfaces import Surface
+from caretree.perception.image.surfaces import GOWN_SURFACES, Surface, surfaces
 from caretree.perception.learned.learned_sight import LearnedSight
 from caretree.perception.learned.sight import KeyPoint, Sight
 from caretree.sim.errors import CaretreeError
@@ -104,6 +104,27 @@ def test_of_a_gown_with_tapes_the_rules_tell_sides_and_corners(monkeypatch):
     assert through.hung_side(frame()) == "by its colours"
     with pytest.raises(PerceptionFailure, match="gown"):
         through.hook(frame())
+
+
+def test_of_a_gown_without_tapes_all_but_the_person_is_asked_of_it_in_their_colours():
+    """A person is asked for with no gown about, too: what the network takes for one is left as it is."""
+
+    class Painted(ClassicalSenses):
+        def sleeve_strap(self, frame, *, side, near_in_map):
+            return surfaces(frame.rgb)
+
+        def head(self, frame):
+            return surfaces(frame.rgb)
+
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    seen = np.full((16, 16), Surface.ARMHOLE, np.uint8)
+    seen[:, :6] = Surface.SKIN
+    through = seen_by_network(Painted(room, 0), LearnedSight(Network(seen)))
+    assert (through.sleeve_strap(frame(), side="left", near_in_map=np.zeros(3)) == seen).all()
+    head = through.head(frame())
+    assert (head[:, :6] == Surface.SKIN).all()
+    assert not np.isin(head, GOWN_SURFACES).any()
 
 
 class Network:
