@@ -32,11 +32,19 @@ _FROM = {  # where the base stands for a look at each kind of state
 }
 _AWAY = np.array((60.0, 0.0, 0.0))  # where the robot of meshes stands while the one in the picture is of capsules
 _OWN_ARMS = 0.6  # of the head's pictures for training, which show the robot's own arms, of meshes, as it sees them
+_OWN_EYE = 0.7  # of the pictures for training of states whose robot's posture is known, which its own camera sees, ...
+_OFF = (0.02, 0.03)  # ... moved and turned a little [m, rad], ...
+_IN_VIEW = 0.1  # ... where it sees as much of the gown
 _ARM_SPREAD = (0.05, 0.6)  # of the joints from the ready posture, in half of these and in the others [rad]
 _MOST_ROBOT = 0.35  # of a picture, beyond which the robot is left out
 _HAND_DISTANCE = (0.28, 0.85)  # of a hand's camera from what it looks at [m]
 _AT_STRAP = 0.5  # of the hands' pictures for training of gowns that lie, which look for a strap to take it, ...
 _STRAP_DISTANCE = (0.24, 0.45)  # ... from so far off [m]; `SleeveSearchTuning` looks from 0.29 and 0.42 m
+
+
+_Posture = tuple[
+    np.ndarray, np.ndarray, float, np.ndarray
+]  # base (3,), arms (2, n), head's pan, openings (2,) [m, rad]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,15 +131,20 @@ def draw_picture(
     appearance = draw_look(look, rng, held_out=part == "heldout", skin=skin, light=light)
     camera = camera or ("head" if rng.random() < 0.5 else "left_hand")
     size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
-    if camera == "head":
+    own = _own_eye(state, camera, rng) if part == "train" and rng.random() < _OWN_EYE else None
+    if own is not None:
+        pose, base = own[0], None
+    elif camera == "head":
         pose, base = _head_pose(state, rng)
     elif part == "train" and state.kind in ("laid", "worn") and rng.random() < _AT_STRAP:
         pose, base = _strap_pose(state, rng), None
     else:
         pose, base = _hand_pose(state, rng), None
     robot = rng.random() < 0.8
-    own = _own_arms(base, rng) if part == "train" and base is not None and rng.random() < _OWN_ARMS else None
-    room = _room(state, appearance, robot=robot and own is None, gown=gown, own=own)
+    stands = own and own[1]
+    if part == "train" and base is not None and rng.random() < _OWN_ARMS:
+        stands = _own_arms(base, rng)
+    room = _room(state, appearance, robot=robot and stands is None, gown=gown, own=stands)
     drawn = room.renderer.render(pose, size, lens)
     robots = [number for name, number in room.renderer.ids.items() if name.startswith(("object_", "robot_"))]
     if np.isin(drawn.ids, robots).mean() > _MOST_ROBOT:
@@ -145,9 +158,28 @@ def draw_picture(
     return Picture(frame=frame, labels=labels, state=state, look=look)
 
 
-def _own_arms(base: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """The base (3,) that a picture is taken from, and postures (2, 7) of the arms before it [rad]."""
-    return base, BAXTER.ready + rng.normal(0.0, float(rng.choice(_ARM_SPREAD)), BAXTER.ready.shape)
+def _own_arms(base: np.ndarray, rng: np.random.Generator) -> _Posture:
+    """The robot that a picture is taken by from its base (3,), its arms before it."""
+    return base, BAXTER.ready + rng.normal(0.0, float(rng.choice(_ARM_SPREAD)), BAXTER.ready.shape), 0.0, np.zeros(2)
+
+
+def _own_eye(state: RoomState, camera: str, rng: np.random.Generator) -> tuple[np.ndarray, _Posture] | None:
+    """The head's camera (4, 4), or a hand's, where the robot of the state has it, and how the robot stands.
+
+    None where its posture is not known, or the camera sees no gown.
+    """
+    if state.posture is None:
+        return None
+    base, arms, (pan, *opening) = state.posture[:3], state.posture[3:-3].reshape(2, -1), state.posture[-3:]
+    eye = camera if camera == "head" else f"{rng.choice(SIDES)}_hand"
+    pose = kinematics_of(BAXTER).pose_camera_in_map(eye, base, arms, float(pan)) @ _rolled(rng.normal(0.0, _OFF[1]))
+    pose[:3, 3] += rng.normal(0.0, _OFF[0], 3)
+    (width, height), (fx, fy, cx, cy) = CAMERA_VIEWS[eye][0], camera_intrinsics(eye)
+    x, y, z = ((state.vertices - pose[:3, 3]) @ pose[:3, :3]).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u, v = fx * x / z + cx, fy * y / z + cy
+    seen = (z > 0.0) & (u > 0.0) & (u < width) & (v > 0.0) & (v < height)
+    return (pose, (base, arms, float(pan), np.array(opening))) if seen.mean() > _IN_VIEW else None
 
 
 def _room(
@@ -156,9 +188,9 @@ def _room(
     *,
     robot: bool,
     gown: bool,
-    own: tuple[np.ndarray, np.ndarray] | None = None,
+    own: _Posture | None = None,
 ) -> Backdrop:
-    """The room of a state, ready to draw; with the state's `robot` of capsules, or with its `own` base and arms."""
+    """The room of a state, ready to draw; with the state's `robot` of capsules, or with its `own` posture."""
     scene = state.scene
     person = _Still(
         trunk_capsules(scene.person, BED_TOP, scene.bed_xy), np.tile(scene.person.arm_radii, (2, 1)), state.arms
@@ -171,7 +203,9 @@ def _room(
             mesh = capsule_mesh(np.zeros(3), np.array((0.0, 0.0, length)), float(capsule[6]))
             room.add(f"link{k}", *mesh, appearance.colours["robot" if k % 2 else "robot_grey"])
             room.renderer.set_pose(f"object_link{k}", along(capsule[:3], capsule[3:6]))
-    room.update(state.vertices, state.arms, kinematics.configuration(*(own or (_AWAY, np.zeros((2, 7))))))
+    room.update(
+        state.vertices, state.arms, kinematics.configuration(*(own or (_AWAY, np.zeros((2, 7)), 0.0, np.zeros(2))))
+    )
     if not gown:
         room.renderer.remove_cloth()
     return room

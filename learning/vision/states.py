@@ -55,6 +55,8 @@ class RoomState:
         arms: (2, 4, 3) of the person [m].
         capsules: (r, 7) of the robot's links, ends and radius [m].
         source: where it is from, in words.
+        posture: (6 + 2 n,) of the robot: its base in the map, n joints of either arm, the head's pan, how far its hands
+            are open [m, rad]; None where no robot had one.
     """
 
     kind: str
@@ -65,6 +67,7 @@ class RoomState:
     arms: np.ndarray
     capsules: np.ndarray
     source: str
+    posture: np.ndarray | None = None
 
     @property
     def scene(self) -> Scene:
@@ -154,6 +157,7 @@ def recorded(folder: Path, frames: int = FRAMES) -> list[RoomState]:
     if len(scene.mesh.vertices) != taken["vertices"].shape[1]:
         raise CaretreeError(f"{folder}: its gown is not the one that its seed draws")
     chosen = np.unique(np.linspace(0, len(taken["t"]) - 1, frames).astype(int))
+    postures = _postures(folder, taken["t"][chosen])
     vertices, arms = taken["vertices"][chosen], taken["arms"][chosen]
     worn = np.zeros(len(chosen), bool)
     for n, side in enumerate(("left", "right")):
@@ -175,15 +179,34 @@ def recorded(folder: Path, frames: int = FRAMES) -> list[RoomState]:
                 arms=arms[k],
                 capsules=taken["robot_capsules"][index],
                 source=f"recorded {run.get('trace_hash', '')[:8]} at {taken['t'][index]:.1f} s",
+                posture=postures[k],
             )
         )
     return states
+
+
+def _postures(folder: Path, t: np.ndarray) -> np.ndarray:
+    """(k, 6 + 2 n) how the robot of a record stood at each time (k,), as its joints were read [m, rad].
+
+    Raises:
+        CaretreeError: the record does not say.
+    """
+    try:
+        with np.load(folder / "measured.npz") as read:
+            names = ("pose_base", "arm_positions", "head_pan", "gripper_opening", "t")
+            base, arms, pan, opening, at = (read[name] for name in names)
+    except (OSError, ValueError, KeyError) as error:
+        raise CaretreeError(f"{folder}: its measured.npz does not say how the robot stood") from error
+    n = np.searchsorted(at, t).clip(0, len(at) - 1)
+    return np.concatenate((base[n], arms[n].reshape(len(n), -1), pan[n, None], opening[n]), axis=1)
 
 
 def _bytes(states: Sequence[RoomState]) -> bytes:
     arrays: dict[str, Any] = {}
     for k, state in enumerate(states):
         arrays |= {f"{k}_vertices": state.vertices, f"{k}_arms": state.arms, f"{k}_capsules": state.capsules}
+        if state.posture is not None:
+            arrays[f"{k}_posture"] = state.posture
     about = [[s.kind, s.seed, s.gown, s.person, s.source] for s in states]
     buffer = io.BytesIO()
     np.savez_compressed(buffer, about=np.array(json.dumps(about)), **arrays)
@@ -212,6 +235,7 @@ def read_states(folder: str | Path) -> tuple[list[RoomState], str]:
                         vertices=file[f"{k}_vertices"],
                         arms=file[f"{k}_arms"],
                         capsules=file[f"{k}_capsules"],
+                        posture=file.get(f"{k}_posture"),
                     )
                 )
     if not states:

@@ -1,11 +1,15 @@
 """Pictures: drawn by seed, and nothing that is held out among those for training."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.learning.vision import pictures
 from caretree.learning.vision.labels import OTHER
 from caretree.learning.vision.pictures import _room as room
 from caretree.learning.vision.pictures import chosen_states, draw_picture
+from caretree.sim.mechanics.kinematics import kinematics_of
+from caretree.sim.robot.baxter import BAXTER
 
 from .still_room import still_state
 
@@ -45,12 +49,31 @@ def test_the_robot_s_own_arms_show_in_some_of_the_head_s_pictures_for_training(s
     for number in range(8):
         draw_picture(states, "train", 1, number, kind="hung", camera="head")
     assert 0 < sum(own is not None for own in drawn) < len(drawn)
-    base, postures = next(own for own in drawn if own is not None)
+    base, postures, *_ = next(own for own in drawn if own is not None)
     assert (base.shape, postures.shape) == ((3,), (2, 7))
     drawn.clear()
     draw_picture(states, "train", 1, 0, kind="hung", camera="left_hand")
     draw_picture(states, "test", 1, 0, kind="hung", camera="head")
     assert not any(own is not None for own in drawn)
+
+
+def test_a_recorded_robot_s_own_cameras_take_most_pictures_for_training_where_they_see_the_gown(states):
+    scene, base = states[0].scene, np.array((*states[0].scene.rail_xy, 0.0)) - (0.9, 0.0, 0.0)
+    posture = np.concatenate((base, BAXTER.ready.ravel(), (0.0, 0.05, 0.05)))
+    seen = [replace(states[0], posture=posture)]
+    eye = kinematics_of(BAXTER).pose_camera_in_map("head", base, BAXTER.ready, 0.0)
+
+    def own(states, part):
+        poses = [
+            draw_picture(states, part, 1, number, kind="hung", camera="head").frame.pose_camera_in_map
+            for number in range(8)
+        ]
+        return sum(np.linalg.norm(pose[:3, 3] - eye[:3, 3]) < 0.1 for pose in poses)
+
+    assert own(seen, "train") >= 4
+    away = np.concatenate((base + (0.0, 0.0, np.pi), posture[3:]))
+    assert own([replace(states[0], posture=away)], "train") < 2, f"looks away from the gown of seed {scene.seed}"
+    assert own([replace(states[0], posture=None)], "train") < 2
 
 
 def test_every_fifth_seed_is_for_tests(states):

@@ -1,9 +1,11 @@
 """States: kept as they were made, and runs of the wrong kind refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.learning.vision import states as module
-from caretree.learning.vision.states import _bytes, hanging, make_states, read_states, recorded
+from caretree.learning.vision.states import _bytes, _postures, hanging, make_states, read_states, recorded
 from caretree.sim.errors import CaretreeError
 from caretree.sim.scene.initial_state import InitialState
 
@@ -52,3 +54,29 @@ def test_an_empty_folder_says_what_makes_states(tmp_path):
 def test_a_folder_without_a_record_is_refused(tmp_path):
     with pytest.raises(CaretreeError, match="no record of a dressing run"):
         recorded(tmp_path)
+
+
+def test_a_recorded_robot_stands_as_its_joints_were_read(tmp_path):
+    t = np.array((0.0, 0.5, 1.0))
+    np.savez(
+        tmp_path / "measured.npz",
+        t=t,
+        pose_base=np.outer(t, np.ones(3)),
+        arm_positions=np.broadcast_to(t[:, None, None], (3, 2, 7)),
+        head_pan=10.0 * t,
+        gripper_opening=np.full((3, 2), 0.04),
+    )
+    postures = _postures(tmp_path, np.array((0.4, 1.0, 2.0)))
+    assert postures.shape == (3, 20)
+    assert postures[0] == pytest.approx([*[0.5] * 17, 5.0, 0.04, 0.04])
+    assert (postures[1] == postures[2]).all()
+    with pytest.raises(CaretreeError, match="does not say how the robot stood"):
+        _postures(tmp_path / "nowhere", t)
+
+
+def test_a_posture_is_kept_with_its_state(tmp_path):
+    stood = replace(still_state(), posture=np.arange(20.0))
+    (tmp_path / "state_a.npz").write_bytes(_bytes([stood, still_state()]))
+    (known, unknown), _ = read_states(tmp_path)
+    assert (known.posture == np.arange(20.0)).all()
+    assert unknown.posture is None
