@@ -131,20 +131,11 @@ def draw_picture(
     appearance = draw_look(look, rng, held_out=part == "heldout", skin=skin, light=light)
     camera = camera or ("head" if rng.random() < 0.5 else "left_hand")
     size, lens = CAMERA_VIEWS[camera][0], camera_intrinsics(camera)
-    own = _own_eye(state, camera, rng) if part == "train" and rng.random() < _OWN_EYE else None
-    if own is not None:
-        pose, base = own[0], None
-    elif camera == "head":
-        pose, base = _head_pose(state, rng)
-    elif part == "train" and state.kind in ("laid", "worn") and rng.random() < _AT_STRAP:
-        pose, base = _strap_pose(state, rng), None
-    else:
-        pose, base = _hand_pose(state, rng), None
+    pose, base, own = _eye(state, part, camera, rng)
     robot = rng.random() < 0.8
-    stands = own and own[1]
     if part == "train" and base is not None and rng.random() < _OWN_ARMS:
-        stands = _own_arms(base, rng)
-    room = _room(state, appearance, robot=robot and stands is None, gown=gown, own=stands)
+        own = _own_arms(base, rng)
+    room = _room(state, appearance, robot=robot and own is None, gown=gown, own=own)
     drawn = room.renderer.render(pose, size, lens)
     robots = [number for name, number in room.renderer.ids.items() if name.startswith(("object_", "robot_"))]
     if np.isin(drawn.ids, robots).mean() > _MOST_ROBOT:
@@ -156,6 +147,21 @@ def draw_picture(
     labels = label(room.renderer, mesh, state.arms, hook, pose, lens, size, gown=gown)
     frame = Frame(camera=camera, stamp=0.0, rgb=rgb, depth=depth, intrinsics=lens, pose_camera_in_map=pose)
     return Picture(frame=frame, labels=labels, state=state, look=look)
+
+
+def _eye(
+    state: RoomState, part: str, camera: str, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray | None, _Posture | None]:
+    """A camera (4, 4), the base (3,) below the head's, and how the robot of the state stands, where it is its own."""
+    if part == "train" and rng.random() < _OWN_EYE:
+        own = _own_eye(state, camera, rng)
+        if own is not None:
+            return own[0], None, own[1]
+    if camera == "head":
+        return *_head_pose(state, rng), None
+    if part == "train" and state.kind in ("laid", "worn") and rng.random() < _AT_STRAP:
+        return _strap_pose(state, rng), None, None
+    return _hand_pose(state, rng), None, None
 
 
 def _own_arms(base: np.ndarray, rng: np.random.Generator) -> _Posture:

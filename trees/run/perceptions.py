@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ...perception.errors import PerceptionFailure
 from ...perception.estimates import GraspPoint, PreGrasp
 from ...perception.image.garment import tapes_show
 from ...perception.learned.hung_gown import HungGown
@@ -27,7 +28,7 @@ CLASSICAL, LEARNED = "classical", "learned"
 PERCEPTIONS = (CLASSICAL, LEARNED)
 KEPT = 4  # repainted pictures: as many cameras may be asked of in one tick, several times each
 # Asked of a person, with or without a gown; and `hang_point` of towels too, which the network takes for gowns, or for
-# none.  All other senses are asked of a gown alone.
+# none: it is asked of the picture itself first.  All other senses are asked of a gown alone.
 NOT_OF_A_GOWN = ("head", "arm", "relocalised_arm", "arm_shift", "chest_front", "hang_point")
 
 
@@ -116,6 +117,15 @@ def seen_by_network(senses: Senses, sight: LearnedSight) -> Senses:
         name: _passed_on(senses, name, skin if name in NOT_OF_A_GOWN else in_colour)
         for name in Senses.__abstractmethods__
     }
+    by_colours = asked["hang_point"]
+
+    def hang_point(self: object, frame: Frame) -> object:
+        try:
+            return by_colours(self, frame)
+        except PerceptionFailure:
+            return senses.hang_point(all_of_it(frame))
+
+    asked["hang_point"] = hang_point
     hung = HungGown(sight)
 
     def of_network(name: str, answer: Callable[..., object]) -> Callable[..., object]:

@@ -1,9 +1,11 @@
 """Which eyes a run has."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from caretree.perception.classical import ClassicalSenses
-from caretree.perception.errors import PerceptionFailure
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.perception.image.surfaces import GOWN_SURFACES, Surface, surfaces
 from caretree.perception.learned.learned_sight import LearnedSight
 from caretree.perception.learned.sight import KeyPoint, Sight
@@ -125,6 +127,20 @@ def test_of_a_gown_without_tapes_all_but_the_person_is_asked_of_it_in_their_colo
     head = through.head(frame())
     assert (head[:, :6] == Surface.SKIN).all()
     assert not np.isin(head, GOWN_SURFACES).any()
+
+
+def test_a_place_near_the_hook_is_told_by_colours_and_where_there_are_none_by_the_network():
+    class Towel(ClassicalSenses):
+        def hang_point(self, frame):
+            if not frame.rgb.any():
+                raise PerceptionFailure(Problem.NOTHING_SEEN, "gown")
+            return surfaces(frame.rgb)[0, 0]
+
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    through = seen_by_network(Towel(room, 0), LearnedSight(Network(np.full((16, 16), Surface.INSIDE, np.uint8))))
+    assert through.hang_point(frame()) == Surface.INSIDE
+    assert through.hang_point(replace(frame(), rgb=np.full((16, 16, 3), 255, np.uint8))) != Surface.INSIDE
 
 
 class Network:
