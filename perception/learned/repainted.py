@@ -2,9 +2,9 @@
 
 What the network takes for skin gets that colour; what the rules would take for skin, and the network for something
 else, becomes grey: wood and walls have the colour of some skin.  So a person of any skin comes into the rules' reach,
-as far as the network sees them.  Surfaces of the gown keep their colours there: of its bindings the network tells too
-little (an IoU of 0.43; the rules ask for 0.8), and it took the table of a washing cloth for a gown.  Where it is known
-that a gown hangs before the camera, that is repainted too: its outline and its neckline at the hook are seen well.
+as far as the network sees them.  Surfaces of the gown keep their colours there: it took the table of a washing cloth
+for a gown.  Where a gown is what is asked about, and shows no tapes, that is repainted too; of its bindings the network
+tells half (an IoU of 0.49; the rules ask for 0.8).
 """
 
 from __future__ import annotations
