@@ -42,9 +42,8 @@ _AT_STRAP = 0.5  # of the hands' pictures for training of gowns that lie, which 
 _STRAP_DISTANCE = (0.24, 0.45)  # ... from so far off [m]; `SleeveSearchTuning` looks from 0.29 and 0.42 m
 
 
-_Posture = tuple[
-    np.ndarray, np.ndarray, float, np.ndarray
-]  # base (3,), arms (2, n), head's pan, openings (2,) [m, rad]
+# Of the robot: base (3,), arms (2, n), the head's pan, how far the hands are open (2,) [m, rad].
+_Posture = tuple[np.ndarray, np.ndarray, float, np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,9 +208,8 @@ def _room(
             mesh = capsule_mesh(np.zeros(3), np.array((0.0, 0.0, length)), float(capsule[6]))
             room.add(f"link{k}", *mesh, appearance.colours["robot" if k % 2 else "robot_grey"])
             room.renderer.set_pose(f"object_link{k}", along(capsule[:3], capsule[3:6]))
-    room.update(
-        state.vertices, state.arms, kinematics.configuration(*(own or (_AWAY, np.zeros((2, 7)), 0.0, np.zeros(2))))
-    )
+    posture = own or (_AWAY, np.zeros((2, 7)), 0.0, np.zeros(2))
+    room.update(state.vertices, state.arms, kinematics.configuration(*posture))
     if not gown:
         room.renderer.remove_cloth()
     return room
