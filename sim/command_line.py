@@ -40,8 +40,12 @@ class CommandParser(argparse.ArgumentParser):
         """As argparse's; what nobody knows is told with the help of the command that it was given to.
 
         Raises:
-            CaretreeError: an argument is wrong, or unknown.
+            CaretreeError: an argument is wrong, unknown or empty.
         """
+        args = list(sys.argv[1:] if args is None else args)
+        for before, text in zip((self.prog, *args), args, strict=False):
+            if not text or (text.startswith("--") and text.endswith("=")):  # as `--out "$DIR"` is where DIR is not set
+                raise CaretreeError(f"nothing is given with {text[:-1] or before} (see {self.prog} --help)")
         found, unknown = self.parse_known_args(args, namespace)
         if unknown:
             command = getattr(found, "command", None)

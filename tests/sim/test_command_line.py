@@ -29,6 +29,9 @@ def parser():
         (["run", "--steps", "1.5"], "'1.5' is no whole number"),
         (["run", "--picture", "s.xyz"], r"'s.xyz' is no picture; it may end in .png, .jpg, .* \(see tool run --help\)"),
         (["run", "--picture", "s"], "'s' is no picture"),
+        (["run", "--picture", ""], r"nothing is given with --picture \(see tool --help\)"),
+        (["run", "--steps="], "nothing is given with --steps"),
+        ([""], "nothing is given with tool"),
         (["run", "--stepz", "1"], "unrecognized arguments: --stepz 1"),
     ],
 )
