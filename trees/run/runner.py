@@ -41,7 +41,7 @@ from ..guard.guard import GuardedWorld
 from ..guard.limits import DEFAULT, Limits
 from ..guard.tick_watchdog import TickWatchdog
 from ..nodes.decorators import FailSafe, Stage
-from ..nodes.failures import failure_of
+from ..nodes.failures import cause_of, failure_of
 from .progress import Announcer, Progress
 from .safe_stop import SafeStop
 from .task import Task
@@ -266,13 +266,15 @@ class Run:
 
     def _end(self, failure: Failure | None) -> RunResult:
         """Make safe, stop, and say how it went."""
+        cause = failure
         if failure is not None:
             self._safe_stop.halt(self.root)
             self._safe_stop.run_branches()
         elif self.root.status == Status.FAILURE:
-            failure = failure_of(self.root)
+            failure, cause = failure_of(self.root), cause_of(self.root)
         elif self.root.status != Status.SUCCESS:
             failure = Failure(Reason.INTERNAL_ERROR, f"the tree ended as {self.root.status.name}", self.root.name)
+            cause = failure
         branches = [node for node in self.root.iterate() if isinstance(node, FailSafe)]
         owed = failure is not None and (not branches or any(node.entered for node in branches))
         made_safe = any(node.made_safe is not None for node in branches)
@@ -283,7 +285,7 @@ class Run:
             outcome, reason = "success", "The task is done."
         else:
             outcome = "safe_stop" if made_safe or owed else "failure"
-            reason = failure.sentence()
+            reason = (cause or failure).sentence()
         if not stood:
             why = f"{self._safe_stop.refused}." if self._safe_stop.refused else Reason.MOTION_BLOCKED.value
             outcome, reason = "safe_stop", f"{_ended(reason)} The robot did not come to rest: {why}"
