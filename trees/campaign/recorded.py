@@ -11,6 +11,7 @@ from ...sim.command_line import RATES, SEEDS
 from ...sim.errors import CaretreeError
 from ...sim.record.record import RUN_FILE, read_finished_run
 from ...sim.world_kind import EASY
+from ..run.given_files import HASHES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +35,7 @@ class Recorded:
         start: what `--from` named; None where the run began at its beginning.
         build: parameter of the task -> value.
         versions: of packages, by name.
+        file_hashes: of the files of gown and model.
         trace_hash: of the run's events.
     """
 
@@ -62,6 +64,7 @@ class Recorded:
     build: Mapping[str, Any]
     world_args: Mapping[str, Any]
     versions: Mapping[str, str]
+    file_hashes: Mapping[str, str]
     trace_hash: str | None = None
 
 
@@ -102,6 +105,7 @@ def recorded(directory: Path) -> Recorded:
         build=_value(file, given, "build", dict, _is_mapping, {}),
         world_args=_value(file, given, "world_args", dict, _is_mapping, {}),
         versions=_value(file, run, "versions", dict, _is_mapping, {}),
+        file_hashes=_value(file, given, HASHES, dict, _is_mapping, {}),
         start=_value(file, given, "from", str, _is_text, None),
         trace_hash=_value(file, run, "trace_hash", str, _is_text, None),
         **optional,

@@ -12,6 +12,7 @@ from ...sim.log.logged_world import logged
 from ...sim.record.record import TRACE_FILE, versions
 from ...skills.core.settings import Settings
 from ..report.timeline import read_trace
+from ..run.given_files import HASHES, changed_files
 from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.recorded_start import read_start
 from ..run.runner import Run
@@ -29,7 +30,7 @@ class Replay:
         same: every event was the same.
         difference: where the first one differs, in one sentence.
         versions: packages of another version than then, as `name: then, now`.
-        changed: says that the task is another one than then; empty where it is not.
+        changed: says that the task, or a file of its gown or model, is another one than then; empty where none is.
     """
 
     same: bool
@@ -48,6 +49,7 @@ def replay(directory: Path) -> Replay:
     given = recorded(directory)
     before = read_trace(directory / TRACE_FILE)
     loaded, changed = recorded_task(given.task, {FILE: given.task_file, HASH: given.task_hash}, robot=given.robot)
+    files = changed_files({"gown": given.gown, "model": given.model, HASHES: given.file_hashes})
     faults = [parse_fault(text) for text in given.inject]
     inner, senses = make_world(
         given.world,
@@ -91,7 +93,9 @@ def replay(directory: Path) -> Replay:
     others = [
         f"{name}: {then[name]}, now {now[name]}" for name in sorted(now) if name in then and then[name] != now[name]
     ]
-    return Replay(same=not difference, difference=difference, versions=others, changed=changed)
+    return Replay(
+        same=not difference, difference=difference, versions=others, changed="; ".join(filter(None, (changed, files)))
+    )
 
 
 def first_difference(before: list[dict[str, Any]], after: list[dict[str, Any]]) -> str:

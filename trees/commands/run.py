@@ -31,6 +31,7 @@ from ..cli import IN_THE_RECORD
 from ..proof.check import refuse_faulty
 from ..report.looks import LookLog, Witness
 from ..report.outline import outline_of, write_outline
+from ..run.given_files import HASHES, hashes_of, place_files
 from ..run.judging import judge_and_keep
 from ..run.perceptions import CLASSICAL, grasp_with, see_with
 from ..run.progress import Progress
@@ -81,6 +82,7 @@ def main(options: argparse.Namespace) -> int:
         CaretreeError: the input is bad, or some of the record could not be written.
     """
     task = load_task(options.task, robot=options.robot)
+    place_files(options)
     start = read_start(options.start) if options.start else None
     if start is not None:
         take_room(options, start.directory)
@@ -100,6 +102,7 @@ def main(options: argparse.Namespace) -> int:
         "gown": options.gown,
         "person": options.person,
         "model": options.model,
+        HASHES: hashes_of(vars(options)),
         "look": options.look,
         "engine": options.engine or (BULLET if options.world == BULLET else None),
         "inject": options.inject,

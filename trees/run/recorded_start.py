@@ -11,6 +11,7 @@ from ...sim.errors import CaretreeError
 from ...sim.record.record import RUN_FILE, read_run
 from ...sim.record.recorded_state import RecordedState, recorded_state
 from ...sim.world import World
+from .given_files import changed_files
 
 HOW = "--from asks for RECORD@SECONDS, such as runs/dressing-seed0@286.7"
 # What makes the room what it is: option -> its value where nothing is given.
@@ -77,7 +78,8 @@ def take_room(options: argparse.Namespace, directory: Path) -> None:
         directory: of the record.
 
     Raises:
-        CaretreeError: the record's run.json is damaged, or something else was asked for than it was given.
+        CaretreeError: the record's run.json is damaged, something else was asked for than it was given, or a file that
+            it was given is another one by now.
     """
     run = read_run(directory)
     given = run.get("parameters")
@@ -85,6 +87,8 @@ def take_room(options: argparse.Namespace, directory: Path) -> None:
         raise CaretreeError(f"{directory / RUN_FILE} is damaged: it has no parameters")
     if run.get("world") != options.world:
         raise CaretreeError(f"--from: {directory} was run on {run.get('world')!r}, not on {options.world!r}")
+    if changed := changed_files(given):
+        raise CaretreeError(f"--from: {changed} {directory} was recorded, and the room would be another one")
     for name, default in OF_THE_ROOM.items():
         then = run.get("seed") if name == "seed" else given.get(name, default)
         asked = getattr(options, name)

@@ -49,6 +49,14 @@ def test_another_room_than_the_recorded_one_is_refused(tmp_path, given, what):
         take_room(options(**given), record(tmp_path))
 
 
+def test_a_file_that_is_another_one_by_now_is_refused(tmp_path):
+    gown = tmp_path / "gown.yaml"
+    gown.write_text("base: medium")
+    folder = record(tmp_path, gown=str(gown), file_hashes={"gown": "0123456789abcdef"})
+    with pytest.raises(CaretreeError, match=r"the gown file .*gown\.yaml has been changed since .* was recorded"):
+        take_room(options(), folder)
+
+
 def test_a_damaged_record_is_named(tmp_path):
     (tmp_path / "run.json").write_text('{"seed": 1, "world": "bullet"}')
     with pytest.raises(CaretreeError, match="damaged: it has no parameters"):
