@@ -28,6 +28,7 @@ def _rate(text: str) -> float:
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
+    from .dataset import CAMERAS
     from .states import FRAMES, KINDS
 
     top = CommandParser(prog="caretree learn vision")
@@ -53,6 +54,8 @@ def parser() -> argparse.ArgumentParser:
     data.add_argument("--states", required=True, metavar="DIR", help="folder of `states`")
     data.add_argument("--pictures", type=whole_number, default=3000, metavar="N", help="default 3000")
     data.add_argument("--seed", type=seed, default=100, metavar="N", help="default 100")
+    data.add_argument("--camera", choices=CAMERAS, help="that takes all of them (default: half the head, half a hand)")
+    data.add_argument("--kinds", nargs="+", choices=KINDS, default=[], metavar="KIND", help="of states (default: all)")
     add_cluster_options(data)
     train = sub.add_parser("train", help="train the network and write it as ONNX")
     train.add_argument("data", nargs="+", type=Path, metavar="DATA", help="one folder of `data` or more")
@@ -69,7 +72,7 @@ def parser() -> argparse.ArgumentParser:
     train.add_argument("--mean-with", type=Path, metavar="PATH", help="write the mean of these weights and the trained")
     test = sub.add_parser("evaluate", help="table of what is seen, beside the classical perception")
     test.add_argument("states", metavar="STATES", help="folder of `states`")
-    test.add_argument("--network", type=Path, metavar="FILE", help="instead of the one in the package")
+    test.add_argument("--network", type=Path, metavar="FILE", help="of every camera, instead of those in the package")
     test.add_argument("--before", type=Path, metavar="FILE", help="another one, to be told beside it")
     test.add_argument("--pictures", type=whole_number, default=40, metavar="N", help="of each sort (default 40)")
     test.add_argument("--seed", type=seed, default=150, metavar="N", help="default 150")
@@ -95,7 +98,13 @@ def main(argv: list[str], seers: Callable[[Path | None], Mapping[str, Any]] | No
         from .states import read_states
 
         states, digest = read_states(options.states)
-        spec = DatasetSpec(part="train", pictures=options.pictures, seed=options.seed)
+        spec = DatasetSpec(
+            part="train",
+            pictures=options.pictures,
+            seed=options.seed,
+            camera=options.camera,
+            kinds=options.kinds,
+        )
         print(make_dataset(options.folder, states, digest, spec, _say, jobs=options.jobs, address=options.address))
     elif options.command == "train":
         _train(options)

@@ -10,7 +10,7 @@ import io
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ FORMAT = "caretree-seeing-2"  # 1 did not tell where over the bed a pixel is
 INDEX = "dataset.json"
 SHARD = 50  # pictures
 SIZE = (256, 192)  # (width, height) of what the network sees [px]
+CAMERAS = {"head": "head", "hand": "left_hand"}  # both hands have the same
 CELL = 4  # of the maps of places and key points [px]
 SHEET_UNIT = 1e-4  # of a place on the sheet, as it is kept [m]
 NO_PLACE = -32768
@@ -40,20 +41,26 @@ class DatasetSpec:
         part: one of `PARTS`.
         pictures: how many.
         seed: of what is drawn.
+        camera: one of `CAMERAS`, which takes all of them; None draws it.
+        kinds: of states that are shown; all that there are if omitted.
     """
 
     part: str
     pictures: int
     seed: int = 0
+    camera: str | None = None
+    kinds: list[str] = field(default_factory=list)  # as JSON gives it back
 
     def __post_init__(self) -> None:
         """Reject what cannot be made.
 
         Raises:
-            CaretreeError: an unknown part, no pictures, a negative seed.
+            CaretreeError: an unknown part or camera, no pictures, a negative seed.
         """
         if self.part not in PARTS:
             raise CaretreeError(f"unknown part of the pictures '{self.part}'; there are {', '.join(PARTS)}")
+        if self.camera is not None and self.camera not in CAMERAS:
+            raise CaretreeError(f"unknown camera '{self.camera}'; there are {', '.join(CAMERAS)}")
         if self.pictures < 1 or self.seed < 0:
             raise CaretreeError(f"{self.pictures} pictures with seed {self.seed}: counts start at 1, seeds at 0")
 
@@ -160,11 +167,12 @@ def make_dataset(
     folder.mkdir(parents=True, exist_ok=True)
     about = {"format": FORMAT, "spec": asdict(spec), "states": states_hash}
     old = read_index(folder) if (folder / INDEX).is_file() else {**about, "shards": []}
-    if (old["states"], old["spec"]["part"], old["spec"]["seed"]) != (states_hash, spec.part, spec.seed):
+    if old["states"] != states_hash or asdict(spec) | old["spec"] | {"pictures": spec.pictures} != asdict(spec):
         raise CaretreeError(f"{folder} holds other pictures than those asked for; choose another folder")
-    mine = chosen_states(states, spec.part)
+    mine = [state for state in chosen_states(states, spec.part) if not spec.kinds or state.kind in spec.kinds]
     if not mine:
-        raise CaretreeError(f"no state is for the part '{spec.part}'")
+        which = ", ".join((f"the part '{spec.part}'", *spec.kinds))
+        raise CaretreeError(f"no state is for {which}")
     whole = {s["file"]: s for s in old["shards"] if s["pictures"] == SHARD and (folder / s["file"]).is_file()}
     missing = [n for n in range(-(-spec.pictures // SHARD)) if shard_name(n) not in whole]
     for number, shard in each_shard(make_shard, missing, mine, spec, jobs=jobs, address=address):
@@ -191,7 +199,8 @@ def make_shard(number: int, states: Sequence[RoomState], spec: DatasetSpec) -> d
     """
     start = time.process_time()
     ids = range(number * SHARD, min((number + 1) * SHARD, spec.pictures))
-    rows = [example(draw_picture(states, spec.part, spec.seed, i)) for i in ids]
+    camera = CAMERAS[spec.camera] if spec.camera else None
+    rows = [example(draw_picture(states, spec.part, spec.seed, i, camera=camera)) for i in ids]
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {key: np.stack([row[key] for row in rows]) for key in rows[0]}
     np.savez(buffer, **arrays)  # noise does not compress

@@ -12,7 +12,7 @@ from ..errors import PerceptionFailure, Problem
 from ..estimates import CORNER_OF, SLEEVE_OF, ArmPosture, GownSide, GraspPoint, GraspTarget
 from ..image.cloud import unit
 from ..image.surfaces import Surface
-from .sight import KeyPoint, SeeingNetwork, Sight, packaged_network
+from .sight import KeyPoint, SeeingNetwork, Sight, packaged_hand_network, packaged_network
 
 JOINTS = ("shoulder", "elbow", "wrist", "fingertip")
 
@@ -33,7 +33,7 @@ class LearnedSight:
     """Estimates of single frames.
 
     Args:
-        network: that sees; the packaged one if omitted.
+        network: that sees; if omitted the packaged ones, one for the head's camera and one for the hands'.
         bed_in_map: (2, 3) its lower and upper corner, where one is known [m].
         tuning: numbers.
     """
@@ -45,7 +45,7 @@ class LearnedSight:
         bed_in_map: np.ndarray | None = None,
         tuning: LearnedTuning = DEFAULT,
     ) -> None:
-        self._network = network or packaged_network()
+        self._network = network
         self._bed = bed_in_map
         self._tuning = tuning
         self._last: tuple[Frame, Sight] | None = None
@@ -53,7 +53,8 @@ class LearnedSight:
     def sight(self, frame: Frame) -> Sight:
         """All that is seen; asked twice for one frame, the network runs once."""
         if self._last is None or self._last[0] is not frame:
-            self._last = (frame, self._network.see(frame, self._bed))
+            network = self._network or (packaged_network() if frame.camera == "head" else packaged_hand_network())
+            self._last = (frame, network.see(frame, self._bed))
         return self._last[1]
 
     def gown_side(self, frame: Frame) -> GownSide:

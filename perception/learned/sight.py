@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,9 @@ from ..image.surfaces import GOWN_SURFACES, Surface
 FORMAT = "caretree-seeing-3"
 BEFORE = "caretree-seeing-2"  # was not told where over the bed a pixel is
 BED_MARGIN = 0.6  # beyond the bed's outline, within which a pixel is told where over the bed it is [m]
-PACKAGED = Path(__file__).parent / "weights" / "seeing.onnx"
+_WEIGHTS = Path(__file__).parent / "weights"
+PACKAGED = _WEIGHTS / "seeing.onnx"
+PACKAGED_HAND = _WEIGHTS / "seeing_hand.onnx"  # of the hands' cameras: trained on from the other, on what these see
 _OUTPUTS = ("surface", "sheet", "heat", "offset")
 _SOLID = (*GOWN_SURFACES, Surface.SKIN)  # what a key point can lie on
 
@@ -62,12 +64,14 @@ class Sight:
         confidence: (H, W) float32 in that, 0 to 1.
         sheet: (H, W, 3) float32, where on the gown's rest shape a pixel is, if it is of the gown [m].
         key_points: by name, such as `corner_left`, `strap_right`, `hook`, `elbow_left`.
+        heat: by name, (h, w) scores of a key point's being in a cell of the picture, beside 0 for its being in none.
     """
 
     surfaces: np.ndarray
     confidence: np.ndarray
     sheet: np.ndarray
     key_points: dict[str, KeyPoint]
+    heat: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 class SeeingNetwork:
@@ -133,6 +137,7 @@ class SeeingNetwork:
                 )
                 for k, name in enumerate(self._names)
             },
+            heat=dict(zip(self._names, heat, strict=True)),
         )
 
     def image_of(self, frame: Frame, bed_in_map: np.ndarray | None = None) -> np.ndarray:
@@ -257,3 +262,9 @@ def _around(row: int, column: int, shape: tuple[int, ...], by: int) -> tuple[np.
 def packaged_network() -> SeeingNetwork:
     """The network that the package ships, loaded once."""
     return SeeingNetwork()
+
+
+@lru_cache
+def packaged_hand_network() -> SeeingNetwork:
+    """The one for the cameras of hands, loaded once."""
+    return SeeingNetwork(PACKAGED_HAND)

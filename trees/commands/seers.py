@@ -11,7 +11,7 @@ from ...perception.classical import ClassicalSenses
 from ...perception.errors import PerceptionFailure
 from ...perception.image.surfaces import surfaces
 from ...perception.learned.learned_sight import DEFAULT, JOINTS, LearnedSight
-from ...perception.learned.sight import SeeingNetwork, packaged_network
+from ...perception.learned.sight import SeeingNetwork
 from ...sim.world import Frame, RoomMap, Side
 
 Found = tuple[np.ndarray, float]
@@ -21,11 +21,11 @@ class LearnedSeer:
     """The network.
 
     Args:
-        network: its file; None takes the packaged one.
+        network: its file, for every camera; None takes the packaged ones.
     """
 
     def __init__(self, network: Path | None = None) -> None:
-        self._sight = LearnedSight(SeeingNetwork(network) if network else packaged_network(), bed_in_map=_room().bed)
+        self._sight = LearnedSight(SeeingNetwork(network) if network else None, bed_in_map=_room().bed)
 
     def surfaces(self, frame: Frame) -> np.ndarray:
         """(H, W)."""

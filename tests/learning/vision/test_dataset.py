@@ -74,7 +74,32 @@ def test_a_damaged_shard_is_refused(tmp_path, states):
         load_dataset(tmp_path)
 
 
-@pytest.mark.parametrize("wrong", [{"part": "all", "pictures": 1}, {"part": "train", "pictures": 0}])
+def test_one_camera_and_some_kinds_of_states(tmp_path, states, monkeypatch):
+    asked = []
+
+    def drawn(states, part, seed, number, *, camera):
+        asked.append((camera, {state.kind for state in states}))
+        return draw_picture(states, part, seed, number, camera=camera)
+
+    monkeypatch.setattr("caretree.learning.vision.dataset.draw_picture", drawn)
+    spec = {"part": "train", "pictures": 1, "seed": 3}
+    make_dataset(tmp_path, states, "s", DatasetSpec(**spec, camera="hand", kinds=["laid"]))
+    assert asked == [("left_hand", {"laid"})]
+    make_dataset(tmp_path, states, "s", DatasetSpec(**spec, camera="hand", kinds=["laid"]))
+    with pytest.raises(CaretreeError, match="holds other pictures"):
+        make_dataset(tmp_path, states, "s", DatasetSpec(**spec))
+    with pytest.raises(CaretreeError, match="'train', worn"):
+        make_dataset(tmp_path / "none", states, "s", DatasetSpec(**spec, kinds=["worn"]))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"part": "all", "pictures": 1},
+        {"part": "train", "pictures": 0},
+        {"part": "train", "pictures": 1, "camera": "left"},
+    ],
+)
 def test_what_cannot_be_made_is_refused(wrong):
     with pytest.raises(CaretreeError):
         DatasetSpec(**wrong)

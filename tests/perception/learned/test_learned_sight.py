@@ -47,6 +47,17 @@ def test_one_frame_is_seen_once():
     assert seer.gown_side(FRAME) == GownSide(stamp=2.5, confidence=1.0, outside=True)
 
 
+@pytest.mark.parametrize(("camera", "name"), [("head", "packaged_network"), ("right_hand", "packaged_hand_network")])
+def test_a_hand_s_camera_has_a_network_of_its_own(camera, name, monkeypatch):
+    monkeypatch.setattr(f"caretree.perception.learned.learned_sight.{name}", lambda: SimpleNamespace(see=see))
+
+    def see(frame, bed_in_map):
+        return sight(confidence=0.7)
+
+    frame = SimpleNamespace(camera=camera, stamp=2.5, pose_camera_in_map=np.eye(4))
+    assert LearnedSight().hook(frame).confidence == 0.7
+
+
 def test_the_inside_is_told():
     assert not sees(sight(surface=Surface.INSIDE)).gown_side(FRAME).outside
 

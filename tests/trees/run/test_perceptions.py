@@ -108,11 +108,26 @@ def test_of_a_gown_with_tapes_the_rules_tell_sides_and_corners(monkeypatch):
         through.hook(frame())
 
 
+def test_the_strap_of_a_gown_without_tapes_is_told_by_the_network(monkeypatch):
+    class Rules(ClassicalSenses):
+        def sleeve_strap(self, frame, *, side, near_in_map):
+            return "by its borders"
+
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    through = seen_by_network(Rules(room, 0), LearnedSight(Network(np.full((16, 16), Surface.OUTSIDE, np.uint8))))
+    near = np.array((0.0, 0.0, 1.0))
+    assert through.sleeve_strap(frame(), side="left", near_in_map=near).target == "sleeve_left"
+    assert through.sleeve_opening(frame(), side="left", near_in_map=near).target == "sleeve_left"
+    monkeypatch.setattr(perceptions, "tapes_show", lambda frame: True)
+    assert through.sleeve_strap(frame(), side="left", near_in_map=near) == "by its borders"
+
+
 def test_of_a_gown_without_tapes_all_but_the_person_is_asked_of_it_in_their_colours():
     """A person is asked for with no gown about, too: what the network takes for one is left as it is."""
 
     class Painted(ClassicalSenses):
-        def sleeve_strap(self, frame, *, side, near_in_map):
+        def held_armhole(self, frame, *, side, near_in_map):
             return surfaces(frame.rgb)
 
         def head(self, frame):
@@ -123,10 +138,30 @@ def test_of_a_gown_without_tapes_all_but_the_person_is_asked_of_it_in_their_colo
     seen = np.full((16, 16), Surface.ARMHOLE, np.uint8)
     seen[:, :6] = Surface.SKIN
     through = seen_by_network(Painted(room, 0), LearnedSight(Network(seen)))
-    assert (through.sleeve_strap(frame(), side="left", near_in_map=np.zeros(3)) == seen).all()
+    assert (through.held_armhole(frame(), side="left", near_in_map=np.zeros(3)) == seen).all()
     head = through.head(frame())
     assert (head[:, :6] == Surface.SKIN).all()
     assert not np.isin(head, GOWN_SURFACES).any()
+
+
+def test_pictures_before_and_beside_are_repainted_too_and_only_what_is_surely_skin_tells_of_a_move():
+    class Rules(ClassicalSenses):
+        def arm_shift(self, frame, *, before, arm_in_map, grips_in_map=None):
+            return [surfaces(each.rgb) for each in (frame, before)]
+
+        def collar_middle(self, frame, *, near_in_map, beside=()):
+            return [surfaces(each.rgb) for each in (frame, *beside)]
+
+    bed = np.array(((-0.5, -1.0, 0.0), (0.5, 1.0, 0.6)))
+    room = RoomMap(free=np.ones((2, 2), bool), origin=np.zeros(2), resolution=1.0, bed=bed)
+    network = Network(np.full((16, 16), Surface.SKIN, np.uint8))
+    network.confidence[:8] = 0.8
+    through = seen_by_network(Rules(room, 0), LearnedSight(network))
+    for seen in through.arm_shift(frame(), before=frame(), arm_in_map=np.zeros((4, 3))):
+        assert (seen[8:] == Surface.SKIN).all()
+        assert not (seen[:8] == Surface.SKIN).any()
+    for seen in through.collar_middle(frame(), near_in_map=np.zeros(3), beside=[frame(), frame()]):
+        assert (seen == Surface.SKIN).all()
 
 
 def test_a_place_near_the_hook_is_told_by_colours_and_where_there_are_none_by_the_network():
@@ -148,14 +183,20 @@ class Network:
 
     def __init__(self, surfaces):
         self.surfaces = surfaces
+        self.confidence = np.ones((16, 16), np.float32)
         self.asked = []
 
     def see(self, frame, bed_in_map):
         self.asked.append((frame, bed_in_map))
         nothing = KeyPoint(confidence=0.0, position_in_map=None, pixel=np.zeros(2))
         points = dict.fromkeys(("corner_left", "corner_right"), nothing)
-        ones = np.ones((16, 16), np.float32)
-        return Sight(surfaces=self.surfaces, confidence=ones, sheet=np.stack([ones] * 3, 2), key_points=points)
+        return Sight(
+            surfaces=self.surfaces,
+            confidence=self.confidence,
+            sheet=np.ones((16, 16, 3), np.float32),
+            key_points=points,
+            heat={"strap_left": np.zeros((8, 8))},  # as likely in each of 64 cells as nowhere
+        )
 
 
 def test_the_policy_chooses_the_pre_grasp_and_nothing_else():
