@@ -35,12 +35,29 @@ class PortError(CaretreeError):
 
 
 class Key:
-    """Name of a value on the board, given to a skill in place of a constant."""
+    """Name of a value on the board, given to a skill in place of a constant.
+
+    Attributes:
+        name: on the board.
+        word: as its author wrote it, for messages.
+        place: where that stands, as file:line; empty where it was built by Python.
+    """
 
     def __init__(self, name: str) -> None:
         if not isinstance(name, str) or not name.isidentifier():
             raise PortError(f"key {name!r} is not an identifier such as 'collar' or 'arm_left'")
-        self.name = name
+        self.name, self.word, self.place = name, repr(name), ""
+
+    def written_as(self, word: str, place: str) -> Key:
+        """The same key, told as its author wrote it."""
+        key = Key(self.name)
+        key.word, key.place = word, place
+        return key
+
+    @property
+    def told(self) -> str:
+        """How messages call it."""
+        return f"{self.word} at {self.place}" if self.place else self.word
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Key) and other.name == self.name

@@ -8,6 +8,7 @@ the key of the outermost tree.  A `name` of a <SubTree> begins the names of the 
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from py_trees.behaviour import Behaviour
 
 from ...sim.errors import CaretreeError
 from ...skills.core.context import Context
-from ...skills.core.ports import Input, Key, PortError, ports_of
+from ...skills.core.ports import Input, Key, PortError, ports_of, type_name
 from ...skills.core.reasons import Reason
 from ...skills.core.settings import SettingError
 from ...skills.core.skill import Skill
@@ -118,10 +119,13 @@ class Builder:
         given = self._given(element)
         if kind in self._vocabulary.skills:
             self._without_children(element)
-            return self._placed(element, lambda: self._skill(self._vocabulary.skills[kind], name, given, frame))
+            return self._placed(
+                element, lambda: self._skill(element, self._vocabulary.skills[kind], name, given, frame)
+            )
         if kind in self._vocabulary.conditions:
             self._without_children(element)
-            return self._placed(element, lambda: self._condition(self._vocabulary.conditions[kind], name, given, frame))
+            test = self._vocabulary.conditions[kind]
+            return self._placed(element, lambda: self._condition(element, test, name, given, frame))
         if kind not in BY_TAG:
             if kind in ELSEWHERE:
                 element.refuse(f"BehaviorTree.CPP's {kind} has no counterpart here: {ELSEWHERE[kind]}")
@@ -161,12 +165,39 @@ class Builder:
                 if default is None:
                     element.refuse(f"tree {tree!r} needs its port {port}, as its model in <TreeNodesModel> says")
                 given[port] = default
+        known = {*self._mentioned(tree), *self._files.models.get(tree, {})}
+        for port in given:
+            if port not in known:
+                element.refuse(
+                    f"tree {tree!r} uses no key {port!r}; {nearest(port, known) if known else 'it uses none'}"
+                )
         self._places += 1
         name = element.attributes.get("name", "")
         bound = {port: self._looked_up(element, text, frame) for port, text in given.items()}
         own = f"{re.sub(r'[^0-9A-Za-z_]', '_', name or tree)}_{self._places}__"
         prefix = frame.prefix + (f"{name}/" if name else "")
         return Frame(tree, frame, prefix, own if own[0].isalpha() else f"tree_{own}", bound, shared)
+
+    def _mentioned(self, tree: str) -> set[str]:
+        """Keys that stand in a tree, and in those below it that share its keys."""
+        keys: set[str] = set()
+        elements, seen = list(self._files.trees[tree].children), {tree}
+        while elements:
+            element = elements.pop()
+            elements += element.children
+            texts = [f"{{{port}}}" if text == "{=}" else text for port, text in element.attributes.items()]
+            keys |= {text[1:-1].strip() for text in texts if is_pointer(text) and not text.startswith("{@")}
+            inner = element.attributes.get("ID", "")
+            shares = element.tag == "SubTree" and element.attributes.get("_autoremap") in ("true", "1")
+            if shares and inner in self._files.trees and inner not in seen:
+                seen.add(inner)
+                elements += self._files.trees[inner].children
+        return keys
+
+    def _bound(self, element: Element, text: str, frame: Frame) -> Key | str:
+        """What a leaf's port is given: a key, which is told as it is written here, or a constant's text."""
+        found = frame.look_up(text[1:-1].strip()) if is_pointer(text) else text
+        return found.written_as(text, f"{element.file}:{element.line}") if isinstance(found, Key) else found
 
     def _looked_up(self, element: Element, text: str, frame: Frame) -> Key | str:
         if not is_pointer(text):
@@ -209,34 +240,46 @@ class Builder:
         except CaretreeError as error:
             element.refuse(str(error))
 
-    def _skill(self, kind: type[Skill], name: str, given: Mapping[str, str], frame: Frame) -> Skill:
+    def _skill(self, element: Element, kind: type[Skill], name: str, given: Mapping[str, str], frame: Frame) -> Skill:
         ports = dict(ports_of(kind))
         bound: dict[str, Any] = {}
         for port, text in given.items():
             if port not in ports:
-                raise PortError(f"{kind.__name__} has no port {port!r}; {nearest(port, ports)}")
-            found = frame.look_up(text[1:-1].strip()) if is_pointer(text) else text
+                raise PortError(f"{kind.__name__} has no port {port!r}; {nearest(port, [*ports, 'name'])}")
+            found = self._bound(element, text, frame)
             declared = ports[port]
             if isinstance(found, str):
                 if not isinstance(declared, Input):
                     raise PortError(f"{kind.__name__}.{port} is an output and takes a {{key}}, not {found!r}")
                 found = _read(f"{kind.__name__}.{port}", found, declared.kind, declared.default)
             bound[port] = found
+        for port, declared in ports.items():
+            if isinstance(declared, Input) and declared.required and port not in bound:
+                raise PortError(_lacking(kind.__name__, port, declared.kind))
         return kind(frame.prefix + name, self._context, **bound)
 
-    def _condition(self, test: Callable[..., object], name: str, given: Mapping[str, str], frame: Frame) -> Condition:
+    def _condition(
+        self, element: Element, test: Callable[..., object], name: str, given: Mapping[str, str], frame: Frame
+    ) -> Condition:
         kinds = inputs_of(test)
         bound: dict[str, Any] = {}
         for port, text in given.items():
-            found = frame.look_up(text[1:-1].strip()) if is_pointer(text) else text
+            found = self._bound(element, text, frame)
             if port == REASON:
                 if found not in Reason.__members__:
                     raise PortError(f"there is no reason {text!r}; {nearest(text, Reason.__members__)}")
                 continue
             if port not in kinds:
-                raise PortError(f"{name!r} has no port {port!r}; {nearest(port, [*kinds, REASON])}")
+                raise PortError(f"{name!r} has no port {port!r}; {nearest(port, [*kinds, REASON, 'name'])}")
             bound[port] = _read(f"{name}.{port}", found, kinds[port], None) if isinstance(found, str) else found
+        for port, parameter in inspect.signature(test).parameters.items():
+            if port in kinds and port not in bound and parameter.default is parameter.empty:
+                raise PortError(_lacking(repr(name), port, kinds[port]))
         return Condition(name, test, Reason[given.get(REASON, Reason.PRECONDITION.name)], **bound)
+
+
+def _lacking(what: str, port: str, kind: Any) -> str:
+    return f'{what} needs {port}="...": a {type_name(kind)}, or a {{key}}'
 
 
 def _read(port: str, text: str, kind: Any, default: Any) -> Any:

@@ -43,7 +43,7 @@ class Stub(Behaviour):
         self.parent = leaf.parent
         self.commands = isinstance(leaf, Skill) and leaf.commands
         asked = leaf.reads().values() if isinstance(leaf, Condition) else self._bound(leaf, "inputs")
-        self.reads = [key.name for key in asked]
+        self.reads = {key.name: key.told for key in asked}
         self.writes = [k.name for k in self._bound(leaf, "outputs")]
         self.failure: Failure | None = None
         self._failures: dict[Reason, Failure] = {}  # by what was chosen: most of an exploration meets them again
@@ -79,7 +79,7 @@ class Stub(Behaviour):
         """Read, be decided, write."""
         missing = [key for key in self.reads if key not in self._explorer.board]
         if missing:
-            raise KeyMissing(f"{self.name} reads {missing[0]!r}, which has not been written")
+            raise KeyMissing(f"{self.name} reads {self.reads[missing[0]]}, which has not been written")
         outcome = self._explorer.choose(self)
         if outcome is None or outcome == "later":
             return Status.RUNNING

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 from typing import Any
 
@@ -55,6 +56,7 @@ class Wiring:
         self.findings: list[str] = []
         self._paths = paths
         self._writers: dict[str, list[str]] = {}
+        self._words: dict[str, str] = {}  # of keys that are written, as their authors wrote them
 
     def check(self, root: Behaviour) -> None:
         """Follow the data from an empty board."""
@@ -63,6 +65,7 @@ class Wiring:
                 for name, _ in leaf.outputs():
                     if isinstance(bound := leaf.bindings[name], Key):
                         self._writers.setdefault(bound.name, []).append(leaf.name)
+                        self._words.setdefault(bound.name, bound.word)
         self._flow(root, {})
 
     def _flow(self, node: Behaviour, have: Have) -> tuple[Have, Have]:
@@ -109,16 +112,20 @@ class Wiring:
     def _reads(self, leaf: Behaviour, inputs: dict[str, tuple[Key, Any]], have: Have) -> None:
         for name, (key, kind) in inputs.items():
             if key.name not in have:
-                writers = ", ".join(repr(each) for each in self._writers.get(key.name, [])) or "nobody"
+                writers = ", ".join(repr(each) for each in self._writers.get(key.name, [])) or self._nobody(key.name)
                 self._say(
-                    f"{self._paths[leaf]}: input {name} reads {key.name!r}, which is not written on every way "
+                    f"{self._paths[leaf]}: input {name} reads {key.told}, which is not written on every way "
                     f"to here (written by {writers})"
                 )
             elif not assignable(have[key.name], kind):
                 self._say(
-                    f"{self._paths[leaf]}: input {name} takes {type_name(kind)}, but {key.name!r} "
+                    f"{self._paths[leaf]}: input {name} takes {type_name(kind)}, but {key.told} "
                     f"holds {type_name(have[key.name])}"
                 )
+
+    def _nobody(self, key: str) -> str:
+        near = difflib.get_close_matches(key, self._words, n=1)
+        return f"nobody; did you mean {self._words[near[0]]}?" if near else "nobody"
 
     def _repeated(self, node: Retry | RecoverBy, have: Have) -> tuple[Have, Have]:
         """A later attempt begins with the body's own data unset, so the body may not count on it."""

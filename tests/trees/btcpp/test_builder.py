@@ -9,6 +9,7 @@ from caretree.trees.btcpp.document import XmlError
 from caretree.trees.btcpp.files import TreeFiles
 from caretree.trees.btcpp.vocabulary import Vocabulary
 from caretree.trees.guard.guard import GuardedWorld
+from caretree.trees.proof.wiring import Wiring
 from caretree.trees.run.shape import DEPTH_MAX
 from caretree.trees.run.trace import paths_of
 
@@ -19,7 +20,11 @@ def both_hands(context, least: float = 0.0):
     return True
 
 
-VOCABULARY = Vocabulary(Vocabulary.of().skills, {"BothHands": both_hands})
+def least_of(context, least: float):
+    return True
+
+
+VOCABULARY = Vocabulary(Vocabulary.of().skills, {"BothHands": both_hands, "LeastOf": least_of})
 
 
 def build(tmp_path, *trees, models="", root='BTCPP_format="4"'):
@@ -115,11 +120,14 @@ def test_both_ways_to_write_a_node_are_read(tmp_path):
         ('<HoldStill seconds="nan"/>', "HoldStill.seconds: 'nan' is no number"),
         ('<HoldStill seconds="{a b}"/>', "key 'a b' is not an identifier"),
         ('<MoveJoint side="left" joint="w1" angle="1" before="1"/>', "MoveJoint.before is an output and takes a {key}"),
-        ("<MoveJoint/>", "MoveJoint needs angle=float or a Key"),
+        ("<MoveJoint/>", 'MoveJoint needs angle="...": a float, or a {key}'),
+        ('<HoldStill nam="x"/>', "HoldStill has no port 'nam'; did you mean name?"),
+        ("<LeastOf/>", "'LeastOf' needs least=\"...\": a float, or a {key}"),
+        ('<LeastOf laest="1"/>', "'LeastOf' has no port 'laest'; did you mean least?"),
         ('<Timeout msec="{m}"><HoldStill/></Timeout>', "needs a constant there"),
         ('<Timeout mse="1"><HoldStill/></Timeout>', "Timeout has no port 'mse'; did you mean msec?"),
         ('<Timeout msec="-1"><HoldStill/></Timeout>', "seconds of 'Timeout' is -0.001"),
-        ('<BothHands most="1"/>', "'BothHands' has no port 'most'; there are least, reason"),
+        ('<BothHands most="1"/>', "'BothHands' has no port 'most'; there are least, name, reason"),
         ('<BothHands reason="LATE"/>', "there is no reason 'LATE'"),
         ('<SubTree ID="B"/>', "there is no tree 'B'; there are A"),
         ('<SubTree ID="A"/>', "tree 'A' contains itself: A > A"),
@@ -149,3 +157,45 @@ def test_trees_that_lie_too_deep_are_refused(tmp_path):
 def test_names_of_files_in_messages_are_those_that_were_given(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert refusal(Path(), "<LiftArms/>").startswith("t.xml:2: ")
+
+
+def wired(root):
+    """What `caretree check` says of the keys of a tree."""
+    wiring = Wiring(paths_of(root))
+    wiring.check(root)
+    return wiring.findings
+
+
+def test_a_misspelt_key_is_told_as_it_is_written_with_its_line_and_the_nearest(tmp_path):
+    up = '<MoveJoint name="up" side="left" joint="w1" angle="0.2" before="{before}"/>'
+    tree = f"""<Sequence name="s">{up}
+{MOVE.format("down", "{befor}")}
+<SubTree ID="B" name="part" goal="{{before}}"/></Sequence>"""
+    part = f"""<Sequence name="p">{MOVE.format("there", "{goal}")}
+{MOVE.format("back", "{gaol}")}</Sequence>"""
+    way = "which is not written on every way to here (written by nobody"
+    assert wired(build(tmp_path, tree, part)) == [
+        f"s/down: input angle reads {{befor}} at {tmp_path}/t.xml:3, {way}; did you mean {{before}}?)",
+        f"s/p/part/back: input angle reads {{gaol}} at {tmp_path}/t.xml:6, {way})",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ('gaol="0.2"', "t.xml:2: tree 'B' uses no key 'gaol'; did you mean goal?"),
+        ('gaol="{=}" _autoremap="true"', "t.xml:2: tree 'B' uses no key 'gaol'; did you mean goal?"),
+    ],
+)
+def test_a_key_that_a_sub_tree_does_not_use_is_told_where_it_is_put_in_place(tmp_path, given, said):
+    assert said in refusal(tmp_path, f'<Sequence><SubTree ID="B" {given}/></Sequence>', MOVE.format("up", "{goal}"))
+
+
+def test_a_sub_tree_may_be_given_what_those_below_it_share_or_its_model_names(tmp_path):
+    shared = '<Sequence><SubTree ID="C" _autoremap="true"/></Sequence>'
+    build(tmp_path, '<Sequence><SubTree ID="B" goal="0.2"/></Sequence>', shared, MOVE.format("up", "{goal}"))
+    models = '<TreeNodesModel><SubTree ID="B"><input_port name="speed"/></SubTree></TreeNodesModel>'
+    build(tmp_path, '<Sequence><SubTree ID="B" speed="1"/></Sequence>', MOVE.format("up", 0.2), models=models)
+    unshared = '<Sequence><SubTree ID="C" goal="0.2"/></Sequence>'
+    said = refusal(tmp_path, '<Sequence><SubTree ID="B" goal="1"/></Sequence>', unshared, MOVE.format("up", "{goal}"))
+    assert "tree 'B' uses no key 'goal'; it uses none" in said
