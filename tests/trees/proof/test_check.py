@@ -137,6 +137,46 @@ def test_wiring(build, words):
         assert word in sentence
 
 
+FORCED = py_trees.decorators
+
+
+@pytest.mark.parametrize(
+    ("build", "after"),
+    [
+        # a child that failed has written nothing, whatever the decorator above it says
+        (lambda c, make, use: sequence("s", FORCED.FailureIsSuccess("force", make), use), "make fails"),
+        (lambda c, make, use: fallback("s", FORCED.SuccessIsFailure("force", make), use), "make fails"),
+        (lambda c, make, use: sequence("s", FORCED.Inverter("not", make), use), "make fails"),
+        # below ForceSuccess nothing fails, so that the next alternative, which writes, is never begun
+        (
+            lambda c, make, use: sequence(
+                "s", fallback("f", FORCED.FailureIsSuccess("force", Leaf("leaf", c)), make), use
+            ),
+            "leaf succeeds",
+        ),
+    ],
+)
+def test_what_is_written_below_a_decorator_that_forces_an_outcome_is_not_counted_on(build, after):
+    def tree(context):
+        return safe(context, build(context, Make("make", context, made=K), Use("use", context, used=K)))
+
+    found = findings(tree)
+    assert "use: input used reads 'k', which is not written on every way to here (written by 'make')" in found[0]
+    assert any(f"use reads 'k', which has not been written, after {after}" in each for each in found), (
+        "running the stubs finds the same"
+    )
+
+
+@pytest.mark.parametrize("force", [FORCED.FailureIsSuccess, FORCED.SuccessIsFailure, FORCED.Inverter])
+def test_what_was_written_before_such_a_decorator_is_there_after_it(force):
+    def build(context):
+        forced = force("force", Leaf("leaf", context))
+        body = fallback("f", sequence("s", forced, Use("use", context, used=K)), Use("else", context, used=K))
+        return safe(context, sequence("all", Make("make", context, made=K), body))
+
+    assert findings(build) == []
+
+
 def test_the_safe_branch_may_not_count_on_the_body():
     def build(context):
         return FailSafe(
