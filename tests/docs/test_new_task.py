@@ -6,9 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from caretree.sim.evaluate.run_record import RunRecord
 from caretree.skills.core.skill import Skill
 from caretree.trees.cli import main
+from caretree.trees.run.task import load_task
 
 PAGE = (Path(__file__).parents[2] / "docs/new-task.md").read_text(encoding="utf-8")
 
@@ -36,6 +39,14 @@ def replaced(text, block):
     return "\n".join([*lines[:first], *rest, "", *lines[first:], ""])
 
 
+def judged(moved):
+    """Whether the task's judge is content with a left hand of which this has moved by 0.5 m for a while."""
+    hands = np.zeros((10, 2, 7))
+    moved(hands[:, 0])[5:8] += 0.5
+    record = RunRecord.made_up(gripper_pose=hands, objects={"bottle": np.zeros((10, 7))})
+    return load_task("offer.py").judge(record).success
+
+
 def test_the_page_leads_to_a_task_that_holds_runs_and_passes_its_test(folder):
     commands = re.findall(r"^    (\S.*?)(?:  +#.*)?$", PAGE, re.MULTILINE)
     assert main(commands[1].split()[1:]) == 0
@@ -48,6 +59,8 @@ def test_the_page_leads_to_a_task_that_holds_runs_and_passes_its_test(folder):
     for command in ("caretree check offer.py", "caretree run offer.py --world scripted"):
         assert command in commands
         assert main(command.split()[1:]) == 0
+    assert not judged(lambda hand: hand[:, :2]), "the base has driven and taken the hand along"
+    assert judged(lambda hand: hand[:, 2:3])
     assert "pytest" in commands
     tested = subprocess.run([sys.executable, "-m", "pytest", "-q"], cwd=folder, capture_output=True, text=True)
     assert tested.returncode == 0, tested.stdout
