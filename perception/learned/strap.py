@@ -35,7 +35,7 @@ class LearnedStrapTuning(Quantities):
         0.35,
         "1",
         "that it shows there, else it is looked for from elsewhere",
-        "measured: of 80 pictures of a hand, the 20 below 0.47 were right to 6 cm in 0.45, the others in 0.87",
+        "measured: of 80 pictures of a hand, the 20 below 0.49 were right to 6 cm in 0.55, the others in 0.80",
     )
     around: float = quantity(0.08, "m", "of the strap, of cloth that tells its normal", "choice: more than its width")
     min_cells: int = quantity(12, "1", "of that cloth", "choice: fewer are noise")
@@ -43,7 +43,7 @@ class LearnedStrapTuning(Quantities):
 
 
 CLOSELY = LearnedStrapTuning()
-# Laid sleeves are 0.2 to 0.3 m beside their hands; of 32 pictures of the head 0.91 were right to 10 cm.
+# Laid sleeves are 0.2 to 0.3 m beside their hands; of 32 pictures of the head 0.94 were right to 10 cm.
 AFAR = LearnedStrapTuning(deviation=0.25, min_chance=0.1, around=0.12, min_cells=4)
 
 
