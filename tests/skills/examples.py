@@ -44,6 +44,7 @@ from caretree.trees.tasks.dressing.draw_over import DrawOver
 from caretree.trees.tasks.dressing.let_gown_go import LetGownGo
 from caretree.trees.tasks.dressing.look_at_collar import LookAtCollar
 from caretree.trees.tasks.dressing.look_at_sleeves import LookAtSleeves
+from caretree.trees.tasks.dressing.take_up import GoToStrap, TakeUpGown
 from caretree.trees.tasks.hand_towel.lay_on_hand import LayOnHand
 from caretree.trees.tasks.undress.draw_off import DrawOff
 from caretree.trees.tasks.undress.take_seam import TakeSeam
@@ -81,6 +82,7 @@ EXAMPLES = {
     FindCorner: lambda context: FindCorner("find corner", context),
     FindStand: lambda context: FindStand("find stand", context, side="right", lifting="left", pulling="right"),
     FlipSideCheck: lambda context: FlipSideCheck("flip side check", context),
+    GoToStrap: lambda context: GoToStrap("go to strap", context, side="right", hand="left"),
     GraspSleeve: lambda context: GraspSleeve("grasp sleeve", context, side="right", hand="right"),
     LayGown: lambda context: LayGown("lay gown", context, width=0.8),
     LetGownGo: lambda context: LetGownGo("let gown go", context),
@@ -107,6 +109,7 @@ EXAMPLES = {
     TakeCorner: lambda context: TakeCorner(
         "take corner", context, hand="right", sleeve="left", hook=hook(context), min_load=-1.0
     ),
+    TakeUpGown: lambda context: TakeUpGown("take up gown", context, side="right", hand="left"),
     TakeDown: lambda context: TakeDown("take down", context, hook=hook(context), min_load=-1.0, min_load_each=-1.0),
     Unhook: lambda context: Unhook("unhook", context, hand="right", height=0.05),
     ViewAround: lambda context: ViewAround("view around", context, hand="right"),

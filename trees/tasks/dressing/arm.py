@@ -274,6 +274,11 @@ def let_go(arm: Scope) -> Behaviour:
     return unhurried(arm, back_off("free hands", arm))
 
 
+def hands_freed(arm: Scope) -> list[Behaviour]:
+    """Put down what is held at an arm: the arm, then its sleeve."""
+    return [let_down("held", arm, "lifting", other="pulling"), laid_back(arm)]
+
+
 def laid_back(arm: Scope) -> Behaviour:
     """A sleeve that is still held is laid on the bed: let go of in the air, it took the gown to the floor (138, 193).
 

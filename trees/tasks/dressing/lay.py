@@ -30,48 +30,52 @@ from .tuning import DRESSING
 def lay(context: Context) -> Stage:
     """The stage `lay`."""
     gown = Scope(context, "gown", keys=("width",))
-    return timed_stage(
-        "lay",
-        by_both_ends(context, gown),
-        patient(gown, FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence)),
-        fallback("on the person", LayGown("lay it on the person", gown), where_it_is(gown)),
-        precondition=holds_gown,
-        seconds=DRESSING.lay_timeout,
-    )
+    by_ends = fallback("by both ends", stretch(gown, "stretch the neckline"), *ends_anew(context, gown, ("end", "far")))
+    return timed_stage("lay", by_ends, *on_person(gown), precondition=holds_gown, seconds=DRESSING.lay_timeout)
 
 
-def by_both_ends(context: Context, gown: Scope) -> Behaviour:
-    """Stretch the neckline; where it is too short, take an end anew with one hand, then with both in turn.
+def on_person(gown: Scope) -> list[Behaviour]:
+    """Lay a gown whose neckline is stretched between both hands."""
+    outside = FlipSideCheck("outside to the robot", gown, min_confidence=DRESSING.laid_inside_confidence)
+    laid = fallback(f"{gown.prefix}on the person", LayGown("lay it on the person", gown), where_it_is(gown))
+    return [patient(gown, outside), laid]
+
+
+def stretch(gown: Scope, name: str) -> Behaviour:
+    """Stretch the neckline; fails where the hands stay nearer together than its ends."""
+    return patient(gown, StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline))
+
+
+def ends_anew(context: Context, gown: Scope, names: tuple[str, str]) -> list[Behaviour]:
+    """Ways to an end that was not held: taken anew with the right hand, else both in turn, from the left hand or right.
 
     What the left hand holds may be no end either: then all of it is done once more from what the right hand holds.
+    Leaves that take corners from a hand are called by the `names`.
     """
 
-    def stretch(name: str) -> Behaviour:
-        return patient(gown, StretchNeckline(name, gown, min_width=DRESSING.stretched_neckline))
-
     def holds(name: str, hand: Side) -> Condition:
-        return Condition(name, holds_gown_with, Reason.CLOTH_SLIPPED, hand=hand)
+        return Condition(f"{gown.prefix}{name}", holds_gown_with, Reason.CLOTH_SLIPPED, hand=hand)
 
-    end = Scope(context, "right end", keys=("views", "holder", "former"))
+    end = Scope(context, f"right {names[0]}", keys=("views", "holder", "former"))
     right = sequence(
-        "the right hand anew",
+        f"{gown.prefix}the right hand anew",
         holds("the left hand holds it too", "left"),
         Retreat("let go", end, hands="right", ready="never", tuning=LEVEL),
         look_and_take(end, "left", DRESSING.second_corner),
-        stretch("stretch by the new right end"),
+        stretch(gown, "stretch by the new right end"),
     )
 
     def both(hand: Side, name: str) -> Behaviour:
         other: Side = SIDES[1 - SIDES.index(hand)]
         return sequence(
-            f"both hands anew, from the {hand} one",
+            f"{gown.prefix}both anew, from the {hand} one",
             holds(f"the {hand} hand still holds it", hand),
-            Retreat("let go", Scope(context, f"from the {hand} hand"), hands=other, ready="never", tuning=LEVEL),
+            Retreat("let go", Scope(gown, f"from the {hand} hand"), hands=other, ready="never", tuning=LEVEL),
             corner_by_corner(context, (name, f"{name} again", f"{name} anew"), hand),
-            stretch(f"stretch from the {hand} hand"),
+            stretch(gown, f"stretch from the {hand} hand"),
         )
 
-    return fallback("by both ends", stretch("stretch the neckline"), right, both("left", "end"), both("right", "far"))
+    return [right, both("left", names[0]), both("right", names[1])]
 
 
 def holds_gown(context: Context) -> bool:
@@ -81,8 +85,8 @@ def holds_gown(context: Context) -> bool:
 
 def where_it_is(gown: Scope) -> Behaviour:
     """A gown that is down is let go of although a hand met a leg on its last centimetres."""
-    down = Condition("it is down already", is_down, Reason.MOTION_BLOCKED)
-    return sequence("let it go where it is", down, LetGownGo("let it go", gown))
+    down = Condition(f"{gown.prefix}it is down already", is_down, Reason.MOTION_BLOCKED)
+    return sequence(f"{gown.prefix}let it go where it is", down, LetGownGo("let it go", gown))
 
 
 def is_down(context: Context) -> bool:

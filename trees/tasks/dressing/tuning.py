@@ -346,6 +346,9 @@ class DressingTuning(Quantities):
     arms_back: float = quantity(
         0.05, "m", "by which the hands draw back from the gown that is laid", "choice: clear of it"
     )
+    taken_up_speed: float = quantity(
+        0.2, "m/s", "of the base that carries a gown off the person", "choice: as slow as what is drawn over legs"
+    )
     # time of each stage
     take_down_timeout: float = quantity(
         600.0, "s", "for taking the gown down", "choice: four tries and one from one hand, three at each corner"
@@ -353,7 +356,9 @@ class DressingTuning(Quantities):
     lay_timeout: float = quantity(
         400.0, "s", "for unfolding and laying the gown", "choice: an end is taken anew by each hand, as in `take_down`"
     )
-    dress_timeout: float = quantity(800.0, "s", "for dressing both arms", "choice: room for three misses at each arm")
+    dress_timeout: float = quantity(
+        1200.0, "s", "for dressing both arms", "choice: room for three misses at each arm, and to lay the gown anew"
+    )
     spread_timeout: float = quantity(
         1400.0, "s", "for spreading and settling the gown", "choice: seven rounds, both sleeves looked at from beside"
     )

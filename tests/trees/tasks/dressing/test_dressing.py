@@ -61,8 +61,8 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
         and node.name.endswith(("pull up", "lay it beyond the hand", "lay it back"))
     ]
     # up, up again once it slipped, laid back: both arms; laid out: both, after the person has moved and after all else;
-    # the first sleeve up again before the second, which is laid out before its arm is lifted where it has to be
-    assert sum(not anew(node) and not other_way_round(node) for node in free) == 12
+    # the first sleeve laid back before its gown is laid anew, up again before the second, which is laid out before its arm is lifted where it has to be
+    assert sum(not anew(node) and not other_way_round(node) for node in free) == 13
     assert sum(anew(node) for node in free) == 10, (
         "as often, but where the first one has slipped and the second one is at hand"
     )
@@ -116,7 +116,7 @@ def test_both_hands_are_seen_to_before_the_robot_backs_off_and_arms_that_are_up_
     assert all(isinstance(branch.children[-1], Retreat) for branch in safe.children[3:]), "no arm is owed at any price"
 
 
-@pytest.mark.parametrize(("lying", "tries"), [(set(), 3), ({"left"}, 3), ({"right"}, 1)])
+@pytest.mark.parametrize(("lying", "tries"), [(set(), 6), ({"left"}, 6), ({"right"}, 1)])
 def test_the_left_arm_is_dressed_first_where_the_right_sleeve_lies_or_its_arm_does_not_come_in(
     monkeypatch, lying, tries
 ):
@@ -146,8 +146,34 @@ def test_the_left_arm_is_dressed_first_where_the_right_sleeve_lies_or_its_arm_do
     assert run.run().outcome == "success"
     lifts = [name for name in done if name.endswith("/lift")]
     assert lifts == [*["right arm/lift"] * tries, "left 2nd/lift", "right 2nd/lift"]
+    assert ("anew/lay it on the person" in done) == ("right" not in lying), "a sleeve that stood is laid anew"
     assert done.index("its front/draw flat") > done.index("right 2nd/pull up")
     assert "front/draw flat" not in done, "from the side of the arm that came last"
+
+
+def test_where_the_right_arm_comes_into_a_gown_that_was_laid_anew_the_left_one_is_next(monkeypatch):
+    present = PresentSleeve.steps
+
+    def caught(self):
+        if not taken:
+            raise SkillFailure(Reason.SLEEVE_CAUGHT, "")
+        yield from present(self)
+
+    monkeypatch.setattr(PresentSleeve, "steps", caught)
+    task, done, taken = load_task("dressing"), [], []
+
+    def told(progress):
+        if progress.status == "success":
+            done.append(progress.name)
+            taken.extend([progress.name] * progress.name.endswith("take it up"))
+
+    world, senses = task.scripted(1)
+    run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    assert run.run().outcome == "success"
+    assert taken == ["taken up/take it up"]
+    assert [name for name in done if name.endswith("/lift")] == [*["right arm/lift"] * 4, "left arm/lift"]
+    freed = [done.index(f"taken up/{name}") for name in ("held/lower", "lay it back", "go to the strap", "take it up")]
+    assert freed == sorted(freed)
 
 
 def test_after_the_person_has_moved_every_arm_is_begun_again(nodes):
@@ -281,5 +307,5 @@ def test_where_what_the_left_hand_holds_is_no_end_both_are_taken_anew_from_the_r
         "from the left hand",
         "from the right hand",
     ]
-    assert ended["from the right hand/let go"] == "success"
+    assert ended["gown/from the right hand/let go"] == "success"
     assert ended["gown/lay it on the person"] == "success"

@@ -1,0 +1,86 @@
+"""Take a laid gown up by a strap, from beside the bed: no arm is in it, and it shall be laid anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ....sim.quantity import Quantities, quantity
+from ....sim.world import Side
+from ....skills.belief.person_tracking import PERSON_TRACKING, visible_share, watch_arm
+from ....skills.belief.refused_stands import refused_stands
+from ....skills.belief.short_gown import short_gown
+from ....skills.belief.sleeve_search import find_sleeve, strap_position
+from ....skills.control.base import stand_for
+from ....skills.control.carry import Carry, carry
+from ....skills.control.hands import cloth_load, hand_now
+from ....skills.core.ports import Input
+from ....skills.core.reasons import Reason, SkillFailure
+from ....skills.core.skill import Skill
+from ....skills.geometry.arm_path import UP
+
+
+class GoToStrap(Skill):
+    """Sees that an arm is bare, and goes where a hand reaches the strap of its sleeve with ease.
+
+    It fails where the arm is covered: its sleeve may be over the hand, and would lift it.
+    """
+
+    side = Input(Side, doc="the person's side")
+    hand = Input(Side, doc="that will take the strap")
+    reasons = (
+        Reason.NOTHING_SEEN,
+        Reason.ARM_LOST,
+        Reason.ARM_COVERED,
+        Reason.PATH_BLOCKED,
+        Reason.COMMAND_LOST,
+        Reason.TIMEOUT,
+    )
+
+    def steps(self) -> Iterator[None]:
+        """Look once, then drive."""
+        arm = watch_arm(self, self.side)
+        share = visible_share(self.world.look("head"), arm)
+        if share < PERSON_TRACKING.min_visible:
+            raise SkillFailure(Reason.ARM_COVERED, f"{share:.0%} of the {self.side} arm show")
+        strap = strap_position(find_sleeve(self, self.side, arm.points_in_map))
+        yield from stand_for(self, self.hand, strap)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TakeUpTuning(Quantities):
+    """How a gown is taken up."""
+
+    height: float = quantity(0.40, "m", "by which the hand rises", "choice: the strap is then clear of the person")
+    least: float = quantity(0.25, "m", "that will do", "choice: above a person who lies")
+    carry: Carry = field(
+        default_factory=lambda: Carry(speed=0.10, max_load=8.0),
+    )
+
+
+class TakeUpGown(Skill):
+    """Raises the hand that holds a strap, no harder than the gown weighs and rubs on the bed.
+
+    What was known of where its sleeve lies is forgotten.  It fails where the gown holds the hand back: something is in
+    it, or on it.
+    """
+
+    side = Input(Side, doc="the person's side, whose sleeve is held by its strap")
+    hand = Input(Side, doc="that holds it")
+    tuning = Input(TakeUpTuning, default=TakeUpTuning(), doc="numbers of this skill")
+    reasons = (Reason.SLEEVE_CAUGHT, Reason.COMMAND_LOST)
+
+    def steps(self) -> Iterator[None]:
+        """Straight up."""
+        self.note("takes the gown up")
+        refused_stands(self, self.side).clear()
+        short_gown(self).discard(self.side)
+        start = hand_now(self, self.hand)[:3, 3]
+        yield from carry(self, self.hand, start + self.tuning.height * UP, self.tuning.carry)
+        risen = float(hand_now(self, self.hand)[2, 3] - start[2])
+        load = float(np.linalg.norm(cloth_load(self, self.hand)))
+        if risen < self.tuning.least:
+            raise SkillFailure(Reason.SLEEVE_CAUGHT, f"{risen:.2f} m up the gown pulls with {load:.1f} N")
+        self.note(f"carries {load:.1f} N")
