@@ -61,7 +61,8 @@ def test_nobody_holds_an_arm_whose_sleeve_is_pulled_up_or_laid_out(nodes):
         and node.name.endswith(("pull up", "lay it beyond the hand", "lay it back"))
     ]
     # up, up again once it slipped, laid back: both arms; laid out: both, after the person has moved and after all else;
-    # the first sleeve laid back before its gown is laid anew, up again before the second, which is laid out before its arm is lifted where it has to be
+    # the first sleeve laid back before its gown is laid anew; up again before the second, which is laid out before its
+    # arm is lifted where it has to be
     assert sum(not anew(node) and not other_way_round(node) for node in free) == 13
     assert sum(anew(node) for node in free) == 10, (
         "as often, but where the first one has slipped and the second one is at hand"
