@@ -23,6 +23,7 @@ from ....skills.core.reasons import Reason
 from ...nodes.composers import sequence
 from ...nodes.decorators import FailSafe, RecoverBy
 from ...run.stages import TaskStage
+from .arm import sleeve_was_found
 from .check_collar import CheckCollar as CheckCollar  # a tree in XML finds the task's own leaves here
 from .check_face import CheckFace as CheckFace
 from .check_over_hand import CheckOverHand as CheckOverHand
@@ -61,6 +62,7 @@ CONDITIONS = (
     none_seen_beside,
     none_seen_low,
     right_sleeve_stands,
+    sleeve_was_found,
     sleeves_known,
 )
 

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 
 from ....sim.world import SIDES, Side
+from ....skills.belief.refused_stands import RefusedStands
 from ....skills.carry_sleeve import CarrySleeve
 from ....skills.check_laid_out import CheckLaidOut
 from ....skills.check_sleeve import CheckSleeve, CheckSleeveTuning
@@ -83,7 +84,8 @@ def dress_arm(
 ) -> Behaviour:
     """One arm into its `sleeve`, from beside the bed; its leaves are called by the arm, or by `name`.
 
-    It is begun again where it is `worth` it, of which nobody is asked where the person has moved.
+    It is begun again where its sleeve was found and it is `worth` it, of which nobody is asked where the person has
+    moved.
     """
     arm = arm_scope(context, name or f"{side} arm", side)
 
@@ -147,14 +149,23 @@ def dress_arm(
     )
 
     def missed() -> Behaviour:
-        anew = begin_again(Scope(arm, "again"), laid_back)
-        return anew if worth is None else sequence(f"{side} arm worth another try", worth(), anew)
+        found = Condition(f"{arm.prefix}its sleeve was found", sleeve_was_found, Reason.NOTHING_SEEN, side=side)
+        asked = [found] if worth is None else [found, worth()]
+        return sequence(f"{arm.prefix}worth another try", *asked, begin_again(Scope(arm, "again"), laid_back))
 
     again: dict[Reason, Callable[[], Behaviour]] = {
         **dict.fromkeys(MISSES, missed),
         Reason.PERSON_MOVED: lambda: begin_again(arm, let_go),  # whoever moves is let go of at once
     }
     return RecoverBy(f"dress the {side} arm", once, again, attempts=attempts)
+
+
+def sleeve_was_found(context: Context, side: Side) -> bool:
+    """A sleeve was not missed or out of sight from too many places since it was laid there.
+
+    With the gown on the floor, an arm was lifted six times (103).
+    """
+    return len(context.memory.of(RefusedStands, RefusedStands).poses.get(side, ())) < DRESSING.refused_stands
 
 
 def over_hand(arm: Scope, sleeve: SleeveTuning) -> Behaviour:

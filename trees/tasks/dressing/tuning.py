@@ -194,6 +194,12 @@ class DressingTuning(Quantities):
         "at arms and gown, the first one included, where a sleeve turns out not to be on its arm",
         "choice: an arm has six tries each time",
     )
+    refused_stands: int = quantity(
+        3,
+        "1",
+        "places from which a sleeve was missed or out of sight since it was laid, from which its arm is let be",
+        "choice: one more than after which it is laid elsewhere",
+    )
     # settling the sleeves and the collar
     armhole_up: float = quantity(
         0.73,

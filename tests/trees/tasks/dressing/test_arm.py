@@ -1,6 +1,7 @@
 """What is tried again at an arm before it is given up, and before the other one is dressed."""
 
 import pytest
+from caretree.perception.errors import PerceptionFailure, Problem
 from caretree.sim.faults import FaultyWorld, parse_fault
 from caretree.skills.carry_sleeve import CarrySleeve
 from caretree.skills.check_sleeve import CheckSleeve
@@ -198,3 +199,27 @@ def test_a_sleeve_that_is_over_the_hand_is_drawn_on_and_not_laid_out_or_lifted_i
     expected = ["over the hand already", "go where it sits", "look where it sits", "take it as it sits", "pull up"]
     assert told[begun + 1 : begun + 6] == [f"{side} arm/{name}" for name in expected]
     assert ended.count((f"{side} arm/lift", "success")) == 1
+
+
+def test_an_arm_whose_sleeve_is_nowhere_is_not_lifted_time_and_again(monkeypatch):
+    task, lifts = load_task("dressing"), []
+    world, senses = task.scripted(1)
+
+    def nowhere(see):
+        def answer(frame, *, side, **asked):
+            if side == "left":
+                raise PerceptionFailure(Problem.NOTHING_SEEN, "armhole")
+            return see(frame, side=side, **asked)
+
+        return answer
+
+    for name in ("sleeve_opening", "sleeve_strap"):
+        monkeypatch.setattr(senses, name, nowhere(getattr(senses, name)))
+
+    def told(progress):
+        if progress.name.startswith("left") and progress.name.endswith("/lift") and progress.status == "success":
+            lifts.append(progress.name)
+
+    run = Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), on_progress=told)
+    assert run.run().outcome == "safe_stop"
+    assert lifts == [*["left arm/lift"] * 3, "left 2nd/lift"], "on the floor, nothing brings it back"
