@@ -42,6 +42,7 @@ def bench(
             relocalised_arm=lies,
             held_armhole=armhole,
             skin_cover=Cover(stamp=0.0, confidence=0.9, share=cover),
+            sleeve_on_forearm=HIDDEN,
             cuff_round=cuff if callable(cuff) else Cover(stamp=0.0, confidence=0.9, share=cuff),
         ),
         each_tick=each_tick or (lambda bench: None),

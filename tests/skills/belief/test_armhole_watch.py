@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from caretree.perception.errors import PerceptionFailure, Problem
-from caretree.perception.estimates import Cover, SleeveOpening
+from caretree.perception.estimates import Cover, SleeveOpening, WornSleeve
 from caretree.sim.scripted.world import ScriptedWorld
 from caretree.skills.belief.armhole_watch import ArmholeWatch
 from caretree.skills.core.context import Context
@@ -18,11 +18,14 @@ PATH = ArmPath.of(lying_posture("right"))
 GRIP = StrapGrip(arm="right", hand="right", across_in_hand=np.array((0.0, 1.0, 0.0)))
 
 
+HIDDEN = PerceptionFailure(Problem.NOTHING_SEEN, "bindings")
+
+
 class Watcher(Skill):
     commands = False
 
 
-def make(points=None, share=1.0, cuff=None):
+def make(points=None, share=1.0, cuff=None, sleeve=HIDDEN):
     """A watch that sees an armhole at `points` (n, 3), or none, an arm covered by `share`, a cuff by that or `cuff`."""
 
     if points is None:
@@ -45,7 +48,7 @@ def make(points=None, share=1.0, cuff=None):
     world = ScriptedWorld()
     guard = GuardedWorld(world)
     cuff = cover if cuff is None else Cover(stamp=0.0, confidence=0.9, share=cuff)
-    senses = fake_senses(held_armhole=ring, skin_cover=cover, cuff_round=cuff)
+    senses = fake_senses(held_armhole=ring, skin_cover=cover, cuff_round=cuff, sleeve_on_forearm=sleeve)
     skill = Watcher("watch", Context(world=guard, guard=guard, senses=senses))
     return ArmholeWatch(skill, GRIP.arm, GRIP.hand), world
 
@@ -85,6 +88,27 @@ def test_a_bare_hand_and_a_cuff_on_one_side_are_misses(share, said):
 def test_an_arm_that_is_bare_where_its_sleeve_would_be_is_beside_it_unless_the_cuff_is_all_round(cuff, covered, beside):
     ring, _ = make(share=covered, cuff=cuff)
     assert ring.arm_is_beside(PATH) is beside
+
+
+def test_an_arm_is_inside_a_sleeve_that_has_come_past_the_wrist_and_covers_it():
+    def beside(armhole_at, cuff_at, round_arm, covered=1.0):
+        sleeve = WornSleeve(
+            stamp=0.0,
+            confidence=0.9,
+            side="right",
+            armhole_at=armhole_at,
+            cuff_at=cuff_at,
+            reach=0.0,
+            round_arm=round_arm,
+        )
+        ring, _ = make(share=covered, cuff=0.35, sleeve=sleeve)
+        return ring.arm_is_beside(PATH)
+
+    assert not beside(0.69, 1.35, 0.49), "told to be beside it at 0.35 of the way round, with the hand inside (103)"
+    assert beside(1.29, 1.51, 0.43), "the armhole before the hand (103)"
+    assert beside(0.69, 0.75, 0.49), "in a heap"
+    assert beside(0.69, 1.35, 0.2), "on one side of the arm"
+    assert beside(0.69, 1.35, 0.49, covered=0.3), "the arm lies on it"
 
 
 def test_the_armhole_is_followed_and_forgotten_when_hidden():
