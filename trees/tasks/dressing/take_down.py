@@ -28,7 +28,7 @@ from ....skills.view_around import ViewAround
 from ...nodes.composers import fallback, sequence
 from ...nodes.condition import Condition
 from ...nodes.decorators import RecoverBy, Retry, Stage, timed_stage
-from .patience import patient, sight_again
+from .patience import patient, sight_again, unhurried
 from .tuning import DRESSING
 
 TOUCHED = (Reason.MULTI_LAYER, Reason.GRASP_MISSED, Reason.UNREACHABLE, Reason.MOTION_BLOCKED)
@@ -48,8 +48,8 @@ def take_down(context: Context) -> Stage:
     )
     return timed_stage(
         "take down",
-        Navigate("go there", rail, goal="rail"),
-        fallback("find the outside", outside, Navigate("go behind it", rail, goal="rail_back")),
+        unhurried(rail, Navigate("go there", rail, goal="rail")),
+        fallback("find the outside", outside, unhurried(rail, Navigate("go behind it", rail, goal="rail_back"))),
         fallback(
             "take it",
             Retry("the other end first", patient(rail, by_both_ends), attempts=DRESSING.rail_attempts),
@@ -60,12 +60,18 @@ def take_down(context: Context) -> Stage:
 
 
 def other_side(rail: Scope) -> Behaviour:
-    """Let go, and go to the other side of the rail: what hung wrapped round itself showed its outside on both."""
+    """Let go, and go to the other side of the rail: what hung wrapped round itself showed its outside on both.
+
+    Stopped by the guard half way round, as a wrist swung past the bed, the robot looked for the gown from there until
+    the stage ended (309).
+    """
     again = Scope(rail, "other side")
-    behind = sequence(
-        "behind the rail", Condition("before the rail", before_rail), Navigate("go behind it", again, goal="rail_back")
-    )
-    there = fallback("to the other side", behind, Navigate("go before it", again, goal="rail"))
+
+    def go(name: str, goal: str) -> Behaviour:
+        return unhurried(again, Navigate(name, again, goal=goal))
+
+    behind = sequence("behind the rail", Condition("before the rail", before_rail), go("go behind it", "rail_back"))
+    there = fallback("to the other side", behind, go("go before it", "rail"))
     return sequence("the other side of the rail", Retreat("let go of it", again), there)
 
 

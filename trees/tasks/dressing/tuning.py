@@ -346,8 +346,8 @@ class DressingTuning(Quantities):
     stopped_attempts: int = quantity(
         4,
         "1",
-        "at lowering and letting go, the first included",
-        "choice: each goes on from where the arms are by then",
+        "at lowering, letting go and driving round the rail, the first included",
+        "choice: each goes on from where arms and base are by then",
     )
     arms_back: float = quantity(
         0.05, "m", "by which the hands draw back from the gown that is laid", "choice: clear of it"

@@ -2,6 +2,8 @@
 
 import pytest
 from caretree.skills.core.reasons import Reason, SkillFailure
+from caretree.skills.flip_side_check import FlipSideCheck
+from caretree.skills.navigate import Navigate
 from caretree.skills.pre_grasp_manipulate import PreGraspManipulate
 from caretree.skills.raise_corner import RaiseCorner
 from caretree.skills.take_corner import TakeCorner
@@ -77,3 +79,27 @@ def test_a_corner_is_weighed_once_before_it_is_drawn_farther_round(monkeypatch):
     Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
     assert weighed["rail/draw it aside"] < 3.0  # [N]: a gown weighs 4 to 4.8 N
     assert weighed["rail/draw it farther round"] == float("inf")
+
+
+def test_a_robot_that_the_guard_stops_on_its_way_round_the_rail_goes_on(monkeypatch):
+    drive, look, told = Navigate.steps, FlipSideCheck.steps, []
+
+    def stopped_once(self):
+        told.append(self.name)
+        if self.name == "rail/other side/go behind it" and told.count(self.name) == 1:
+            raise SkillFailure(Reason.SPEED_LIMIT, "left wrist 2 at 0.24 m/s")
+        yield from drive(self)
+
+    def wrong_once(self):
+        told.append(self.name)
+        if self.name == "rail/outside still to the front" and told.count(self.name) == 1:
+            raise SkillFailure(Reason.WRONG_SIDE, "the inside faces the robot")
+        yield from look(self)
+
+    monkeypatch.setattr(Navigate, "steps", stopped_once)
+    monkeypatch.setattr(FlipSideCheck, "steps", wrong_once)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
+    assert told.count("rail/other side/go behind it") == 2
+    assert told.count("rail/outside still to the front") == 2, "and looks for the corners from there"
