@@ -5,7 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 from caretree.sim.faults import FaultyWorld, parse_fault
-from caretree.skills import CarrySleeve, CheckSleeve, LaySleeve, PresentSleeve, PullAlongArm, Retreat, StretchNeckline
+from caretree.skills import (
+    CarrySleeve,
+    CheckSleeve,
+    GraspSleeve,
+    LaySleeve,
+    PresentSleeve,
+    PullAlongArm,
+    Retreat,
+    StretchNeckline,
+)
 from caretree.skills.belief.lying_sleeves import lying_sleeves, remember_laid
 from caretree.skills.core.reasons import Reason, SkillFailure
 from caretree.skills.scripted.scripted_senses import ScriptedSenses
@@ -75,9 +84,9 @@ def test_the_arms_come_back_from_above_the_person_before_the_base_drives_round_t
     carries = [node for node in nodes if isinstance(node, CarrySleeve)]
     # the left sleeve after the right arm, and where it is out of reach before its own arm is lifted; either where it
     # does not show after the person has moved and after all else; out from its own side before the left arm, and for
-    # both arms after the person has moved and after all else
+    # both arms after the person has moved and after all else; the right one out before its gown is laid anew
     first = [carry.own_side for carry in carries if not anew(carry) and not other_way_round(carry)]
-    assert (first.count(False), first.count(True)) == (6, 5)
+    assert (first.count(False), first.count(True)) == (6, 6)
     for carry in carries:
         once_more = carry.parent
         steps = once_more.parent.children
@@ -310,3 +319,28 @@ def test_where_what_the_left_hand_holds_is_no_end_both_are_taken_anew_from_the_r
     ]
     assert ended["gown/from the right hand/let go"] == "success"
     assert ended["gown/lay it on the person"] == "success"
+
+
+def test_a_strap_that_is_out_of_reach_is_carried_out_before_its_gown_is_taken_up(monkeypatch):
+    present, grasp, done = PresentSleeve.steps, GraspSleeve.steps, []
+
+    def caught(self):
+        if "taken up/take it up" not in done:
+            raise SkillFailure(Reason.SLEEVE_CAUGHT, "")
+        yield from present(self)
+
+    def out_of_reach(self):
+        if self.name == "taken up/take it by its strap":
+            raise SkillFailure(Reason.UNREACHABLE, "")
+        yield from grasp(self)
+
+    monkeypatch.setattr(PresentSleeve, "steps", caught)
+    monkeypatch.setattr(GraspSleeve, "steps", out_of_reach)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    told = {"on_progress": lambda progress: done.append(progress.name) if progress.status == "success" else None}
+    assert Run(task, world, seed=1, senses=senses, params=task.parameters("dress"), **told).run().outcome == "success"
+    steps = ["carry it out", "nearer/go to the strap", "nearer/take it by its strap", "take it up"]
+    assert [done.index(f"taken up/{step}") for step in steps] == sorted(
+        done.index(f"taken up/{step}") for step in steps
+    )
