@@ -75,6 +75,13 @@ def other_side(rail: Scope) -> Behaviour:
     return sequence("the other side of the rail", Retreat("let go of it", again), there)
 
 
+def square_to_it(scope: Scope) -> Behaviour:
+    """Stand before the rail, or behind it, whichever is nearer: who was stopped on the way between sees no gown."""
+    before = Condition(f"{scope.prefix}on its front", before_rail)
+    front = sequence(f"{scope.prefix}at its front", before, Navigate("stand before it", scope, goal="rail"))
+    return fallback(f"{scope.prefix}square to it", front, Navigate("stand behind it", scope, goal="rail_back"))
+
+
 def take_ends(rail: Scope) -> Behaviour:
     """Both ends of the hung gown's neckline: the one that shows, drawn aside, and then the other one."""
     aside = Scope(rail, keys=("held_length",))
@@ -122,6 +129,7 @@ def from_one_hand(context: Context) -> Behaviour:
     return sequence(
         "from one hand",
         Retreat("let go of the neckline", first),
+        square_to_it(first),
         patient(first, SegmentAndGrasp("take it near the hook", first, hand="right")),
         Unhook("lift it off", first, hand="right"),
         corner_by_corner(context, ("one hand", "again", "anew", "once more"), "right"),

@@ -103,3 +103,28 @@ def test_a_robot_that_the_guard_stops_on_its_way_round_the_rail_goes_on(monkeypa
     Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
     assert told.count("rail/other side/go behind it") == 2
     assert told.count("rail/outside still to the front") == 2, "and looks for the corners from there"
+
+
+@pytest.mark.parametrize(("outside", "stands"), [(True, "before"), (False, "behind")])
+def test_a_gown_is_taken_with_one_hand_from_square_before_or_behind_the_rail(monkeypatch, outside, stands):
+    look, drive, told = FlipSideCheck.steps, Navigate.steps, []
+
+    def unseen(self):
+        raise SkillFailure(Reason.NOTHING_SEEN, "")
+        yield
+
+    def sees(self):
+        if not outside and self.name == "rail/outside to the front":
+            raise SkillFailure(Reason.WRONG_SIDE, "")
+        yield from look(self)
+
+    def tells(self):
+        told.append(self.name)
+        yield from drive(self)
+
+    for skill, steps in ((TakeCorner, unseen), (FlipSideCheck, sees), (Navigate, tells)):
+        monkeypatch.setattr(skill, "steps", steps)
+    task = load_task("dressing")
+    world, senses = task.scripted(1)
+    Run(task, world, seed=1, senses=senses, params={"stages": ("take_down",)}).run()
+    assert [name for name in told if name.startswith("one hand/")] == [f"one hand/stand {stands} it"]
