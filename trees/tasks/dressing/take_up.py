@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -55,8 +55,12 @@ class TakeUpTuning(Quantities):
 
     height: float = quantity(0.40, "m", "by which the hand rises", "choice: the strap is then clear of the person")
     least: float = quantity(0.25, "m", "that will do", "choice: above a person who lies")
-    carry: Carry = field(
-        default_factory=lambda: Carry(speed=0.10, max_load=8.0),
+    speed: float = quantity(0.10, "m/s", "of the hand", "choice: what lies on legs comes along slowly")
+    max_load: float = quantity(
+        8.0,
+        "N",
+        "of the gown, at which it is let be",
+        "choice: twice what it weighs, 4 to 4.8 N, as it rubs on the bed",
     )
 
 
@@ -78,7 +82,8 @@ class TakeUpGown(Skill):
         refused_stands(self, self.side).clear()
         short_gown(self).discard(self.side)
         start = hand_now(self, self.hand)[:3, 3]
-        yield from carry(self, self.hand, start + self.tuning.height * UP, self.tuning.carry)
+        law = Carry(speed=self.tuning.speed, max_load=self.tuning.max_load)
+        yield from carry(self, self.hand, start + self.tuning.height * UP, law)
         risen = float(hand_now(self, self.hand)[2, 3] - start[2])
         load = float(np.linalg.norm(cloth_load(self, self.hand)))
         if risen < self.tuning.least:
