@@ -72,9 +72,9 @@ class ArmholeWatchTuning(Quantities):
         "that had missed it, though the cuff showed 0.42 and 0.67 of the way round (178, 184)",
     )
     # Measured in seven pulls of 103, drawn again: armholes of sleeves with the hand inside at 0.56 to 1.26 of the
-    # forearm, those at 0.56 and 0.69 with 0.31 and 0.49 of the way round, all covered, the latter told to be beside it by
-    # the rest; of one that had missed it at 1.29.  Nine more (303 to 306) say the same: 0.58 and 0.76, 0.45 round,
-    # told to be beside; missed at 1.13.
+    # forearm, those at 0.56 and 0.69 with 0.31 and 0.49 of the way round, all covered, the latter told to be beside
+    # it by the rest; of one that had missed it at 1.29.  Nine more (303 to 306) say the same: 0.58 and 0.76, 0.45
+    # round, told to be beside; missed at 1.13.
     over_hand: OverHandTuning = field(default_factory=lambda: OverHandTuning(min_round=0.25, min_covered=0.8))
     memory: float = quantity(0.8, "s", "after which an armhole that is hidden may have moved on", "choice: four looks")
     max_points: int = quantity(

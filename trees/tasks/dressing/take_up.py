@@ -60,7 +60,7 @@ class TakeUpTuning(Quantities):
         8.0,
         "N",
         "of the gown, at which it is let be",
-        "choice: twice what it weighs, 4 to 4.8 N, as it rubs on the bed",
+        "choice: twice the 4 N that it weighs, as it rubs on the bed",
     )
 
 
