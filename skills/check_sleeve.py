@@ -11,7 +11,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.image.cloud import unit
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import Side
-from .belief.close_look import SleeveSeen, sleeve_seen
+from .belief.close_look import CloseLook, SleeveSeen, sleeve_seen
 from .belief.person_tracking import watch_arm
 from .belief.pulled_sleeves import pull_loads
 from .core.ports import Input, Output
@@ -170,6 +170,7 @@ class CheckSleeve(Skill):
             f"{self.side} armhole {seen.reach:.2f} up the upper arm, cuff at {seen.cuff_at:.2f}, "
             f"{seen.round_arm:.0%} round it"
         )
+        CloseLook.of(self).before[self.side] = SleeveSeen(seen.reach, seen.round_arm, self.now())
         shows = seen.cuff_at >= self.tuning.min_cuff_at and seen.round_arm >= self.tuning.min_share_round
         surely = closely is not None and closely.round_arm > self.tuning.min_round_closely
         if not shows and not surely:

@@ -13,7 +13,7 @@ from ..perception.errors import PerceptionFailure
 from ..perception.estimates import ArmPosture, GraspPoint
 from ..sim.quantity import Quantities, quantity
 from ..sim.world import SIDES, Frame, Side
-from .belief.close_look import sleeve_seen
+from .belief.close_look import CloseLook, reach_before, sleeve_seen
 from .belief.face import FACE, cover_of, face_points
 from .belief.person_motion import while_person_rests
 from .belief.person_tracking import watch_arm
@@ -244,6 +244,7 @@ class SeatSleeves(Skill):
         inward, headward = self._drawn_to(side, reach, drawn.times[side])
         drawn.times[side] += 1
         drawn.reach[side] = reach
+        CloseLook.of(self).before.pop(side, None)
         laid = shoulders[n] - inward * outwards(side) + headward * HEADWARD + tuning.laid_at * UP
         yield from self._draw(side, laid, np.mean(shoulders, axis=0))
         yield from let_cloth_go(self, side)
@@ -295,7 +296,9 @@ class SeatSleeves(Skill):
     def _reach(self, frame: Frame, side: Side) -> float:
         """How far up the upper arm an armhole is seen, closely if it was.
 
-        One that does not show is low: somebody asked for this skill.
+        One that does not show is where it was seen last, before it was drawn: one at 0.95, hidden behind its shoulder,
+        was taken for the lower one, and drawn down to 0.39 (311).  Where nobody has seen it, it is low: somebody asked
+        for this skill.
         """
         closely = sleeve_seen(self, side)
         if closely is not None:
@@ -304,7 +307,7 @@ class SeatSleeves(Skill):
         try:
             return self.context.senses.worn_sleeve(frame, side=side, arm_in_map=arm).reach
         except PerceptionFailure:
-            return 0.0
+            return reach_before(self, side)
 
     def _is_drawn(self, side: Side, reach: float, drawn: Drawn, left_before: set[Side]) -> bool:
         """Whether an armhole seen at `reach` is to be drawn up; one that is left for once is noted.

@@ -45,10 +45,12 @@ class CloseLook:
     Attributes:
         seen: where the collar's middle lies; None where it may lie elsewhere by now.
         sleeves: how each of them sits.
+        before: how each of them was seen to sit the last time, from wherever; known until its sleeve is drawn.
     """
 
     seen: GraspPoint | None = None
     sleeves: dict[Side, SleeveSeen] = field(default_factory=dict)
+    before: dict[Side, SleeveSeen] = field(default_factory=dict)
 
     @staticmethod
     def of(skill: Skill) -> CloseLook:
@@ -71,3 +73,9 @@ def sleeve_seen(skill: Skill, side: Side, max_age: float = CLOSE_LOOK.sleeves_la
     """How a sleeve was seen closely to sit within `max_age` [s], if no hand came down to the gown since."""
     seen = CloseLook.of(skill).sleeves.get(side)
     return seen if seen is not None and skill.now() - seen.when < max_age else None
+
+
+def reach_before(skill: Skill, side: Side, max_age: float = CLOSE_LOOK.sleeves_last) -> float:
+    """How far up an armhole was seen the last time within `max_age` [s], from wherever; 0 where nobody has seen it."""
+    seen = CloseLook.of(skill).before.get(side)
+    return seen.reach if seen is not None and skill.now() - seen.when < max_age else 0.0

@@ -326,3 +326,15 @@ def test_both_are_drawn_again_where_both_came_down():
     run.context.memory.of(Drawn, Drawn).times.update(dict.fromkeys(SIDES, 1))
     assert run.ended() is None
     assert all(np.ptp(run.way(side), axis=0).max() > 0.2 for side in SIDES)
+
+
+@pytest.mark.parametrize(("ago", "taken"), [(60.0, ["left"]), (130.0, ["left", "right"]), (None, ["left", "right"])])
+def test_a_sleeve_that_does_not_show_is_where_it_was_seen_a_little_before(ago, taken):
+    run = bench(reach={"left": 0.5, "right": None})
+    if ago is not None:
+        seen = SleeveSeen(0.95, 0.33, run.context.world.clock.now() - ago)
+        run.context.memory.of(CloseLook, CloseLook).before["right"] = seen
+    assert run.ended() is None
+    assert [side for side in SIDES if len(drawn(run, side))] == taken
+    known = run.context.memory.of(CloseLook, CloseLook).before
+    assert ("right" in known) == (taken == ["left"]), "once it is drawn, it is elsewhere"

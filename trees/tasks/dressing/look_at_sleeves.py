@@ -99,5 +99,6 @@ class LookAtSleeves(Skill):
         for side, profiles in seen.items():
             if len(profiles) >= self.tuning.min_pictures:
                 known[side] = SleeveSeen(reach_of(profiles), round_arm(profiles), self.now())
+                CloseLook.of(self).before[side] = known[side]
         told = [f"{side} armhole {sat.reach:.2f}, cuff {sat.round_arm:.0%} round" for side, sat in known.items()]
         self.note(", ".join(told) or "too little of both armholes shows")
