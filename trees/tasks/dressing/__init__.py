@@ -39,6 +39,8 @@ from .rehearsal import scripted as scripted
 from .safe import make_safe
 from .spread import chest_covered, none_seen_beside, none_seen_low, outside_out, sleeves_known, spread
 from .take_down import before_rail, both_ends, fingers_closed, hands_open, holds_gown_with, take_down
+from .take_up import GoToStrap as GoToStrap
+from .take_up import TakeUpGown as TakeUpGown
 from .tuning import DRESSING
 
 STAGES = {
