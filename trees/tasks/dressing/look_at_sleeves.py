@@ -10,7 +10,6 @@ import numpy as np
 
 from ....perception.errors import PerceptionFailure
 from ....perception.estimates import ArmPosture, SleeveProfile
-from ....perception.image.cloud import unit
 from ....perception.sleeve.sleeve_profile import reach_of, round_arm
 from ....sim.quantity import Quantities, quantity
 from ....sim.world import SIDES, Side
@@ -40,13 +39,6 @@ class LookAtSleevesTuning(Quantities):
     )
     aimed_at: float = quantity(
         0.2, "1", "of the upper arm, from the shoulder, that is in the middle of the picture", "choice: the armhole"
-    )
-    tracked_headward: float = quantity(
-        0.0045,
-        "m",
-        "along the upper arm towards its shoulder, by which a tracked arm lies too far, and is taken to lie less far",
-        "measured: in each of 16 arms of eight runs (103, 108, 115, 118, 125, 184), 0.002 to 0.008 m, 0.0048 m on "
-        "average: armholes were told 0.017 of the upper arm too low by it",
     )
     min_pictures: int = quantity(2, "1", "that show an armhole, from which it is told", "choice: one shows half of it")
     speed: float = quantity(0.4, "m/s", "of the hands in the open", "choice: slow beside the person, as all motion is")
@@ -87,13 +79,8 @@ class LookAtSleeves(Skill):
         """Add what a camera sees of one armhole, if it does."""
         with suppress(PerceptionFailure):
             frame = self.world.look(camera)
-            profile = self.context.senses.sleeve_profile(frame, side=arm.side, arm_in_map=self._set_right(arm))
+            profile = self.context.senses.sleeve_profile(frame, side=arm.side, arm_in_map=arm.points_in_map)
             seen[arm.side].append(profile)
-
-    def _set_right(self, arm: ArmPosture) -> np.ndarray:
-        """Points (4, 3) of an arm where it lies, but for what tracking makes of it [m]."""
-        shoulder, elbow = arm.points_in_map[:2]
-        return arm.points_in_map + self.tuning.tracked_headward * unit(elbow - shoulder)
 
     def _views(self, arms: Mapping[Side, ArmPosture], eye: tuple[float, float, float]) -> dict[Side, np.ndarray]:
         """Pose (4, 4) of each hand whose camera is at `eye` from the middle between the shoulders [m]."""

@@ -22,9 +22,7 @@ def bench(shows=("head", "left_hand", "right_hand"), at=0.3, looks=None, tuning=
     """A bench on which armholes lie at `at` of the upper arms for the cameras that they show to."""
 
     def seen(frame, side, arm_in_map):
-        off = arm_in_map - (points := lying_posture(side).points_in_map)
-        assert np.linalg.norm(off, axis=1) == pytest.approx(0.0045), "tracked too far headward, by as much"
-        assert (off @ (points[1] - points[0]) > 0.0).all()
+        assert arm_in_map == pytest.approx(lying_posture(side).points_in_map)
         if looks is not None:
             looks.append((frame.camera, side, run.world.observe().arm_positions))
         if frame.camera not in shows:
