@@ -353,7 +353,7 @@ class DressingTuning(Quantities):
         0.05, "m", "by which the hands draw back from the gown that is laid", "choice: clear of it"
     )
     taken_up_speed: float = quantity(
-        0.2, "m/s", "of the base that carries a gown off the person", "choice: as slow as what is drawn over legs"
+        0.12, "m/s", "of the base that carries a gown off the person", "measured: as fast as `TakeUpTuning` says"
     )
     # time of each stage
     take_down_timeout: float = quantity(

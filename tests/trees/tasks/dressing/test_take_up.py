@@ -4,15 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from caretree.sim.mechanics.planar import planar_pose
 from caretree.sim.world import SIDES
 from caretree.skills.belief.sleeve_search import SLEEVE_SEARCH
+from caretree.skills.control.base import BASE
 from caretree.skills.core.reasons import Reason
 from caretree.skills.geometry.stances import LIFTING, stance
 from caretree.skills.scripted.scripted_person import laid_strap, lying_posture
 from caretree.trees.tasks.dressing import take_up
 from caretree.trees.tasks.dressing.take_up import GoToStrap, TakeUpGown
 
-from ....skills.bench import CLOTH, LeafBench, beside_bed, pulls
+from ....skills.bench import CLOTH, LeafBench, beside_bed, on_arm, pulls
 
 
 def going(monkeypatch, side, *, share=1.0, feetward=0.2):
@@ -52,6 +54,13 @@ def test_a_covered_arm_may_be_in_the_sleeve(monkeypatch):
     assert np.allclose(base, stance("right", "lift"), atol=0.01)
 
 
+def at_strap():
+    """Pose (4, 4) of the left hand at a strap on the bed, where `GoToStrap` has brought the robot."""
+    pose, base = on_arm(1.0), planar_pose(stance("right", "lift"))
+    pose[:2, 3] = (base @ (*BASE.ease, 0.0, 1.0))[:2]
+    return pose
+
+
 def raising(weight):
     """The left hand holds a strap; `weight` gives its load by the height it was lifted [N], [m]."""
     begun = []
@@ -63,7 +72,7 @@ def raising(weight):
 
     return LeafBench(
         lambda context: TakeUpGown("take up", context, side="right", hand="left"),
-        beside_bed(held={"left": CLOTH}),
+        beside_bed(hands={"left": at_strap()}, held={"left": CLOTH}),
         each_tick=answer,
     )
 
@@ -72,12 +81,12 @@ def test_the_hand_rises_by_its_height():
     run = raising(lambda risen: 4.0)
     assert run.ended() is None
     way = run.way("left")
-    assert way[-1, 2] - way[0, 2] == pytest.approx(0.40, abs=0.03)
+    assert 0.58 < way[-1, 2] - way[0, 2] < 0.72, "as high as the arm gets, and as is asked for"
     assert np.abs(way[:, :2] - way[0, :2]).max() < 0.02, "straight up"
     assert run.openings("left")[-1] < 0.01, "it holds on"
 
 
-@pytest.mark.parametrize(("held_at", "reason"), [(0.1, Reason.SLEEVE_CAUGHT), (0.3, None)])
+@pytest.mark.parametrize(("held_at", "reason"), [(0.1, Reason.SLEEVE_CAUGHT), (0.65, None)])
 def test_a_gown_that_holds_the_hand_back_is_let_be(held_at, reason):
     run = raising(lambda risen: 4.0 if risen < held_at else 9.0)
     assert run.ended() == reason
