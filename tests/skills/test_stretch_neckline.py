@@ -74,3 +74,9 @@ def test_less_cloth_than_hands_are_first_held_apart_is_not_overstretched():
     assert ended(run) == Reason.GRASP_MISSED
     left, right = apart(run.world)
     assert left[1] - right[1] < 0.63  # [m]: 11 N
+
+
+@pytest.mark.parametrize(("weights", "reason"), [((1.3, 3.5), Reason.GRASP_MISSED), ((2.0, 2.8), None)])  # [N]
+def test_hands_that_share_the_weight_unevenly_do_not_hold_both_ends(weights, reason):
+    run = bench(taut_at=0.84, weights=weights, max_load=1.0, min_width=0.81)
+    assert ended(run) == reason
