@@ -283,9 +283,12 @@ class SeatSleeves(Skill):
         """
         tuning = self.tuning
         self.note("the collar has come to the chin")
-        back = hand_now(self, side)[:3, 3] - tuning.back * HEADWARD
-        yield from self._carry(side, back)
-        yield from self._carry(side, np.append(back[:2], laid[2] + tuning.on_shoulder))
+        hand = hand_now(self, side)[:3, 3]
+        # up first: drawn back from behind the shoulder, a hand met the trunk from there with 49 N (118)
+        above = np.append(hand[:2], max(hand[2], laid[2] + tuning.on_shoulder))
+        back = above - tuning.back * HEADWARD
+        for place in (above, back, np.append(back[:2], laid[2] + tuning.on_shoulder)):
+            yield from self._carry(side, place)
 
     def _chin_covered(self, middle: np.ndarray) -> bool:
         """Whether cloth is about to come over mouth and nose; a face that does not show now was looked at before."""

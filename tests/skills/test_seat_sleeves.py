@@ -115,6 +115,19 @@ def test_seams_that_take_the_collar_to_the_chin_are_drawn_back_and_laid_down():
         assert off[2] == pytest.approx(0.10, abs=0.02), "over the shoulder"
 
 
+def test_a_hand_that_is_behind_the_shoulder_by_then_goes_up_before_it_is_drawn_back():
+    def chin():
+        off = run.skill.world.observe().pose_hand_in_map[SIDES.index("left"), :3, 3] - SHOULDERS["left"]
+        return float(off @ HEADWARD > 0.06 and off[2] < 0.05)
+
+    run = bench(chin=chin, side="left")
+    assert run.ended() is None
+    off = drawn(run, "left") - SHOULDERS["left"]
+    back = (off @ HEADWARD > 0.0) & (np.gradient(off @ HEADWARD) < -0.001)  # per tick [m]
+    assert back.any()
+    assert np.all(off[back, 2] > 0.07)  # [m] above the shoulder
+
+
 @pytest.mark.parametrize("lean", [0.0, 0.45])  # of the hands, outwards [rad]
 def test_the_arms_stay_apart(lean):
     gaps = []
