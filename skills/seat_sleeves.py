@@ -178,8 +178,8 @@ class SeatSleeves(Skill):
 
     An armhole that lies on the arm has its front at the chest and its lower end in the armpit; what hangs low is the
     seam above it, outside the shoulder.  Drawn over the shoulder it stays there.  Drawn by the front edge instead, the
-    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  The right one is drawn
-    first, then the left one, each as far as it is low: drawn at once, both took the collar headward by 0.08 m and more
+    cloth was stretched, and the armhole went back down the arm by 0.2 as it was let go of.  The left one is drawn
+    first, then the right one, each as far as it is low: drawn at once, both took the collar headward by 0.08 m and more
     between them, and laid down from there it took the right one along.  One that is up already is left alone, and so is
     one that is most likely up and comes no higher; once they were drawn, one that is up is left.  One that is missed
     does not keep the other from being drawn.
@@ -222,7 +222,7 @@ class SeatSleeves(Skill):
         turns, problems = self._turns(low, reach, drawn), list[PerceptionFailure | MotionError | SkillFailure]()
         for side in turns:
             try:
-                yield from self._draw_up(side, reach[side], shoulders)
+                yield from self._draw_up(side, reach[side], shoulders, followed=side != turns[-1])
             except (PerceptionFailure, MotionError, SkillFailure) as problem:
                 # one that does not show, or is missed, does not keep the other from being drawn
                 if isinstance(problem, SkillFailure) and problem.reason != Reason.GRASP_MISSED:
@@ -231,8 +231,15 @@ class SeatSleeves(Skill):
         if len(problems) == len(turns):
             raise problems[-1]
 
-    def _draw_up(self, side: Side, reach: float, shoulders: np.ndarray) -> Iterator[None]:
-        """Take the seam over one shoulder, lift it, draw it over the shoulder, lay it down, let go."""
+    def _draw_up(self, side: Side, reach: float, shoulders: np.ndarray, *, followed: bool) -> Iterator[None]:
+        """Take the seam over one shoulder, lift it, draw it over the shoulder, lay it down, let go.
+
+        Args:
+            side: whose sleeve.
+            reach: of the upper arm, as it is seen.
+            shoulders: (2, 3) in the map [m].
+            followed: the other sleeve is drawn up next.
+        """
         tuning, drawn, n = self.tuning, self.context.memory.of(Drawn, Drawn), SIDES.index(side)
         arm = watch_arm(self, side)
         yield from look_towards(self, shoulders[n])
@@ -241,7 +248,7 @@ class SeatSleeves(Skill):
         self.note(f"draws the {side} sleeve up")
         yield from self._off_the_arm(side, arm)
         yield from self._carry(side, hand_now(self, side)[:3, 3] + tuning.lift * UP)
-        inward, headward = self._drawn_to(side, reach, drawn.times[side])
+        inward, headward = self._drawn_to(side, reach, again=followed or drawn.times[side] > 0)
         drawn.times[side] += 1
         drawn.reach[side] = reach
         CloseLook.of(self).before.pop(side, None)
@@ -333,22 +340,28 @@ class SeatSleeves(Skill):
         return often and likely and reach < drawn.reach.get(side, 0.0) + tuning.brought_higher
 
     def _turns(self, low: list[Side], reach: Mapping[Side, float], drawn: Drawn) -> list[Side]:
-        """Of those that may be drawn up, which are, the right one first.
+        """Of those that may be drawn up, which are, the left one first.
 
-        One that was drawn before and is up by now is left, unless it is the lowest.  A left one that is almost up waits
-        while the right one is lower: drawn alone, that came to rest at 0.93, with a left one drawn up from 0.72 after
-        it at 0.72 (106).
+        The right one, drawn first, came to rest 0.04 lower in the mean, as the left one took it along, and the left one
+        0.05 higher: the lower of both was at 0.67 to 0.75 then, at 0.70 to 0.76 this way (108, 115, 118, 125, 134, each
+        from one state both ways).  One that was drawn before and is up by now is left, unless it is the lowest.  A left
+        one that is almost up waits while the right one is lower: drawn alone, that came to rest at 0.93, with a left
+        one drawn up from 0.72 after it at 0.72 (106).
         """
         still_low = [side for side in low if not drawn.times[side] or reach[side] < self.tuning.up_by_now]
         turns = still_low or [min(low, key=lambda side: reach[side])]
         if self.tuning.low_and_almost[1] <= reach["left"] and reach["right"] < reach["left"] and "right" in turns:
             return ["right"]
-        return [side for side in SIDES[::-1] if side in turns]
+        return [side for side in SIDES if side in turns]
 
-    def _drawn_to(self, side: Side, reach: float, times: int) -> tuple[float, float]:
-        """Inwards and headward from the shoulder [m]: the first time the less the higher the armhole is."""
+    def _drawn_to(self, side: Side, reach: float, *, again: bool) -> tuple[float, float]:
+        """Inwards and headward from the shoulder [m]: the first time the less the higher the armhole is.
+
+        All of it for one that the other one takes along as it is drawn after it: a left one at 0.62 came to 0.73 by
+        that, to 0.68 by less (134).
+        """
         tuning = self.tuning
-        if self.side or times:
+        if self.side or again:
             return tuning.drawn_to
         between = tuning.low_and_almost if side == "left" else tuning.low_and_almost_right
         less, all_of_it = np.array(tuning.drawn_less), np.array(tuning.drawn_to)

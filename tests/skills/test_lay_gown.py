@@ -14,6 +14,7 @@ from caretree.sim.world import SIDES
 from caretree.skills.belief.lying_sleeves import laid_here, lying_sleeves
 from caretree.skills.control.hands import hand_now
 from caretree.skills.core.context import Context
+from caretree.skills.geometry.stances import outwards
 from caretree.skills.lay_gown import LayGown
 from caretree.skills.scripted.scripted_person import laid_strap
 from caretree.trees.guard.guard import GuardedWorld
@@ -33,9 +34,10 @@ def armhole(x):
     return replace(seen, armhole_points_in_map=seen.armhole_points_in_map * (0.0, 1.0, 1.0) + (x, 0.0, 0.0))
 
 
-def heading(up):
-    """A near sleeve whose cuff shows by `up` [m] above its armhole."""
-    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=np.array((0.0, 0.0, up)))
+def heading(up, inwards=0.0):
+    """A near sleeve whose cuff shows by `up` above its armhole, and so much `inwards` of it [m]."""
+    cuff = np.array((0.0, 0.0, up)) - inwards * outwards("right")
+    return SleeveHeading(stamp=0.0, confidence=0.9, side="right", cuff_from_armhole_in_map=cuff)
 
 
 def let_go_at(seen, taut_until=1.0, width=WIDTH, way_down=None, across=None, stands=HIDDEN, skills=None, lying=()):
@@ -122,7 +124,7 @@ def test_the_neckline_is_never_held_farther_apart_than_it_is_long():
     assert np.min(np.array(across)[low]) < 0.75, "nearer across the bed meanwhile"
 
 
-@pytest.mark.parametrize("stands", [HIDDEN, heading(0.05)])
+@pytest.mark.parametrize("stands", [HIDDEN, heading(0.05), heading(0.05, 0.04)])
 def test_a_gown_whose_near_sleeve_stands_or_hides_is_laid_once(stands):
     way_down = []
     let_go_at(armhole(STRAIGHT_AT), way_down=way_down, stands=stands)
@@ -146,6 +148,8 @@ def test_one_whose_near_sleeve_is_tucked_in_is_drawn_over_the_bed_with_its_near_
         ([heading(-0.02), heading(0.06)], set()),
         ([heading(-0.02), HIDDEN], {"right"}),
         (heading(-0.02), {"right"}),
+        (heading(0.05, 0.09), {"right"}),  # folded over (131)
+        ([heading(0.05, 0.09), heading(0.06)], set()),
     ],
 )
 def test_it_is_remembered_whether_the_near_sleeve_stands(stands, lying):
