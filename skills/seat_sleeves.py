@@ -133,10 +133,11 @@ class SeatSleevesTuning(Quantities):
         "measured: let down where they were, they drew the collar on by 0.06 m, over the mouth (178)",
     )
     on_shoulder: float = quantity(
-        0.10,
+        0.13,
         "m",
         "above where it is laid behind the shoulder, to which it is let down then",
-        "measured: as low as there, hands met the shoulders with 36 and 47 N (178)",
+        "measured: as low as there, hands met the shoulders with 36 and 47 N (178); 0.10 m above it, fingers that "
+        "opened met the trunk with 123 N (150)",
     )
     laid_at: float = quantity(
         0.0,

@@ -112,7 +112,7 @@ def test_seams_that_take_the_collar_to_the_chin_are_drawn_back_and_laid_down():
         off = last_held(run, side) - SHOULDERS[side]
         farthest = (drawn(run, side) - SHOULDERS[side]) @ HEADWARD
         assert off @ HEADWARD == pytest.approx(farthest.max() - 0.08, abs=0.02)
-        assert off[2] == pytest.approx(0.10, abs=0.02), "over the shoulder"
+        assert off[2] == pytest.approx(0.13, abs=0.02), "over the shoulder"
 
 
 def test_a_hand_that_is_behind_the_shoulder_by_then_goes_up_before_it_is_drawn_back():
