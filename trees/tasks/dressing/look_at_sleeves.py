@@ -41,14 +41,6 @@ class LookAtSleevesTuning(Quantities):
         0.2, "1", "of the upper arm, from the shoulder, that is in the middle of the picture", "choice: the armhole"
     )
     min_pictures: int = quantity(2, "1", "that show an armhole, from which it is told", "choice: one shows half of it")
-    told_low: tuple[float, float] = quantity(
-        (0.015, 0.0),
-        "1",
-        "of the upper arm, by which left and right armholes are told too low, and are taken to be higher",
-        "measured in runs of development seeds: left ones are told 0.023 too low (standard deviation 0.019, 40 looks), "
-        "right ones 0.009 (0.025, 34 looks).  With all of it taken off, half of those that are just low would be told "
-        "up; with 0.015 all 21 left ones that were up are told, 14 without, and none wrongly",
-    )
     speed: float = quantity(0.4, "m/s", "of the hands in the open", "choice: slow beside the person, as all motion is")
     settle_time: float = quantity(0.3, "s", "before the pictures", "choice: the hands come to rest")
 
@@ -106,8 +98,7 @@ class LookAtSleeves(Skill):
         known = CloseLook.of(self).sleeves
         for side, profiles in seen.items():
             if len(profiles) >= self.tuning.min_pictures:
-                reach = reach_of(profiles) + self.tuning.told_low[SIDES.index(side)]
-                known[side] = SleeveSeen(reach, round_arm(profiles), self.now())
+                known[side] = SleeveSeen(reach_of(profiles), round_arm(profiles), self.now())
                 CloseLook.of(self).before[side] = known[side]
         told = [f"{side} armhole {sat.reach:.2f}, cuff {sat.round_arm:.0%} round" for side, sat in known.items()]
         self.note(", ".join(told) or "too little of both armholes shows")

@@ -46,8 +46,8 @@ def test_both_are_looked_at_by_head_and_hand_from_two_places_beside_the_shoulder
     looks = []
     run = bench(looks=looks)
     assert run.ended(seconds=90.0) is None
-    for side, low in zip(SIDES, LookAtSleevesTuning().told_low, strict=True):
-        assert sleeve_seen(run.skill, side).reach == pytest.approx(reach_of([profile(side, 0.3)]) + low)
+    for side in SIDES:
+        assert sleeve_seen(run.skill, side).reach == reach_of([profile(side, 0.3)])
         assert sleeve_seen(run.skill, side).round_arm == 0.5
         assert [camera for camera, whose, _ in looks if whose == side] == ["head"] + [f"{side}_hand"] * len(EYES)
     middle = np.mean([lying_posture(side).points_in_map[0] for side in SIDES], axis=0)
@@ -75,13 +75,6 @@ def test_places_that_no_hand_gets_to_are_left_out():
     run = bench(tuning=LookAtSleevesTuning(eyes=((3.0, 0.0, 3.0),)))
     assert run.ended(seconds=90.0) is None
     assert sleeve_seen(run.skill, "left") is None
-
-
-def test_what_an_armhole_is_told_too_low_by_is_added():
-    run = bench(tuning=LookAtSleevesTuning(told_low=(0.2, 0.1)))
-    assert run.ended(seconds=90.0) is None
-    left, right = (sleeve_seen(run.skill, side).reach for side in SIDES)
-    assert left - right == pytest.approx(0.1)
 
 
 def test_what_nobody_touched_since_is_not_looked_at_again():
