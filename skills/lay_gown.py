@@ -93,7 +93,7 @@ class LayGown(Skill):
 
     The gown is between both hands, its outside towards the robot.  One that was taken askew, with more of it on one
     side, is laid nearer to the other.  Where the back panel on the robot's side has come to lie under the front, or
-    folded over it, its sleeve does not stand; held still, the gown is then taken up and laid once more, the near end
+    folded over it, its sleeve does not stand, or points inwards; held still, the gown is then taken up and laid once more, the near end
     lower and behind, so that the bed draws that panel outwards.
     """
 
