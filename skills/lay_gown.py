@@ -93,8 +93,8 @@ class LayGown(Skill):
 
     The gown is between both hands, its outside towards the robot.  One that was taken askew, with more of it on one
     side, is laid nearer to the other.  Where the back panel on the robot's side has come to lie under the front, or
-    folded over it, its sleeve does not stand, or points inwards; held still, the gown is then taken up and laid once more, the near end
-    lower and behind, so that the bed draws that panel outwards.
+    folded over it, its sleeve does not stand, or points inwards; held still, the gown is then taken up and laid once
+    more, the near end lower and behind, so that the bed draws that panel outwards.
     """
 
     width = Input(float, unit="m", doc="distance between the hands")
